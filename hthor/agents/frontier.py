@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from hthor.agents.skills.knowledge import PAPER_KINDS
 from hthor.agents.skills.message_timing import APART_M, ASIDE_M, MessageTiming, find_detection, sighting_text
-from hthor.agents.skills.subgoals import PAPER_KINDS
 from hthor.types import HUMAN, Action, Briefing, Detection, Motion, Observation, Send, Wait
 
 if TYPE_CHECKING:

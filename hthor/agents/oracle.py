@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from hthor.agents.skills.subgoals import PAPER_KINDS
+from hthor.agents.skills.knowledge import PAPER_KINDS
 from hthor.types import Action, Briefing, Observation
 
 if TYPE_CHECKING:

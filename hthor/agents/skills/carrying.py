@@ -10,8 +10,8 @@ import math
 from typing import Protocol
 
 from hthor.agents.skills import viewpoints
+from hthor.agents.skills.knowledge import Knowledge
 from hthor.agents.skills.manipulation import ManipulationGoal, Manipulator, whole_tick_move
-from hthor.agents.skills.subgoals import Knowledge
 from hthor.agents.skills.task_allocation import TaskAllocation, can_do, seat_order
 from hthor.agents.skills.viewpoints import Routes
 from hthor.agents.skills.yielding import seat_bumped

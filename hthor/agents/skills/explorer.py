@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import partial
 
 from hthor.geometry.plane import wrap
@@ -11,7 +12,7 @@ from hthor.navigation.grid_map import CELL_M, UNKNOWN, GridMap
 from hthor.navigation.path_follower import Follower
 from hthor.navigation.planner import Planner
 from hthor.navigation.waiting_spots import retreat
-from hthor.types import BodySpec, Motion, Observation, Pose, Rotate, Vec2
+from hthor.types import BodySpec, Motion, Observation, Pose, Rotate, Vec2, Vec3
 
 CLOSE_M = 1.15
 """From this far [m] objects near the edge of a table or a counter are within the detector's range."""
@@ -23,6 +24,7 @@ _TURN_RAD = 0.8
 _THINK_M = 1.0
 """Distance [m] that it moves before it drops a place that has become uninteresting."""
 _TRIES = 4
+_WALL_M = 0.12
 _LOW_M, _HIGH_M, _ASIDE_M = 0.4, 1.1, 1.0
 
 
@@ -128,6 +130,55 @@ class Explorer:
             reach = self.body.radius + CELL_M
             self.grid.mark_blocked(pose.x + reach * math.cos(angle), pose.y + reach * math.sin(angle))
         self.drop()
+
+
+class ObservedRoutes:
+    """Routes of a robot through the part of a house that it has seen."""
+
+    def __init__(self, explorer: Explorer) -> None:
+        self.explorer = explorer
+
+    def stands(self, spot: Vec2) -> bool:
+        """Whether the body may stand here, according to the map."""
+        return self.explorer.planner.fits(*spot)
+
+    def standing(self, spots: Sequence[Vec2]) -> list[Vec2]:
+        """Those of the spots where the body may stand, according to the map."""
+        return [spot for spot in spots if self.explorer.planner.fits(*spot)]
+
+    def fits(self, a: Vec2, b: Vec2) -> bool:
+        """Whether the body can go straight from ``a`` to ``b``."""
+        return self.explorer.fits(a, b)
+
+    def lengths(self, here: Vec2, spots: Sequence[Vec2]) -> Sequence[float]:
+        """Walking distances [m]; inf where no path is known."""
+        return self.explorer.planner.distances(here, spots)
+
+    def way(self, here: Vec2, spot: Vec2) -> tuple[Vec2, ...]:
+        """The shortest known path, () for none."""
+        return self.explorer.planner.path(here, spot) or ()
+
+    def broad(self, here: Vec2, spot: Vec2) -> tuple[Vec2, ...]:
+        """The shortest known path: a robot's own map is too coarse to prefer broad ones."""
+        return self.way(here, spot)
+
+    def retreat(self, here: Vec2, point: Vec2, apart_m: float) -> tuple[Vec2, ...]:
+        """The path to a spot where the body blocks nobody, ``apart_m`` metres from ``point``; () to stay."""
+        explorer = self.explorer
+        return () if explorer.grid is None else retreat(explorer.grid, explorer.planner, here, point, apart_m) or ()
+
+    def loose(self, here: Vec2) -> Vec2:
+        """Where to go first when the body is stopped here: paths on a map begin with that anyway."""
+        return here
+
+    def sees(self, spot: Vec2, point: Vec3) -> bool:  # noqa: ARG002
+        """Always True: without a model of the house it has to try."""
+        return True
+
+    def open_to(self, spot: Vec2, edge: Vec2) -> bool:
+        """Whether nothing on the map is between a spot and the edge of a thing."""
+        grid = self.explorer.grid
+        return grid is not None and not grid.meets(spot, edge, _WALL_M)
 
 
 def exploring_pitch(body: BodySpec) -> float:

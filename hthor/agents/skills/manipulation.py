@@ -9,7 +9,7 @@ from msgspec import Struct
 
 from hthor import catalog, rules
 from hthor.agents.skills import viewpoints
-from hthor.agents.skills.subgoals import Knowledge, has_door, resting_points
+from hthor.agents.skills.knowledge import Knowledge, has_door, resting_points
 from hthor.agents.skills.viewpoints import Routes
 from hthor.agents.skills.yielding import Yielding, seat_bumped
 from hthor.geometry import plane

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from hthor import rules
+from hthor.agents.skills.knowledge import PAPER_KINDS, Knowledge
 from hthor.agents.skills.message_timing import (
     ASIDE_M,
     MessageTiming,
@@ -17,7 +18,6 @@ from hthor.agents.skills.message_timing import (
     place_phrase,
     sighting_text,
 )
-from hthor.agents.skills.subgoals import PAPER_KINDS, Knowledge
 from hthor.geometry import plane
 from hthor.types import HUMAN, Briefing, Job, Motion, Observation, Receipt, Send, Thing, ThingState, Vec2, Vec3, Wait
 

@@ -6,7 +6,8 @@ import math
 
 from hthor import rules
 from hthor.agents.skills.carrying import Carrier
-from hthor.agents.skills.explorer import Explorer
+from hthor.agents.skills.explorer import Explorer, ObservedRoutes
+from hthor.agents.skills.knowledge import Knowledge, ObservedKnowledge
 from hthor.agents.skills.manipulation import Manipulator
 from hthor.agents.skills.message_timing import (
     MessageTiming,
@@ -15,8 +16,6 @@ from hthor.agents.skills.message_timing import (
     look_inside_text,
     sighting_text,
 )
-from hthor.agents.skills.observed_map import ObservedKnowledge, ObservedRoutes
-from hthor.agents.skills.subgoals import Knowledge
 from hthor.agents.skills.task_allocation import TaskAllocation, can_do
 from hthor.agents.skills.viewpoints import outline_distance
 from hthor.agents.skills.yielding import Yielding

@@ -8,10 +8,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from hthor.agents.skills.carrying import Carrier
+from hthor.agents.skills.knowledge import Knowledge
 from hthor.agents.skills.manipulation import Manipulator
 from hthor.agents.skills.messenger import Messenger
 from hthor.agents.skills.routes import HouseRoutes
-from hthor.agents.skills.subgoals import Knowledge
 from hthor.agents.skills.task_allocation import TaskAllocation, can_do
 from hthor.agents.skills.yielding import Yielding
 from hthor.navigation.path_follower import Follower

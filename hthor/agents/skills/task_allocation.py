@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Collection, Sequence
 
 from hthor import catalog
-from hthor.agents.skills.subgoals import Knowledge
+from hthor.agents.skills.knowledge import Knowledge
 from hthor.types import HUMAN, BodySpec, Briefing, Job, Observation, Vec2, Vec3
 
 UNKNOWING_M = 4.0

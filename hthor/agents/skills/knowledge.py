@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping
 
 from hthor import catalog
 from hthor.geometry import plane
-from hthor.types import Job, Room, Thing, ThingState, Vec3
+from hthor.types import Job, Observation, Place, Room, Thing, ThingState, Vec3
 
 PAPER_KINDS = ("", "mobile_manipulation", "object_goal_navigation")
 """The two kinds of the paper, in which robots say and do what the paper's robots did; "" is an unnamed kind."""
@@ -57,6 +57,47 @@ class Knowledge:
             return plane.inside(state.position[:2], self.rooms[place].polygon)
         thing = self.things.get(state.support)
         return state.support == place or (thing is not None and thing.kind == place)
+
+
+class ObservedKnowledge(Knowledge):
+    """Knowledge from detections alone: things where they were seen last."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._known: dict[str, ThingState] = {}
+        self.states = self._known
+
+    def note(self, observation: Observation) -> None:
+        """Update from what is in view."""
+        for seen in observation.detections:
+            if seen.family == "object":
+                self._known[seen.id] = ThingState(
+                    id=seen.id, kind=seen.kind, position=seen.position, support=seen.support, held_by=seen.held_by
+                )
+            elif seen.family == "furniture":
+                if seen.id not in self.things:
+                    self.things[seen.id] = Thing(
+                        id=seen.id, kind=seen.kind, asset="", centre=seen.position, size=seen.size, yaw=seen.yaw
+                    )
+                if seen.state:
+                    self._known[seen.id] = ThingState(
+                        id=seen.id, kind=seen.kind, position=seen.position, open=seen.state == "open"
+                    )
+
+    def put(self, object: str, place: Place) -> None:
+        """Note that the robot itself has put an object down there, in view or not."""
+        state = self._known.get(object)
+        if state is not None:
+            position = place.position or state.position
+            self._known[object] = ThingState(id=object, kind=state.kind, position=position, support=place.on)
+
+    def forget(self, object: str) -> None:
+        """Forget an object that is not where it was."""
+        self._known.pop(object, None)
+
+    def shut(self) -> list[Thing]:
+        """Furniture whose inside is hidden by a closed door."""
+        return [thing for thing in self.things.values() if has_door(thing) and self.is_shut(thing.id)]
 
 
 def has_door(thing: Thing) -> bool:
