@@ -3,7 +3,7 @@
     hthor eval --agent examples/sweeper.py --humans proxy
 
 It asks for no privilege but the detector, and makes its own map. Unlike the frontier robot it does not care for the
-edges of its map as such: it prefers places beside furniture where people usually keep what is wanted.
+edges of its map as such: it prefers places next to furniture where people usually keep what is wanted.
 """
 
 import math
@@ -91,7 +91,7 @@ class Agent:
         return self.follower.next(pose) or Rotate(yaw=self.body.fov[0])
 
     def choose(self, observation: Observation) -> None:
-        """Take the way to the best place: near, and beside likely furniture."""
+        """Take the path to the best place: near, and next to likely furniture."""
         pose = observation.pose
         survey = Survey(self.map, self.planner, pose, least=0.5)
         places = [(cost(pose, place) - self.worth(place.centre), place) for place in survey.unvisited]
@@ -108,7 +108,7 @@ class Agent:
         self.follower.take(survey.path(self.place))
 
     def worth(self, centre: tuple[float, float]) -> float:
-        """How much detour [m] a place deserves for the furniture beside it."""
+        """How much detour [m] a place deserves for the furniture next to it."""
         beside = (
             thing
             for thing in self.furniture.values()
