@@ -29,7 +29,7 @@ from hthor.eval.task_check import omniscient_solver
 from hthor.houses.library import OURS, HouseLibrary
 from hthor.tasks.arrangement.placement import NEAR_M, as_thing
 from hthor.tasks.validate import task_faults as mistakes
-from hthor.types import HUMAN, HouseSpec, Placement, TaskSpec, Thing, ThingState, Vec3
+from hthor.types import HouseSpec, Placement, TaskSpec, Thing, ThingState, Vec3
 
 CODE_ROOT = "makers"
 
@@ -292,17 +292,3 @@ def _world(house: HouseSpec, objects: tuple[tuple[str, str], ...]) -> World:
     from hthor.world import World
 
     return World(house, objects=objects)
-
-
-__all__ = [
-    "DRIFT_M",
-    "HUMAN",
-    "WATCHED_S",
-    "TaskFault",
-    "TaskVerdict",
-    "check_task",
-    "check_tasks",
-    "repeated",
-    "run_in_workers",
-    "woken",
-]

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from hthor.calibration.pipeline.evidence import Band, Coverage, Evidence, HeldOut, ParameterFinding, Ranking, Shift
 from hthor.calibration.validation.report.findings import QUARTILE_S, Difference, Findings, Played, Reach, Spent, Trust
+from hthor.eval.metrics import registry
 from hthor.report.html.number_format import listed as listed
 from hthor.report.html.number_format import percent as percent
 from hthor.report.html.number_format import plain as plain
@@ -16,7 +17,7 @@ CONTRACTS, CONTRACTS_WEAKLY = 0.4, 0.1
 """Contraction from which on a parameter is identified, and weakly so."""
 RECOVERS, RECOVERS_WEAKLY = 0.6, 0.45
 """Recovery that it takes besides, where it was worked out."""
-METRIC = {"sr": "SR", "twsr": "TWSR", "adoption": "adoption"}
+METRIC = {name: registry.get(name).symbol for name in ("sr", "twsr", "adoption")}
 CONDITION = {"none": "no robot", "frontier": "frontier", "oracle": "oracle"}
 _ROBOT = {"frontier": "the frontier robot", "oracle": "the oracle"}
 SCOPE = (

@@ -12,12 +12,13 @@ from matplotlib.patches import Patch
 from hthor.calibration.pipeline.evidence import Band, HeldOut, Predictive
 from hthor.calibration.simulation.trial_table import CONDITIONS
 from hthor.calibration.validation.report.findings import Findings, Predicted
+from hthor.eval.metrics import registry
 from hthor.report.html import matplotlib_svg
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-METRICS = {"sr": "success rate", "twsr": "time-weighted success", "adoption": "adoption"}
+METRICS = {name: registry.get(name).title for name in ("sr", "twsr", "adoption")}
 CONDITION = {"none": "no robot", "frontier": "frontier", "oracle": "oracle"}
 
 
