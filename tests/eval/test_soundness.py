@@ -8,7 +8,7 @@ import msgspec
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from test_check import SIDE, TABLE, house, on, thing
+from two_rooms import SIDE, TABLE, house, on, thing
 
 from hthor import catalog
 from hthor.errors import HthorError

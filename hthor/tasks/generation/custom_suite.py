@@ -44,25 +44,25 @@ def make_tasks(recipe: Recipe, house: HouseSpec, possible: IsPossible = accept_a
         HthorError: when the house has no room for so many.
     """
     orders = functools.partial(_orders, recipe)
-    plan = SuiteSpec(name=recipe.name, version=VERSION, root=seeds.derive(_ROOT, recipe.seed), houses=(), orders=orders)
-    made = _House(plan, house, possible)
-    for order in plan.orders(plan, house):
+    spec = SuiteSpec(name=recipe.name, version=VERSION, root=seeds.derive(_ROOT, recipe.seed), houses=(), orders=orders)
+    made = _House(spec, house, possible)
+    for order in spec.orders(spec, house):
         made.add(order)
     return tuple(made.done)
 
 
-def _orders(recipe: Recipe, plan: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
+def _orders(recipe: Recipe, spec: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
     """What is to be made in a house."""
     rows: list[TaskOrder] = []
     for kind, count in _counts(recipe):
         if not count:
             continue
         if kind in (FIND, MOVE):
-            rows += by_count((kind, count))(plan, house)
+            rows += by_count((kind, count))(spec, house)
             continue
         short = plugins.load("task kind", kind).short
-        names = [f"{plan.name}/{house.id}/{short}-{number + 1:02d}" for number in range(count)]
-        rows += [TaskOrder(name=name, kind=kind, share=seeds.draw(plan.root, name, "share")) for name in names]
+        names = [f"{spec.name}/{house.id}/{short}-{number + 1:02d}" for number in range(count)]
+        rows += [TaskOrder(name=name, kind=kind, share=seeds.draw(spec.root, name, "share")) for name in names]
     return [msgspec.structs.replace(row, level=recipe.difficulty) for row in rows]
 
 
@@ -78,8 +78,8 @@ def _counts(recipe: Recipe) -> list[tuple[str, int]]:
 class _House:
     """One house's tasks, made one after the other."""
 
-    def __init__(self, plan: SuiteSpec, house: HouseSpec, possible: IsPossible) -> None:
-        self._plan, self._house, self._possible = plan, house, possible
+    def __init__(self, spec: SuiteSpec, house: HouseSpec, possible: IsPossible) -> None:
+        self._spec, self._house, self._possible = spec, house, possible
         self._hopeless: set[Goal] = set()
         self.done: list[TaskSpec] = []
 
@@ -114,7 +114,7 @@ class _House:
         if order.goal is None:
             return [None]
         known = plugins.load("task kind", order.kind).goals(self._house)
-        others = [known[number] for number in seeds.shuffled(len(known), self._plan.root, order.name, "others")]
+        others = [known[number] for number in seeds.shuffled(len(known), self._spec.root, order.name, "others")]
         return [goal for goal in dict.fromkeys((order.goal, *others)) if goal not in self._hopeless]
 
     def _made(self, order: TaskOrder, goal: Goal | None, lap: int) -> TaskSpec:
@@ -122,7 +122,7 @@ class _House:
             self._house,
             plugins.load("task kind", order.kind),
             goal,
-            seeds.derive(self._plan.root, "lap", lap) if lap else self._plan.root,
+            seeds.derive(self._spec.root, "lap", lap) if lap else self._spec.root,
             name=order.name,
             share=order.share,
             robots=ROBOTS,

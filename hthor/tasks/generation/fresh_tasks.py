@@ -32,8 +32,8 @@ def make_fresh_suite(name: str, root: int, count: int, possible: ArePossible) ->
         UnknownName: when no recipe has that name.
         HthorError: when the recipe does not give so many tasks.
     """
-    plan = _plan(name)
-    again = msgspec.structs.replace(plan, root=seeds.derive(plan.root, "fresh", root), redrawn=())
+    spec = _spec(name)
+    again = msgspec.structs.replace(spec, root=seeds.derive(spec.root, "fresh", root), redrawn=())
     made: dict[int, TaskSpec] = {}
     for lap in range(_LAPS):
         open_ = [number for number in range(count) if number not in made]
@@ -47,20 +47,20 @@ def make_fresh_suite(name: str, root: int, count: int, possible: ArePossible) ->
     raise HthorError(f"{missing} could not be drawn; ask for fewer")
 
 
-def _plan(name: str) -> SuiteSpec:
+def _spec(name: str) -> SuiteSpec:
     plans = {**SUITE_SPECS, standard.SPEC.name: standard.SPEC}
     if name not in plans:
         raise UnknownName("recipe of tasks", name, tuple(sorted(plans)))
     return plans[name]
 
 
-def _drafts(plan: SuiteSpec, numbers: Sequence[int], lap: int) -> Iterator[tuple[int, TaskSpec]]:
+def _drafts(spec: SuiteSpec, numbers: Sequence[int], lap: int) -> Iterator[tuple[int, TaskSpec]]:
     """A task for each of these numbers, as far as its house takes one: of as many houses and orders as there are."""
-    shelves = [(house, order) for house in plan.houses for order in plan.orders(plan, houses.load(house))]
-    order_of = seeds.shuffled(len(shelves), plan.root, "orders")
+    shelves = [(house, order) for house in spec.houses for order in spec.orders(spec, houses.load(house))]
+    order_of = seeds.shuffled(len(shelves), spec.root, "orders")
     for number in numbers:
         house, order = shelves[order_of[number % len(shelves)]]
-        own = msgspec.structs.replace(plan, root=seeds.derive(plan.root, "task", number, lap))
+        own = msgspec.structs.replace(spec, root=seeds.derive(spec.root, "task", number, lap))
         try:
             task = generate.make_ordered_task(own, houses.load(house), order)
         except HthorError:

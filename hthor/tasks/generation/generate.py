@@ -32,39 +32,39 @@ _CLOSE_S = 0.5
 _TRIES = 20
 
 
-def build_suite(plan: SuiteSpec) -> Suite:
-    """The suite that a plan describes: its houses' tasks in turn, the first of each, then the second of each.
+def build_suite(spec: SuiteSpec) -> Suite:
+    """The suite that a specification describes: its houses' tasks in turn, the first of each, then the second of each.
 
     Raises:
         HthorError: when a house cannot take one of its tasks.
     """
-    columns = [house_tasks(plan, houses.load(name)) for name in plan.houses]
+    columns = [house_tasks(spec, houses.load(name)) for name in spec.houses]
     longest = max(len(column) for column in columns)
     tasks = [column[number] for number in range(longest) for column in columns if number < len(column)]
-    return make_suite(plan.name, plan.version, tuple(tasks))
+    return make_suite(spec.name, spec.version, tuple(tasks))
 
 
-def house_tasks(plan: SuiteSpec, house: HouseSpec) -> tuple[TaskSpec, ...]:
-    """One house's tasks of a plan."""
-    return tuple(make_ordered_task(plan, house, order) for order in plan.orders(plan, house))
+def house_tasks(spec: SuiteSpec, house: HouseSpec) -> tuple[TaskSpec, ...]:
+    """One house's tasks of a spec."""
+    return tuple(make_ordered_task(spec, house, order) for order in spec.orders(spec, house))
 
 
-def make_ordered_task(plan: SuiteSpec, house: HouseSpec, order: TaskOrder) -> TaskSpec:
+def make_ordered_task(spec: SuiteSpec, house: HouseSpec, order: TaskOrder) -> TaskSpec:
     """One task of a suite, independent of its other tasks."""
-    lap = dict(plan.redrawn).get(order.name, 0)
+    lap = dict(spec.redrawn).get(order.name, 0)
     return make_task(
         house,
         plugins.load("task kind", order.kind),
         order.goal,
-        seeds.derive(plan.root, "again", lap) if lap else plan.root,
+        seeds.derive(spec.root, "again", lap) if lap else spec.root,
         name=order.name,
         fixed=order.fixed,
         share=order.share,
-        robots=plan.robots,
-        looks=plan.looks,
+        robots=spec.robots,
+        candidates=spec.candidates,
         level=order.level,
-        serial=plan.serial,
-        told=plan.told,
+        serial=spec.serial,
+        record_difficulty=spec.record_difficulty,
     )
 
 
@@ -78,11 +78,11 @@ def make_task(
     fixed: Triplet | None = None,
     share: float | None = None,
     robots: int = ROBOTS,
-    looks: int = 2,
+    candidates: int = 2,
     level: Level | Literal[""] = "",
     split: Literal["", "seen", "new"] = "",
     serial: bool = False,
-    told: bool = True,
+    record_difficulty: bool = True,
 ) -> TaskSpec:
     """A task of any kind, fixed by ``root`` and ``name``.
 
@@ -93,11 +93,11 @@ def make_task(
         share: how hard, in [0, 1]: the least time is aimed at that share of the way from `EASY_S` to `HARD_S`; drawn
             when None.
         robots: for how many robots there are starts.
-        looks: of how many arrangements the one whose time is nearest to that is taken, unless one is near enough.
+        candidates: of how many arrangements the one whose time is nearest to that is taken, unless one is near enough.
         level: the stratum of difficulty that it must be of, if any.
         split: whether the house is one of the ten scenes; empty when the suite does not say.
         serial: as `hthor.tasks.arrangement.target_arrangement.arrange` has it.
-        told: whether the task records its difficulty.
+        record_difficulty: whether the task says how difficult it is.
 
     Raises:
         HthorError: when the house has no room for it: no arrangement, or no place to start from.
@@ -123,12 +123,14 @@ def make_task(
             continue
         if best is None or abs(found.least - wanted) < abs(best[0].least - wanted):
             best = (found, aim, objects)
-        if best is not None and (abs(best[0].least - wanted) <= _CLOSE_S or attempt + 1 >= looks):
+        if best is not None and (abs(best[0].least - wanted) <= _CLOSE_S or attempt + 1 >= candidates):
             break
     if best is None:
         raise HthorError(f"no arrangement was found for task '{name}' in {2 * _TRIES} tries{reason}")
     made = msgspec.structs.replace(_spec(house, kind, name, *best), split=split)
-    return msgspec.structs.replace(made, difficulty=difficulty.level_of(made, house, kind)) if told else made
+    if not record_difficulty:
+        return made
+    return msgspec.structs.replace(made, difficulty=difficulty.level_of(made, house, kind))
 
 
 def _scene(
@@ -161,7 +163,7 @@ def main(arguments: Sequence[str]) -> int:
     """Write the suite of the given name."""
     try:
         if not arguments or arguments[0] not in SUITE_SPECS:
-            raise UnknownName("suite plan", arguments[0] if arguments else "", SUITE_SPECS)
+            raise UnknownName("suite specification", arguments[0] if arguments else "", SUITE_SPECS)
         path = Path(arguments[1]) if len(arguments) > 1 else library.suite_path(arguments[0])
         jsonio.write(path, encode_suite(build_suite(SUITE_SPECS[arguments[0]])))
     except HthorError as error:

@@ -156,8 +156,8 @@ def make_house_tasks(lot: HouseOrder, proof: Proof) -> HouseTasks:
             house = loader.house_from_document(msgspec.json.decode(file), lot.house)
             if flaw := next((str(finding) for finding in proof.house(house) if finding.severity == "error"), ""):
                 raise HthorError(flaw)
-            plan = SuiteSpec(name=lot.suite, version=VERSION, root=tasks_root, houses=(), orders=by_count(*lot.counts))
-            tasks = tuple(standard.make_tasks(plan, house, "new", proof.task))
+            spec = SuiteSpec(name=lot.suite, version=VERSION, root=tasks_root, houses=(), orders=by_count(*lot.counts))
+            tasks = tuple(standard.make_tasks(spec, house, "new", proof.task))
             return HouseTasks(house=lot.house, file=file, tasks=tasks)
         except (AttemptFailed, HthorError) as error:
             problem = str(error)

@@ -75,25 +75,25 @@ def house_tasks(name: str) -> tuple[TaskSpec, ...]:
 
 
 def make_tasks(
-    plan: SuiteSpec, house: HouseSpec, split: Literal["seen", "new"], possible: IsPossible = accept_any
+    spec: SuiteSpec, house: HouseSpec, split: Literal["seen", "new"], possible: IsPossible = accept_any
 ) -> Iterator[TaskSpec]:
-    """One house's tasks of a plan one by one, no two of them alike; what is not ``possible`` is drawn again.
+    """One house's tasks of a suite one by one, no two of them alike; what is not ``possible`` is drawn again.
 
     Raises:
         HthorError: when the house cannot take one of its tasks, or not so many that differ.
     """
     done: list[TaskSpec] = []
-    for order in plan.orders(plan, house):
+    for order in spec.orders(spec, house):
         for lap in range(REDRAWN.get(order.name, 0), _LAPS):
             made = generate.make_task(
                 house,
                 plugins.load("task kind", order.kind),
                 order.goal,
-                seeds.derive(plan.root, "lap", lap) if lap else plan.root,
+                seeds.derive(spec.root, "lap", lap) if lap else spec.root,
                 name=order.name,
                 share=order.share,
-                robots=plan.robots,
-                looks=plan.looks,
+                robots=spec.robots,
+                candidates=spec.candidates,
                 split=split,
             )
             if not any(are_alike(made, other) for other in done) and possible(made, house):

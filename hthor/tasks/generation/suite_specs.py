@@ -44,9 +44,9 @@ class TaskOrder(Struct, frozen=True, kw_only=True):
 class SuiteSpec(Struct, frozen=True, kw_only=True):
     """A suite to be made in ``houses``, every draw from ``root``.
 
-    ``orders`` lists a house's tasks. ``robots`` is how many of them a task has starts for, ``looks`` how many
+    ``orders`` lists a house's tasks. ``robots`` is how many of them a task has starts for, ``candidates`` how many
     arrangements are compared for how hard they are. ``serial`` as
-    `hthor.tasks.arrangement.target_arrangement.arrange` has it. ``told`` says whether tasks record their
+    `hthor.tasks.arrangement.target_arrangement.arrange` has it. ``record_difficulty`` says whether tasks record their
     difficulty. ``redrawn`` says how often a task was drawn again because ``hthor tasks check`` found that it cannot be
     done in the simulated world: small things hide the target, or the way takes too long.
     """
@@ -57,24 +57,24 @@ class SuiteSpec(Struct, frozen=True, kw_only=True):
     houses: tuple[str, ...]
     orders: Callable[[SuiteSpec, HouseSpec], list[TaskOrder]]
     robots: int = ROBOTS
-    looks: int = 2
+    candidates: int = 2
     serial: bool = False
-    told: bool = True
+    record_difficulty: bool = True
     redrawn: tuple[tuple[str, int], ...] = ()
 
 
 def by_count(*counts: tuple[str, int]) -> Callable[[SuiteSpec, HouseSpec], list[TaskOrder]]:
     """Orders for so many tasks of each kind in a house, the kinds spread evenly over the list."""
 
-    def orders(plan: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
+    def orders(spec: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
         shelves: list[tuple[float, int, TaskOrder]] = []
-        shift = (seeds.draw(plan.root, house.id, "shift") - 0.5) / max(count for _, count in counts)
+        shift = (seeds.draw(spec.root, house.id, "shift") - 0.5) / max(count for _, count in counts)
         for rank, (name, count) in enumerate(counts):
             kind: TaskKind = plugins.load("task kind", name)
-            goals = _goals(kind, house, count, seeds.derive(plan.root, house.id, name))
-            levels = seeds.shuffled(count, plan.root, house.id, name, "levels")
+            goals = _goals(kind, house, count, seeds.derive(spec.root, house.id, name))
+            levels = seeds.shuffled(count, spec.root, house.id, name, "levels")
             for number, goal in enumerate(goals):
-                task = f"{plan.name}/{house.id}/{kind.short}-{number + 1:02d}"
+                task = f"{spec.name}/{house.id}/{kind.short}-{number + 1:02d}"
                 order = TaskOrder(name=task, kind=name, share=(levels[number] + 0.5) / count, goal=goal)
                 shelves.append(((number + 0.5) / count + rank * shift, rank, order))
         return [order for _, _, order in sorted(shelves, key=lambda shelf: shelf[:2])]
@@ -85,9 +85,9 @@ def by_count(*counts: tuple[str, int]) -> Callable[[SuiteSpec, HouseSpec], list[
 def by_kind(kind: str, count: int) -> Callable[[SuiteSpec, HouseSpec], list[TaskOrder]]:
     """Orders for so many tasks in a house, of a kind that draws goals and arrangements itself."""
 
-    def orders(plan: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
-        names = [f"{plan.name}/{house.id}/{number + 1:02d}" for number in range(count)]
-        return [TaskOrder(name=name, kind=kind, share=seeds.draw(plan.root, name, "share")) for name in names]
+    def orders(spec: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
+        names = [f"{spec.name}/{house.id}/{number + 1:02d}" for number in range(count)]
+        return [TaskOrder(name=name, kind=kind, share=seeds.draw(spec.root, name, "share")) for name in names]
 
     return orders
 
@@ -99,12 +99,12 @@ def by_level(kind: str, *hands: tuple[tuple[Level, float], ...]) -> Callable[[Su
         hands: strata and shares (as `Order.share`) of a house's tasks: of the first house, the second, and over again.
     """
 
-    def orders(plan: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
+    def orders(spec: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
         made: TaskKind = plugins.load("task kind", kind)
-        hand = hands[plan.houses.index(house.id) % len(hands)]
-        goals = _goals(made, house, len(hand), seeds.derive(plan.root, house.id, kind))
-        rows = [hand[place] for place in seeds.shuffled(len(hand), plan.root, house.id, "levels")]
-        stem = f"{plan.name}/{house.id}/{made.short}"
+        hand = hands[spec.houses.index(house.id) % len(hands)]
+        goals = _goals(made, house, len(hand), seeds.derive(spec.root, house.id, kind))
+        rows = [hand[place] for place in seeds.shuffled(len(hand), spec.root, house.id, "levels")]
+        stem = f"{spec.name}/{house.id}/{made.short}"
         return [
             TaskOrder(name=f"{stem}-{number:02d}", kind=kind, share=share, goal=goal, level=row)
             for number, (goal, (row, share)) in enumerate(zip(goals, rows, strict=True), 1)
@@ -113,31 +113,31 @@ def by_level(kind: str, *hands: tuple[tuple[Level, float], ...]) -> Callable[[Su
     return orders
 
 
-def each_triplet(plan: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
+def each_triplet(spec: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
     """A search for each target in each way in which the house can have it."""
     kinds = scene_graph.kinds_present(house)
     return [
-        _exact(plan, house, FIND, Goal(target=target, relation="find"), row, scene_graph.triplet_words(row))
+        _exact(spec, house, FIND, Goal(target=target, relation="find"), row, scene_graph.triplet_words(row))
         for target in catalog.TARGETS
         for row in scene_graph.applicable_triplets(target, kinds)
     ]
 
 
-def each_template(plan: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
+def each_template(spec: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
     """Each template from each place where its target can be, except its destination."""
     kind: TaskKind = plugins.load("task kind", MOVE)
     kinds = scene_graph.kinds_present(house)
     return [
-        _exact(plan, house, kind.name, goal, row, _delivery(goal, row))
+        _exact(spec, house, kind.name, goal, row, _delivery(goal, row))
         for goal in kind.goals(house)
         for row in scene_graph.applicable_triplets(goal.target, kinds)
         if (row.relation, row.reference) != (goal.relation, goal.destination)
     ]
 
 
-def _exact(plan: SuiteSpec, house: HouseSpec, kind: str, goal: Goal, row: Triplet, words: str) -> TaskOrder:
-    name = f"{plan.name}/{house.id}/{words}"
-    return TaskOrder(name=name, kind=kind, share=seeds.draw(plan.root, name, "share"), goal=goal, fixed=row)
+def _exact(spec: SuiteSpec, house: HouseSpec, kind: str, goal: Goal, row: Triplet, words: str) -> TaskOrder:
+    name = f"{spec.name}/{house.id}/{words}"
+    return TaskOrder(name=name, kind=kind, share=seeds.draw(spec.root, name, "share"), goal=goal, fixed=row)
 
 
 def _delivery(goal: Goal, row: Triplet) -> str:
@@ -157,8 +157,8 @@ def _goals(kind: TaskKind, house: HouseSpec, count: int, root: int) -> list[Goal
 
 _EASY: tuple[tuple[Level, float], ...] = (("easy", 0.05), ("easy", 0.15))
 SUITE_SPECS = {
-    plan.name: plan
-    for plan in (
+    spec.name: spec
+    for spec in (
         SuiteSpec(
             name="smoke",
             version=4,
@@ -166,9 +166,9 @@ SUITE_SPECS = {
             houses=SCENES,
             orders=by_count((FIND, 2), (MOVE, 4)),
             robots=2,
-            looks=6,
+            candidates=6,
             serial=True,
-            told=False,
+            record_difficulty=False,
         ),
         SuiteSpec(
             name="paper",
@@ -176,7 +176,7 @@ SUITE_SPECS = {
             root=20240611,
             houses=SCENES,
             orders=by_level(MOVE, (*_EASY, ("medium", 0.25)), (*_EASY, ("hard", 0.6))),
-            looks=6,
+            candidates=6,
         ),
         SuiteSpec(
             name="navigation",

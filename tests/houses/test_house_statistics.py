@@ -8,7 +8,7 @@ import statistics
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from test_check import SIDE, TABLE, house, on, thing
+from two_rooms import SIDE, TABLE, house, on, thing
 
 from hthor import houses
 from hthor.houses import house_statistics
