@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -11,8 +11,8 @@ if TYPE_CHECKING:
 _LINE_EVERY_S = 30.0
 
 
-class Watcher(Protocol):
-    """What follows the progress of a run."""
+class Watcher:
+    """Follows the progress of a run; this one prints nothing."""
 
     def begin(self, total: int, kept: int) -> None:
         """The run has ``total`` trials, of which earlier commands ran ``kept``."""
@@ -30,23 +30,7 @@ class Watcher(Protocol):
         """The run is over."""
 
 
-class Silent:
-    """A watcher that prints nothing."""
-
-    def begin(self, total: int, kept: int) -> None:
-        """See `hthor.eval.runner.progress.Watcher`."""
-
-    def played(self, met: bool, faulty: bool) -> None:
-        """See `hthor.eval.runner.progress.Watcher`."""
-
-    def beat(self) -> None:
-        """See `hthor.eval.runner.progress.Watcher`."""
-
-    def note(self, text: str) -> None:
-        """See `hthor.eval.runner.progress.Watcher`."""
-
-    def close(self) -> None:
-        """The run is over."""
+Silent = Watcher
 
 
 class Tally:
@@ -92,7 +76,7 @@ class Tally:
         return ", ".join(parts)
 
 
-class Plain:
+class Plain(Watcher):
     """Prints a line for about every tenth of the run, and at least every 30 s."""
 
     def __init__(self, console: Console, name: str) -> None:
@@ -119,15 +103,12 @@ class Plain:
     def note(self, text: str) -> None:
         self._say(f"note: {text}")
 
-    def close(self) -> None:
-        """Nothing has to be removed from the screen."""
-
     def _say(self, text: str) -> None:
         self._last = time.monotonic()
         self._console.print(f"{self._name}: {text}", markup=False, highlight=False, soft_wrap=True)
 
 
-class Live:
+class Live(Watcher):
     """A bar on the terminal that disappears when the run is over."""
 
     def __init__(self, console: Console, name: str) -> None:
@@ -154,9 +135,6 @@ class Live:
     def played(self, met: bool, faulty: bool) -> None:
         self._tally.count(met, faulty)
         self._bar.update(self._task, completed=self._tally.done, words=self._tally.words)
-
-    def beat(self) -> None:
-        """The bar updates itself."""
 
     def note(self, text: str) -> None:
         self._console.print(f"{self._name}: note: {text}", markup=False, highlight=False)

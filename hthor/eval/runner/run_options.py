@@ -106,7 +106,9 @@ def resolve_options(options: RunOptions) -> ResolvedRuns:
     populations = human_populations.find_populations(options.humans)
     pack = trial_runner.load_pack(options.assets)
     assets = run_config.AssetsRef(name=pack.name, sha256=pack.sha256) if pack else None
-    tasks = _select_tasks(options)
+    tasks = task_selection.select_tasks(options.suite, options.kind)
+    tasks = task_selection.narrow_selection(tasks, options.houses, options.difficulty)
+    tasks = task_selection.limit_selection(tasks, options.limit)
     planner = _Planner(options, tasks, assets, guests)
     drafts = planner.runs(_teams(options, tasks, guests), populations)
     baselines = planner.baselines(drafts) if options.control and not options.shard else {}
@@ -120,12 +122,6 @@ def resolve_options(options: RunOptions) -> ResolvedRuns:
         baseline_of={folder: by_folder.get(run.folder.path, run) for folder, run in baselines.items()},
         isolation=isolation,
     )
-
-
-def _select_tasks(options: RunOptions) -> TaskSelection:
-    tasks = task_selection.select_tasks(options.suite, options.kind)
-    narrowed = task_selection.narrow_selection(tasks, options.houses, options.difficulty)
-    return task_selection.limit_selection(narrowed, options.limit)
 
 
 class _Planner:
