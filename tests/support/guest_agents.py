@@ -96,7 +96,7 @@ def living(group: int) -> list[str]:
 
 needs_bwrap = pytest.mark.skipif(not shutil.which("bwrap"), reason="needs bubblewrap")
 PROCESS_CHAINS = [("L1", 3), ("L2", 3), pytest.param("L3", 4, marks=needs_bwrap)]
-"""How many processes a guest is at each level: guard or bubblewrap's two, keeper, and the trial's own."""
+"""How many processes a guest is at each level: guard or bubblewrap's two, supervisor, and the trial's own."""
 
 
 def process_chain(pid: int) -> list[int]:

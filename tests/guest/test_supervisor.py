@@ -66,14 +66,14 @@ def test_what_imports_libraries_for_an_agent_can_do_little_else() -> None:
 
 
 @pytest.mark.parametrize("level", ["L2", pytest.param("L3", marks=PROCESS_CHAINS[2].marks)])  # type: ignore[union-attr]
-def test_the_keeper_of_a_guest_is_held(level: str, tmp_path: Path) -> None:
+def test_the_supervisor_of_a_guest_is_confined(level: str, tmp_path: Path) -> None:
     try:
         guest.in_force(level)
     except IsolationError as error:
         pytest.skip(str(error))
     with start_trial(tmp_path / "agent.py", level) as mind:
-        keeper = process_chain(mind.pid)[-2]
-        status = Path(f"/proc/{keeper}/status").read_text()
+        supervisor = process_chain(mind.pid)[-2]
+        status = Path(f"/proc/{supervisor}/status").read_text()
     assert "Seccomp:\t2" in status
     assert "NoNewPrivs:\t1" in status
 
