@@ -290,7 +290,7 @@ def test_an_idle_guest_is_reused_for_the_very_same_agent_and_settings(write: Wri
             return guest.pid, seconds
 
     first, second = play(), play()
-    assert first == second, "the same keeper, and a trial that knows nothing of the one before"
+    assert first == second, "the same supervisor, and nothing is left of the trial before"
     assert play(memory_mb=1000)[0] != first[0], "other terms"
     write(COUNTER + "# changed\n")
     assert play()[0] != first[0], "another file"

@@ -56,7 +56,7 @@ def _where(action: Action) -> set[int]:
 
 
 def _soon(guest: Guest, wanted: set[int]) -> bool:
-    """Whether the guest comes to run there; its keeper moves it while it plays."""
+    """Whether the guest comes to run there; its supervisor moves it during the trial."""
     for _ in range(200):
         if _where(guest.act(LOOK)) == wanted:
             return True
