@@ -16,10 +16,10 @@ import numpy as np
 
 from hthor import seeds, tasks
 from hthor.eval.statistics.intervals import Estimate
-from hthor.leaderboard.entries import entry_metrics, files, trial_outcomes, trial_tasks
+from hthor.leaderboard.entries import entry_metrics, files, trial_outcomes
 from hthor.leaderboard.entries.entry import Entry
 from hthor.leaderboard.entries.trial_outcomes import Outcomes
-from hthor.leaderboard.verify import trial_sample, verdict
+from hthor.leaderboard.verify import verdict, verify
 from hthor.tasks import Suite
 from hthor.types import TaskSpec
 
@@ -35,15 +35,17 @@ def forged(entry: Entry, share: float, control: Entry | None = None, suite: Suit
         control: the entry without a robot that its uplift is over. suite: its tasks, so that what the times are worth
             follows from them too.
     """
-    held = better(trial_outcomes.unpack(entry.trials), share, tasks=trial_tasks.tasks(suite, entry) if suite else ())
-    whose = entry_metrics.people(entry.trials.count, entry.run.participants)
-    fresh: dict[str, Estimate] = entry_metrics.scores(held, whose, alone=entry.alone)
+    held = better(
+        trial_outcomes.unpack(entry.trials), share, tasks=trial_outcomes.tasks_of_trials(suite, entry) if suite else ()
+    )
+    whose = entry_metrics.trial_participants(entry.trials.count, entry.run.participants)
+    fresh: dict[str, Estimate] = entry_metrics.entry_scores(held, whose, alone=entry.alone)
     return msgspec.structs.replace(
         entry,
         metrics=msgspec.structs.replace(entry.metrics, **fresh),
         counts=msgspec.structs.replace(entry.counts, successes=int(held.met.sum())),
-        splits=entry_metrics.splits(held, whose),
-        uplift=entry_metrics.uplift(entry, held, control, trial_outcomes.unpack(control.trials))
+        splits=entry_metrics.split_scores(held, whose),
+        uplift=entry_metrics.entry_uplift(entry, held, control, trial_outcomes.unpack(control.trials))
         if control
         else entry.uplift,
         hashes=msgspec.structs.replace(entry.hashes, merkle=held.merkle),
@@ -95,18 +97,18 @@ def caught(
     """
     true = made_up(count=count)
     claimed = better(true, share)
-    whose = entry_metrics.people(count, count // 10)
+    whose = entry_metrics.trial_participants(count, count // 10)
     found = 0
     for number in range(draws):
-        drawn = trial_sample.sample(f"commit {number}", claimed.merkle, count, sample)
+        drawn = verify.draw_sample(f"commit {number}", claimed.merkle, count, sample)
         came = _another(true, noise, number)
         rows = came.rows
-        again = verdict.Again(
+        again = verdict.ReplayedTrials(
             rows={place: rows[place] for place in drawn},
             met={place: bool(came.met[place]) for place in drawn},
             twsr={place: int(came.twsr[place]) for place in drawn},
         )
-        found += not verdict.judge(tier, claimed, again, drawn, whose).passed
+        found += not verdict.judge_trials(tier, claimed, again, drawn, whose).passed
     return found
 
 
@@ -132,11 +134,11 @@ def main() -> None:
     options.add_argument("--draws", type=int, default=1000, help="for the table (%(default)s)")
     given = options.parse_args()
     if given.entry is not None and given.out is not None:
-        entry = files.read(given.entry)
-        beside = [files.read(path) for path in sorted(given.entry.parent.glob("*.json"))]
+        entry = files.read_entry(given.entry)
+        beside = [files.read_entry(path) for path in sorted(given.entry.parent.glob("*.json"))]
         control = next((one for one in beside if entry.uplift and one.hashes.run == entry.uplift.control), None)
         suite = tasks.load_suite(given.suite) if given.suite else None
-        files.write(given.out, forged(entry, given.share, control, suite))
+        files.write_document(given.out, forged(entry, given.share, control, suite))
         return
     for line in _lines(given.draws):
         print(line, flush=True)

@@ -27,12 +27,12 @@ def main() -> None:
     given = options.parse_args()
     code_identity.keep_compiled()
     datasets = []
-    for dataset in parameter_recovery.run(
+    for dataset in parameter_recovery.run_recovery(
         given.datasets, people=given.people, seed=given.seed, suite=given.suite, first=given.first
     ):
         datasets.append(dataset)
         print(f"{len(datasets)} of {given.datasets} datasets", file=sys.stderr)
-    rows = parameter_recovery.summary(datasets)
+    rows = parameter_recovery.summarize_recovery(datasets)
     print(f"{'parameter':12} {'r':>6} {'covered':>8} {'datasets':>9}  bar")
     for row in rows:
         verdict = "" if row.bar is None else f"{row.bar:.1f} {'met' if row.passed else 'MISSED'}"

@@ -17,8 +17,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hthor import code_identity, documents, jsonio
-from hthor.calibration import targets
-from hthor.calibration.pipeline import evidence
+from hthor.calibration import evidence, targets
 from hthor.calibration.simulation import session_store
 from hthor.catalog import procthor
 from hthor.errors import HouseError, HthorError, PopulationError, RunError, TaskError
@@ -82,10 +81,10 @@ READERS: dict[str, tuple[str, type[HthorError], Callable[[Path], Any]]] = {
     "house": ("house.json", HouseError, lambda path: house_file.read_house_file(path, str(path))),
     "asset database": ("assets.json", HouseError, procthor.read),
     "pack": (store.LIST, PackError, lambda path: store.Pack(path.parent)),
-    "entry": ("entry.json", BoardError, board_files.read),
-    "targets": ("targets.json", HthorError, targets.load),
-    "evidence": ("validation.json", RunError, evidence.load),
-    "sessions": ("sessions.jsonl", RunError, _lines(lambda path: list(session_store.read(path)))),
+    "entry": ("entry.json", BoardError, board_files.read_entry),
+    "targets": ("targets.json", HthorError, targets.load_targets),
+    "evidence": ("validation.json", RunError, evidence.load_evidence),
+    "sessions": ("sessions.jsonl", RunError, _lines(lambda path: list(session_store.read_outcomes(path)))),
 }
 
 
@@ -112,12 +111,12 @@ def test_every_reader_refuses_damage_with_its_own_error(reader: str, damage: str
 def test_damaged_entries_and_submissions_are_problems(damage: str, tmp_path: Path):
     path = tmp_path / "entry.json"
     path.write_bytes(DAMAGES[damage])
-    assert [one.file for one in canonical_form.problems(path)] == [str(path)]
+    assert [one.file for one in canonical_form.form_problems(path)] == [str(path)]
     handed = tmp_path / "mine"
     handed.mkdir()
     (handed / "agent.py").write_text("class Agent: ...\n")
     (handed / "submission.json").write_bytes(DAMAGES[damage])
-    assert {one.file for one in submission.problems(handed)} >= {str(handed / "submission.json")}
+    assert {one.file for one in submission.submission_problems(handed)} >= {str(handed / "submission.json")}
 
 
 @pytest.mark.parametrize("damage", DAMAGES)
@@ -209,9 +208,9 @@ def test_the_schema_is_kept_without_a_library_for_schemas(
         holder["more"] = 1
     path = tmp_path_factory.mktemp("entries") / source.name
     path.write_bytes(jsonio.pretty(changed))
-    valid = jsonschema.Draft202012Validator(schema.of("Entry")).is_valid(changed)
+    valid = jsonschema.Draft202012Validator(schema.document_schema("Entry")).is_valid(changed)
     assert valid <= (
-        not [one for one in canonical_form.problems(path) if one.field not in ("id", canonical_form.SPELLING)]
+        not [one for one in canonical_form.form_problems(path) if one.field not in ("id", canonical_form.SPELLING)]
     )
     if not valid:
-        assert list(canonical_form.problems(path))
+        assert list(canonical_form.form_problems(path))

@@ -29,7 +29,7 @@ def report(
     from hthor.report.analysis.document import Published, Share
     from hthor.report.page import write_report
 
-    study = targets.load(_PAPER)
+    study = targets.load_targets(_PAPER)
     counts = {f"{metric} {name}": one for metric in ("sr", "adoption") for name, one in getattr(study, metric).items()}
     write_report.write_report(
         runs,

@@ -1,4 +1,4 @@
-"""A board's entries against their form and the laws of `invariants`: all that is wrong, not only the first."""
+"""Checks a board's entries against their form and the rules of `invariants`, and lists everything that is wrong."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from hthor.errors import HthorError
 from hthor.eval.metrics.metric import mean_limit
 from hthor.guest.agent import manifest
 from hthor.leaderboard import canonical_form
-from hthor.leaderboard.entries import files, invariants, trial_outcomes, trial_tasks
+from hthor.leaderboard.entries import files, invariants, trial_outcomes
 from hthor.leaderboard.entries.entry import Entry
 from hthor.leaderboard.entries.files import Problem
 from hthor.leaderboard.entries.trial_outcomes import Outcomes, Unreadable
@@ -31,24 +31,24 @@ class _Held(Struct, frozen=True, kw_only=True):
     outcomes: Outcomes
 
 
-def problems(board: Path, paths: Sequence[Path] = (), *, submissions: Path | None = None) -> list[Problem]:
+def check_board(board: Path, paths: Sequence[Path] = (), *, submissions: Path | None = None) -> list[Problem]:
     """Everything that is wrong with these entries, or with all of a board's.
 
     Args:
-        board: its other entries are where controls are looked for. submissions: where agents' files lie, if they do.
+        board: its other entries are searched for controls. submissions: folder of the agents' files, if there is one.
     """
     found: list[Problem] = []
-    wanted = list(paths) or files.entry_paths(files.seen(board))
-    beside = [path for path in files.entry_paths(board) if path.resolve() not in {one.resolve() for one in wanted}]
+    wanted = list(paths) or files.entry_paths(files.check_folder(board))
+    others = [path for path in files.entry_paths(board) if path.resolve() not in {one.resolve() for one in wanted}]
     held, trusted = [], []
     for path in wanted:
-        wrong = list(canonical_form.problems(path))
+        wrong = list(canonical_form.form_problems(path))
         found += wrong
         held += [] if any(one.field != canonical_form.SPELLING for one in wrong) else list(_read(path, found))
-    for path in beside:  # judged in their own turn; what cannot be read cannot be a control
+    for path in others:  # checked when they are asked for; what cannot be read cannot be a control
         trusted += list(_read(path, []))
-    sizes = {one: made.tasks for one, made in files.commitments(board).items()}
-    taken = admission.load(board)
+    sizes = {one: made.tasks for one, made in files.read_commitments(board).items()}
+    taken = admission.load_admission(board)
     for one in held:
         laws = _laws(one, (*held, *trusted), sizes, taken, submissions)
         found += [Problem(file=str(one.path), field=field, problem=problem) for field, problem in laws]
@@ -57,7 +57,7 @@ def problems(board: Path, paths: Sequence[Path] = (), *, submissions: Path | Non
 
 def _read(path: Path, found: list[Problem]) -> Iterator[_Held]:
     try:
-        entry = files.form(path)
+        entry = files.read_form(path)
         yield _Held(path=path, entry=entry, outcomes=trial_outcomes.unpack(entry.trials))
     except Unreadable as error:
         found.append(Problem(file=str(path), field=f"trials.{error.field}", problem=str(error)))
@@ -67,34 +67,41 @@ def _read(path: Path, found: list[Problem]) -> Iterator[_Held]:
 
 def _laws(
     one: _Held, all_: Sequence[_Held], sizes: dict[str, int], taken: Admission, submissions: Path | None
-) -> invariants.Found:
+) -> invariants.Problems:
     entry, held = one.entry, one.outcomes
-    yield from invariants.hashes(entry, held)
-    yield from invariants.sizes(entry, held)
-    yield from admission.problems(entry, taken)
+    yield from invariants.check_hashes(entry, held)
+    yield from invariants.check_sizes(entry, held)
+    yield from admission.admission_problems(entry, taken)
     yield from _suite(entry, sizes)
-    yield from invariants.outcomes(entry, held, _tasks(entry))
-    yield from invariants.settings(entry)
-    yield from invariants.consists(entry)
-    yield from invariants.numbers(entry, held)
+    yield from invariants.check_outcomes(entry, held, _tasks(entry))
+    yield from invariants.check_settings(entry)
+    yield from invariants.check_agents(entry)
+    yield from invariants.check_metrics(entry, held)
     control = next((other for other in all_ if _controls(other.entry, entry)), None)
-    yield from invariants.uplift(entry, held, control.entry if control else None, control.outcomes if control else None)
+    yield from invariants.check_uplift(
+        entry, held, control.entry if control else None, control.outcomes if control else None
+    )
     if entry.submission and submissions is not None:
         yield from _submitted(entry, submissions / entry.submission)
 
 
 def _controls(other: Entry, entry: Entry) -> bool:
-    """Whether the other is what the entry's uplift is over: the same trials, without a robot."""
+    """Whether the other is the control of the entry's uplift: the same trials, without a robot."""
     named = entry.uplift is not None and entry.uplift.control == other.hashes.run
-    return named and other.alone and listing.key(other)[:5] == listing.key(entry)[:5] and _code(other) == _code(entry)
+    return (
+        named
+        and other.alone
+        and listing.comparison_key(other)[:5] == listing.comparison_key(entry)[:5]
+        and _code(other) == _code(entry)
+    )
 
 
 def _code(entry: Entry) -> tuple[str, str]:
     return entry.run.code_sha256, entry.run.rules_sha256
 
 
-def _suite(entry: Entry, sizes: dict[str, int]) -> invariants.Found:
-    """The suite is one of ours or committed to, and all of it was played."""
+def _suite(entry: Entry, sizes: dict[str, int]) -> invariants.Problems:
+    """The suite is one of ours or committed to, and the run has all of its tasks."""
     suite = entry.run.suite
     if suite.name in tasks.suite_names():
         ours = library.read_suite(suite.name)
@@ -106,23 +113,23 @@ def _suite(entry: Entry, sizes: dict[str, int]) -> invariants.Found:
     elif suite.sha256 in sizes:
         count = sizes[suite.sha256]
     else:
-        yield "run.suite.sha256", "is of no suite of hthor's own, and of none that is committed to in suites/"
+        yield "run.suite.sha256", "belongs to no suite of hthor, and to none that is committed to in suites/"
         return
     if entry.run.trials != count:
         yield "run.trials", f"is {entry.run.trials}, but the suite has {count} tasks"
 
 
 def _tasks(entry: Entry) -> list[TaskSpec]:
-    """The task of each trial, where the suite is one of hthor's own as it is now; a secret one is not at hand."""
+    """The task of each trial, where the suite is one of hthor's own in its current version; a secret one is unknown."""
     if entry.run.suite.name not in tasks.suite_names():
         return []
     ours = library.read_suite(entry.run.suite.name)
-    return trial_tasks.tasks(ours, entry) if ours.sha256 == entry.run.suite.sha256 else []
+    return trial_outcomes.tasks_of_trials(ours, entry) if ours.sha256 == entry.run.suite.sha256 else []
 
 
-def _submitted(entry: Entry, folder: Path) -> invariants.Found:
-    """What was handed in is what lies there."""
+def _submitted(entry: Entry, folder: Path) -> invariants.Problems:
+    """The entry's list of submitted files agrees with the folder."""
     if not folder.is_dir():
         yield "submission", f"is '{entry.submission}', but there is no {folder}"
-    elif found := manifest.differences(entry.files, submission.listed(folder)):
+    elif found := manifest.differences(entry.files, submission.list_files(folder)):
         yield "files", f"is not what lies in {folder}: {'; '.join(found)}"

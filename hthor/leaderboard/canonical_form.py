@@ -1,7 +1,4 @@
-"""The form of an entry's file: its schema, and the one canonical spelling; judges no numbers.
-
-Writes only what it is told to fix: white space and the order of keys, never a value.
-"""
+"""The form of an entry's file: its schema, and its canonical spelling of white space and order of keys."""
 
 from __future__ import annotations
 
@@ -9,19 +6,19 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from hthor import jsonio
-from hthor.leaderboard import schema_rules
+from hthor.leaderboard import schema
 from hthor.leaderboard.entries import files
 from hthor.leaderboard.entries.entry import Entry
 from hthor.leaderboard.entries.files import BoardError, Problem
 
 SPELLING = "$ (canonical form)"
-"""The field that is named when all is well but the spelling."""
+"""The field that is named when only the spelling is wrong."""
 
 
-def problems(path: Path) -> Iterator[Problem]:
+def form_problems(path: Path) -> Iterator[Problem]:
     """What is wrong with the form of an entry's file."""
     try:
-        entry = files.form(path)
+        entry = files.read_form(path)
     except BoardError as error:
         field, _, problem = str(error).removeprefix(f"{path}: ").partition(": ")
         yield Problem(file=str(path), field=field, problem=problem)
@@ -37,21 +34,21 @@ def problems(path: Path) -> Iterator[Problem]:
         yield Problem(file=str(path), field=SPELLING, problem=f"is not {how}")
 
 
-def fix(paths: Sequence[Path]) -> list[Path]:
-    """Write those of these files anew that are well but for their spelling; which ones."""
+def fix_forms(paths: Sequence[Path]) -> list[Path]:
+    """Rewrite valid files that are not in canonical form; return their paths."""
     fixed = []
     for path in paths:
         try:
-            entry = files.form(path)
+            entry = files.read_form(path)
         except BoardError:
             continue
         if not list(_strictly(path, entry)) and jsonio.pretty(entry) != path.read_bytes():
-            files.write(path, entry)
+            files.write_document(path, entry)
             fixed.append(path)
     return fixed
 
 
 def _strictly(path: Path, entry: Entry) -> Iterator[Problem]:
-    """What the schema demands beyond the types of the fields."""
-    for field, problem in schema_rules.problems(path.read_bytes(), entry):
+    """What the schema requires beyond the types of the fields."""
+    for field, problem in schema.schema_problems(path.read_bytes(), entry):
         yield Problem(file=str(path), field=field, problem=problem)

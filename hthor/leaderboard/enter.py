@@ -1,15 +1,17 @@
-"""From a run's folder to an entry, scored anew from the run's log."""
+"""Makes an entry from a run's folder, scored from the run's log."""
 
 from __future__ import annotations
 
 import itertools
 import re
+import subprocess
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 import msgspec
 
+import hthor
 from hthor import code_identity
 from hthor.errors import HthorError, RunError
 from hthor.eval.config import cli_command, task_selection
@@ -20,73 +22,74 @@ from hthor.eval.results import aggregate, baseline
 from hthor.guest import Manifest
 from hthor.leaderboard import board_check
 from hthor.leaderboard.entries import entry_metrics, files, invariants, overrides, trial_outcomes, verification
-from hthor.leaderboard.entries.entry import LOCKSTEP, REALTIME, Agent, Counts, Entry, Hashes, Metrics
+from hthor.leaderboard.entries.entry import LOCKSTEP, REALTIME, Agent, Counts, Entry, Harness, Hashes, Metrics
 from hthor.leaderboard.entries.files import BoardError
 from hthor.leaderboard.ranking import admission
-from hthor.leaderboard.submission import harness
 from hthor.leaderboard.submission.submission import Submission
 
 _SHOWN = 3
+_PACKAGE = Path(hthor.__file__).resolve().parent
 OURS = "hthor.agents."
-"""Where agents come from that are references."""
+"""Package of the agents that are references."""
 
 
-def add(folder: Path, board: Path, submission: Submission | None = None) -> list[tuple[Entry, Path]]:
+def add_runs(folder: Path, board: Path, submission: Submission | None = None) -> list[tuple[Entry, Path]]:
     """Put a run, or every run in a folder of runs, on the board: their entries and the entries' files.
 
-    The control of each comes too when the board has none yet. Twice is the same as once. The list is not made anew.
+    The control of each is added too when the board has none yet. Adding a run twice changes nothing. The list is not
+    rebuilt.
 
     Raises:
         RunError: when there is no run, it is not whole, or has no control.
-        BoardError: when it was played with settings that depart from the benchmark's, or its entry is not in order;
-            then nothing is written.
+        BoardError: when the run has settings other than the benchmark's, or its entry is not in order; then nothing is
+            written.
     """
     made: dict[Path, Entry] = {}
     for run in _runs(folder):
-        plan = RunFolder(run).config
-        beside = baseline.baseline_folder(run, plan)
+        config = RunFolder(run).config
+        beside = baseline.baseline_folder(run, config)
         for each in (run, *([beside] if beside else [])):
-            made[each] = made.get(each) or of(each, submission if each == run else None)
+            made[each] = made.get(each) or make_entry(each, submission if each == run else None)
     added = {entry.id: (entry, board / files.ENTRIES / f"{entry.id}.json") for entry in made.values()}
     new = {path: entry for entry, path in added.values() if not _there(entry, path)}
     _refuse(board, new)
     _struck(board, new.values())
     if not (board / admission.NAME).is_file():
-        files.write(board / admission.NAME, admission.own())
+        files.write_document(board / admission.NAME, admission.default_admission())
     for path, entry in new.items():
-        files.write(path, entry)
+        files.write_document(path, entry)
     return list(added.values())
 
 
-def of(folder: Path, submission: Submission | None = None) -> Entry:
+def make_entry(folder: Path, submission: Submission | None = None) -> Entry:
     """The entry of one run."""
     run = RunFolder(folder)
-    plan = run.config
+    config = run.config
     lines, kept = run.lines()
-    _whole(folder, plan, len(kept))
-    found = overrides.of(plan, _crew(plan), len({one.spec.task.id for one in kept}))
+    _whole(folder, config, len(kept))
+    found = overrides.overridden_settings(config, _crew(config), len({one.spec.task.id for one in kept}))
     if found:
-        raise BoardError(overrides.refusal(folder, plan, found))
+        raise BoardError(overrides.refusal(folder, config, found))
     records = [msgspec.structs.replace(one, metrics=trial_metrics.measure(one.spec, one.log)) for one in kept]
-    gain = baseline.measure_uplift(folder, plan, records)
-    if gain is None and plan.seats:
+    gain = baseline.measure_uplift(folder, config, records)
+    if gain is None and config.seats:
         raise RunError(f"{folder} has no run without a robot beside it. 'hthor eval' plays it without --no-control.")
     held = run.isolation
-    result = aggregate.make_result(plan, lines, records, uplift=gain, isolation=held, replays=run.restarts)
-    columns = trial_outcomes.of(records, map(trial_outcomes.leaf, lines))
-    whose = entry_metrics.people(len(records), plan.participants)
-    agent = submission.agent if submission else Agent(name=plan.team_name)
+    result = aggregate.make_result(config, lines, records, uplift=gain, isolation=held, replays=run.restarts)
+    columns = trial_outcomes.make_outcomes(records, map(trial_outcomes.leaf_hash, lines))
+    participants = entry_metrics.trial_participants(len(records), config.participants)
+    agent = submission.agent if submission else Agent(name=config.team_name)
     _same_files(folder, result.agents, submission)
     return Entry(
-        id=f"{_slug(agent.name)}-{_slug(Path(plan.suite.name).name)}-{plan.sha256[:10]}",
-        reference=all(robot.agent.source.startswith(OURS) for robot in plan.robots),
+        id=f"{_slug(agent.name)}-{_slug(Path(config.suite.name).name)}-{config.sha256[:10]}",
+        reference=all(robot.agent.source.startswith(OURS) for robot in config.robots),
         agent=agent,
         submission=submission.name if submission else "",
         files=submission.files if submission else (),
         agents=result.agents,
-        run=plan.untitled,
-        hashes=Hashes(run=plan.sha256, trials=result.hashes.trials, merkle=columns.merkle),
-        harness=harness.here(),
+        run=config.untitled,
+        hashes=Hashes(run=config.sha256, trials=result.hashes.trials, merkle=columns.merkle),
+        harness=current_harness(),
         mode=REALTIME if getattr(result, "mode", "") == REALTIME else LOCKSTEP,
         platforms=run.platforms,
         isolation=held,
@@ -98,8 +101,8 @@ def of(folder: Path, submission: Submission | None = None) -> Entry:
             faults_by_kind=result.counts.faults_by_kind,
             replays=result.counts.replays,
         ),
-        metrics=Metrics(**entry_metrics.scores(columns, whose, alone=not plan.seats)),
-        splits=entry_metrics.splits(columns, whose),
+        metrics=Metrics(**entry_metrics.entry_scores(columns, participants, alone=not config.seats)),
+        splits=entry_metrics.split_scores(columns, participants),
         uplift=gain,
         trials=trial_outcomes.pack(columns),
     )
@@ -117,34 +120,34 @@ def _runs(folder: Path) -> list[Path]:
 
 
 def _refuse(board: Path, made: Mapping[Path, Entry]) -> None:
-    """Judge entries before they are on the board: one that is not in order would keep the board from being built."""
+    """Check entries before they are on the board: one that is not in order would prevent building the board."""
     with tempfile.TemporaryDirectory() as drafts:
         drawn = {Path(drafts) / path.name: path for path in made}
         for draft, path in drawn.items():
-            files.write(draft, made[path])
-        found = board_check.problems(board, tuple(drawn))
-    files.refuse(msgspec.structs.replace(one, file=str(drawn[Path(one.file)])) for one in found)
+            files.write_document(draft, made[path])
+        found = board_check.check_board(board, tuple(drawn))
+    files.raise_problems(msgspec.structs.replace(one, file=str(drawn[Path(one.file)])) for one in found)
 
 
-def _whole(folder: Path, plan: RunConfig, there: int) -> None:
-    if plan.shard:
+def _whole(folder: Path, config: RunConfig, there: int) -> None:
+    if config.shard:
         raise RunError(f"{folder} is a shard of a run, and only whole runs go on the board. 'hthor merge' makes one.")
-    if plan.trials != there:
+    if config.trials != there:
         raise RunError(
-            f"{folder} lacks {plan.trials - there} of its {plan.trials} trials, and only whole runs go on the board. "
-            f"Finish it: {cli_command.resume_command(folder, plan)}"
+            f"{folder} lacks {config.trials - there} of its {config.trials} trials; only whole runs go on the board. "
+            f"Finish it: {cli_command.resume_command(folder, config)}"
         )
-    if plan.code_sha256 != (here := code_identity.code_sha256(plan.humans.model, plan.kinds)):
+    if config.code_sha256 != (here := code_identity.code_sha256(config.humans.model, config.kinds)):
         raise RunError(
-            f"{folder / 'run.json'}: code_sha256 is {plan.code_sha256[:10]}, and here it is {here[:10]}: another "
-            "version of hthor played it, by which it has to be added. Or play it anew."
+            f"{folder / 'run.json'}: code_sha256 is {config.code_sha256[:10]}, and here it is {here[:10]}: it was run "
+            "with a different version of hthor. Add it with that version, or run it again."
         )
 
 
-def _crew(plan: RunConfig) -> tuple[str, ...]:
-    """The bodies that the suite is made for; official ones have searches and deliveries, which are the scout's."""
+def _crew(config: RunConfig) -> tuple[str, ...]:
+    """The bodies that the suite is made for; official suites have searches and deliveries, which are the scout's."""
     try:
-        chosen = task_selection.select_tasks(plan.suite.name, "")
+        chosen = task_selection.select_tasks(config.suite.name, "")
     except HthorError:
         return ("scout",)
     return chosen.robots
@@ -155,42 +158,58 @@ def _same_files(folder: Path, agents: Sequence[Manifest], submission: Submission
         return
     if len(agents) != 1:
         raise BoardError(f"{folder / 'run.json'}: agents: has {len(agents)} agents, and a submission is one.")
-    found = invariants.strangers(agents[0].files, submission.files)
+    found = invariants.foreign_files(agents[0].files, submission.files)
     if found:
         raise BoardError(
-            f"{folder / 'run.json'}: agents[0].files: is not what lies in {submission.path.parent}: "
-            f"{'; '.join(found)}. Play the agent that was handed in."
+            f"{folder / 'run.json'}: agents[0].files: is not what is in {submission.path.parent}: "
+            f"{'; '.join(found)}. Run the agent that was submitted."
         )
 
 
 def _there(entry: Entry, path: Path) -> bool:
-    """Whether the board has this very entry already, added by whichever commit.
+    """Whether the board has this entry already, added by any commit.
 
     Raises:
-        BoardError: when it has another of the same run, which is not written over: it may be the true one.
+        BoardError: when it has a different entry of the same run, which is not overwritten: it may be the true one.
     """
     if not path.is_file():
         return False
-    there = files.read(path)
+    there = files.read_entry(path)
     if there.digest == msgspec.structs.replace(entry, harness=there.harness).digest:  # whichever commit adds it
         return True
-    other = itertools.islice(invariants.unlike("", there, entry), _SHOWN)
-    told = "; ".join(f"{field.lstrip('.')} {problem}" for field, problem in other)
+    other = itertools.islice(invariants.differences("", there, entry), _SHOWN)
+    shown = "; ".join(f"{field.lstrip('.')} {problem}" for field, problem in other)
     raise BoardError(
-        f"{path}: the board has another entry of this run, and it is not written over{f' ({told})' if told else ''}. "
+        f"{path}: the board has another entry of this run, and it is not overwritten{f' ({shown})' if shown else ''}. "
         "'hthor leaderboard verify' tells which is true; to replace the old one, its keeper deletes the file first."
     )
 
 
 def _struck(board: Path, new: Iterable[Entry]) -> None:
-    kept = verification.load(board)
+    kept = verification.load_records(board)
     for entry in new:
-        if (struck := kept.struck(entry)) is not None:
+        if (struck := kept.refutation_of(entry)) is not None:
             raise BoardError(
                 f"{entry.id}: this run was refuted on this board, as {struck.id}: {struck.why} The board's keeper can "
-                "verify an entry of what the agent truly did."
+                "verify an entry of the agent's true results."
             )
 
 
 def _slug(name: str) -> str:
     return re.sub(r"[^A-Za-z0-9_+.-]+", "-", name).strip("-.")[:60] or "agent"
+
+
+def current_harness(package: Path = _PACKAGE) -> Harness:
+    """Version, commit and state of the hthor of this process; the commit is the last one that touched the package."""
+    commit = _git(package, "log", "-1", "--format=%H", "--", ".") or ""
+    changed = _git(package, "status", "--porcelain", "--", ".") if commit else ""
+    return Harness(version=hthor.__version__, commit=commit, dirty=bool(changed))
+
+
+def _git(package: Path, *words: str) -> str | None:
+    """The output of git, None when git is absent or the package is in no repository."""
+    try:
+        done = subprocess.run(["git", "-C", str(package), *words], capture_output=True, text=True, check=False)
+    except OSError:
+        return None
+    return done.stdout.strip() if done.returncode == 0 else None

@@ -1,4 +1,4 @@
-"""What is made of the entries: the list, the schema and the page; the same entries give the same bytes."""
+"""Builds the list, the schema and the page from the entries; the same entries give the same bytes."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from hthor.leaderboard.page import page
 from hthor.leaderboard.ranking import admission, listing
 
 
-def build(board: Path) -> list[Path]:
-    """Write what is made of a board's entries; the files.
+def build_board(board: Path) -> list[Path]:
+    """Write the list, the schema and the page of a board; return their paths.
 
     Raises:
         BoardError: when entries are not in order, naming all that is wrong.
     """
     written = []
-    for name, data in made(board).items():
+    for name, data in board_files(board).items():
         path = board / name
         if not path.is_file() or path.read_bytes() != data:
             jsonio.write(path, data)
@@ -28,25 +28,25 @@ def build(board: Path) -> list[Path]:
     return written
 
 
-def made(board: Path) -> dict[str, bytes]:
-    """The files that a board's entries make, by name."""
-    files.refuse(board_check.problems(board))
-    entries = [files.read(path) for path in files.entry_paths(board)]
-    found = listing.board(entries, verification.load(board), admission.load(board))
+def board_files(board: Path) -> dict[str, bytes]:
+    """The contents of these files, by name."""
+    files.raise_problems(board_check.check_board(board))
+    entries = [files.read_entry(path) for path in files.entry_paths(board)]
+    found = listing.make_board(entries, verification.load_records(board), admission.load_admission(board))
     return {
         files.LIST: jsonio.pretty(found),
-        files.SCHEMA: jsonio.pretty(schema.document()),
+        files.SCHEMA: jsonio.pretty(schema.json_schema()),
         files.PAGE: page.render(found).encode(),
     }
 
 
 def differences(board: Path) -> list[Problem]:
-    """What of a board's files is not as its entries make them."""
+    """Files of a board that do not agree with its entries."""
     try:
-        wanted = made(board)
+        wanted = board_files(board)
     except HthorError:
-        return board_check.problems(board)
-    hint = "is not what the entries make; 'hthor leaderboard build' writes it"
+        return board_check.check_board(board)
+    hint = "does not agree with the entries; 'hthor leaderboard build' writes it"
     return [
         Problem(file=str(board / name), field="$", problem=hint)
         for name, data in wanted.items()

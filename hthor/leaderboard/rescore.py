@@ -1,4 +1,4 @@
-"""Entries' numbers out of their trials once more, for when the statistics have changed; plays and judges nothing."""
+"""Recomputes entries' numbers from their trials, after the statistics have changed."""
 
 from __future__ import annotations
 
@@ -12,32 +12,32 @@ from hthor.leaderboard.entries.entry import Entry
 
 
 def rescore(board: Path) -> list[Path]:
-    """Write every entry anew whose numbers come out otherwise; which ones. What its trials were stays as it is.
+    """Rewrite every entry whose numbers change, and return the paths; the outcomes of its trials stay as they are.
 
     Raises:
         BoardError: when an entry cannot be read.
     """
-    held = [(path, files.read(path)) for path in files.entry_paths(files.seen(board))]
+    held = [(path, files.read_entry(path)) for path in files.entry_paths(files.check_folder(board))]
     changed = []
     for path, entry in held:
         named = entry.uplift.control if entry.uplift else ""
         control = next((other for _, other in held if other.alone and other.hashes.run == named), None)
-        fresh = _fresh(entry, control)
-        if jsonio.pretty(fresh) != path.read_bytes():
-            files.write(path, fresh)
+        rescored = _rescored(entry, control)
+        if jsonio.pretty(rescored) != path.read_bytes():
+            files.write_document(path, rescored)
             changed.append(path)
     return changed
 
 
-def _fresh(entry: Entry, control: Entry | None) -> Entry:
+def _rescored(entry: Entry, control: Entry | None) -> Entry:
     columns = trial_outcomes.unpack(entry.trials)
-    whose = entry_metrics.people(entry.trials.count, entry.run.participants)
-    scores: dict[str, object] = {**entry_metrics.scores(columns, whose, alone=entry.alone)}
+    participants = entry_metrics.trial_participants(entry.trials.count, entry.run.participants)
+    scores: dict[str, object] = {**entry_metrics.entry_scores(columns, participants, alone=entry.alone)}
     return msgspec.structs.replace(
         entry,
         metrics=msgspec.structs.replace(entry.metrics, **scores),
-        splits=entry_metrics.splits(columns, whose),
-        uplift=entry_metrics.uplift(entry, columns, control, trial_outcomes.unpack(control.trials))
+        splits=entry_metrics.split_scores(columns, participants),
+        uplift=entry_metrics.entry_uplift(entry, columns, control, trial_outcomes.unpack(control.trials))
         if control
         else entry.uplift,
     )

@@ -14,7 +14,7 @@ def main(board: Path) -> None:
     """Delete their files; entries of submitted agents stay, and those of another version, which cannot be read."""
     for path in files.entry_paths(board):
         try:
-            entry = files.read(path)
+            entry = files.read_entry(path)
         except BoardError as error:
             sys.stdout.write(f"{path}: is no {SCHEMA}, left as it is: {error}\n")
             continue

@@ -16,7 +16,7 @@ from typer.testing import CliRunner
 
 from hthor import tasks
 from hthor.calibration.emulator import emulator
-from hthor.calibration.pipeline import run, stage_progress, stages
+from hthor.calibration.pipeline import config, run, stages, terminal
 from hthor.calibration.simulation import (
     design_points,
     session_simulation,
@@ -43,7 +43,8 @@ TINY = make_suite("tiny", 1, tuple(task for task in PAPER.tasks if task.house ==
 
 
 def _train(folder, count, jobs=1, suite=TINY):
-    return simulate.training(suite, 3, count, folder, jobs, progress.Silent())
+    points = design_points.sobol_points(count, len(parameter_registry.free_parameter_names()), 3, "training")
+    return simulate.simulate_sessions(points, suite, 3, folder, jobs, progress.Silent(), "training")
 
 
 @pytest.fixture(scope="module")
@@ -53,7 +54,7 @@ def trained(tmp_path_factory):
 
 
 def _same(first, second):
-    return all(np.array_equal(getattr(first, name), getattr(second, name)) for name in ("points", *trial_table.TRIAL))
+    return all(np.array_equal(getattr(first, name), getattr(second, name)) for name in ("points", *trial_table.COLUMNS))
 
 
 def test_a_session_is_one_persons_trials_in_each_condition_in_turn(trained):
@@ -85,7 +86,7 @@ def test_more_workers_and_an_interruption_give_the_same_table(trained, tmp_path)
 
 def test_a_larger_table_goes_on_from_a_smaller_and_nothing_is_played_twice(trained, monkeypatch):
     folder, made = trained
-    monkeypatch.setattr(simulate.runner, "perform", lambda *_, **__: pytest.fail("it was all played before"))
+    monkeypatch.setattr(simulate, "run_all_sessions", lambda *_, **__: pytest.fail("it was all played before"))
     assert _same(_train(folder, 3), made)
     assert _same(_train(folder, 2), made.take(made.session < 2)) is False  # the points are fewer
     assert _train(folder, 2).ticks.tolist() == made.ticks[:4].tolist()
@@ -94,7 +95,7 @@ def test_a_larger_table_goes_on_from_a_smaller_and_nothing_is_played_twice(train
 def test_a_changed_world_is_refused(trained, monkeypatch):
     folder, _ = trained
     known = trial_identity.trials_identity(TINY)
-    changed = trial_identity.Identity(parts={**known.parts, "the person": "x"})
+    changed = trial_identity.TrialIdentity(parts={**known.parts, "the person": "x"})
     monkeypatch.setattr(trial_identity, "trials_identity", lambda _: changed)
     with pytest.raises(RunError, match=r"another world or person: the person"):
         _train(folder, 3)
@@ -107,10 +108,10 @@ def test_a_session_is_what_an_evaluation_would_have_played():
     from hthor.humans.population import random_effects
     from hthor.humans.population.participant import Participant, participant_root
 
-    point = design_points.spread(1, len(parameter_registry.free_parameter_names()), 0, "x")[0]
-    one = simulate.place(TINY, trial_identity.trials_identity(TINY), 5, 0, point.tolist(), 1)
+    point = design_points.sobol_points(1, len(parameter_registry.free_parameter_names()), 0, "x")[0]
+    one = simulate.make_session_spec(TINY, trial_identity.trials_identity(TINY), 5, 0, point.tolist(), 1)
     stage, seats = TrialRunner(), robot_team.form_team(["scout"], ["frontier"]).seats
-    rows = list(session_simulation.sit(one, TINY, seats, stage))
+    rows = list(session_simulation.run_session(one, TINY, seats, stage))
 
     dealt = make_sessions(TINY, agent="frontier", seed=5, participants=1)[0]
     traits = random_effects.add_random_effects(parameter_registry.parameters_at(point.tolist()), participant_root(5, 0))
@@ -128,7 +129,7 @@ def test_a_session_is_what_an_evaluation_would_have_played():
 
 def test_every_condition_meets_hands_alike():
     """Which third of the tasks a session gets says nothing of its condition."""
-    pairs = [(number % 3, simulate.turn(number)) for number in range(9)]
+    pairs = [(number % 3, simulate.assign_condition(number)) for number in range(9)]
     assert len(set(pairs)) == 9
 
 
@@ -139,14 +140,14 @@ def test_every_condition_meets_hands_alike():
 def cheap():
     """As small as it can be: what is found is not looked at too closely."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(run, "QUICK", msgspec.structs.replace(run.QUICK, proposals=1 << 12, draws=200))
+        patch.setattr(config, "QUICK", msgspec.structs.replace(config.QUICK, proposals=1 << 12, draws=200))
         yield
 
 
 @pytest.fixture
 def made_up(monkeypatch):
-    monkeypatch.setattr(simulate, "at", fakes.sessions)
-    monkeypatch.setattr(studies, "at", fakes.whole)
+    monkeypatch.setattr(simulate, "simulate_sessions", fakes.sessions)
+    monkeypatch.setattr(studies, "simulate_studies", fakes.whole)
 
 
 @pytest.fixture(scope="module")
@@ -154,14 +155,14 @@ def calibrated(tmp_path_factory):
     """A calibration that is done: its folder, and what it found."""
     folder = tmp_path_factory.mktemp("calibrated") / "first"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(simulate, "at", fakes.sessions)
-        patch.setattr(studies, "at", fakes.whole)
-        found = run.run_calibration(_options(folder), stage_progress.SilentProgress())
+        patch.setattr(simulate, "simulate_sessions", fakes.sessions)
+        patch.setattr(studies, "simulate_studies", fakes.whole)
+        found = run.run_calibration(_options(folder), terminal.SilentProgress())
     return folder, found
 
 
 def _options(folder, **more):
-    return run.CalibrationOptions(out=Path(folder), quick=True, jobs=1, sessions=90, **more)
+    return config.CalibrationOptions(out=Path(folder), quick=True, jobs=1, sessions=90, **more)
 
 
 def _bytes(folder):
@@ -171,21 +172,22 @@ def _bytes(folder):
 
 def test_the_same_seed_gives_the_same_bytes_and_another_others(made_up, calibrated, tmp_path):
     folder, found = calibrated
-    assert run.run_calibration(_options(tmp_path / "again"), stage_progress.SilentProgress()) == found
+    assert run.run_calibration(_options(tmp_path / "again"), terminal.SilentProgress()) == found
     assert _bytes(tmp_path / "again") == _bytes(folder)
     assert (
-        run.run_calibration(_options(tmp_path / "other", seed=1, until="training"), stage_progress.SilentProgress())
-        is None
+        run.run_calibration(_options(tmp_path / "other", seed=1, until="training"), terminal.SilentProgress()) is None
     )
-    other = stages.Stages(run.resolve_options(_options(tmp_path / "other", seed=1)), stage_progress.SilentProgress())
-    assert not np.array_equal(other.training.met, trial_table.load(folder / "training.npz").met)
+    other = stages.CalibrationStages(
+        config.resolve_options(_options(tmp_path / "other", seed=1)), terminal.SilentProgress()
+    )
+    assert not np.array_equal(other.training.met, trial_table.load_table(folder / "training.npz").met)
 
 
 def test_products_are_kept_and_what_was_learned_is_told(made_up, calibrated, monkeypatch):
     folder, found = calibrated
     before = _bytes(folder)
-    monkeypatch.setattr(emulator, "fit", lambda *_, **__: pytest.fail("it was fitted before"))
-    assert run.run_calibration(_options(folder), stage_progress.SilentProgress()) == found
+    monkeypatch.setattr(emulator, "fit_emulator", lambda *_, **__: pytest.fail("it was fitted before"))
+    assert run.run_calibration(_options(folder), terminal.SilentProgress()) == found
     assert _bytes(folder) == before
 
     people = population_file.load_population(folder / "population.json")
@@ -224,7 +226,7 @@ def test_the_command_ends_with_1_when_a_gate_is_not_passed(made_up, calibrated, 
 
 def test_each_stage_is_told_of(made_up, tmp_path):
     heard = io.StringIO()
-    teller = stage_progress.PrintedProgress(Console(file=heard, width=100), live=False)
+    teller = terminal.PrintedProgress(Console(file=heard, width=100), live=False)
     with teller.watch("training") as watch:
         watch.begin(3, 1)
         watch.played(True, False)
@@ -237,24 +239,24 @@ def test_each_stage_is_told_of(made_up, tmp_path):
 
 
 def test_a_calibration_may_stop_after_a_stage(made_up, tmp_path, monkeypatch):
-    monkeypatch.setattr(studies, "at", lambda *_: pytest.fail("it was to stop before"))
-    assert run.run_calibration(_options(tmp_path, until="training"), stage_progress.SilentProgress()) is None
-    monkeypatch.setattr(studies, "at", fakes.whole)
+    monkeypatch.setattr(studies, "simulate_studies", lambda *_: pytest.fail("it was to stop before"))
+    assert run.run_calibration(_options(tmp_path, until="training"), terminal.SilentProgress()) is None
+    monkeypatch.setattr(studies, "simulate_studies", fakes.whole)
     assert (
-        run.run_calibration(_options(tmp_path, until="correction"), stage_progress.SilentProgress()) is None
+        run.run_calibration(_options(tmp_path, until="correction"), terminal.SilentProgress()) is None
     )  # a small one has none
     with pytest.raises(UnknownName, match=r"stage 'trainings'\. Did you mean 'training'"):
-        run.run_calibration(_options(tmp_path, until="trainings"), stage_progress.SilentProgress())
+        run.run_calibration(_options(tmp_path, until="trainings"), terminal.SilentProgress())
 
 
 def test_wrong_input_is_told_before_anything_is_done(tmp_path, monkeypatch):
     with pytest.raises(UnknownName, match="suite 'papers'"):
-        run.resolve_options(run.CalibrationOptions(suite="papers"))
+        config.resolve_options(config.CalibrationOptions(suite="papers"))
     with pytest.raises(HthorError, match="one set of published results"):
-        run.resolve_options(run.CalibrationOptions(targets=("paper", "paper")))
+        config.resolve_options(config.CalibrationOptions(targets=("paper", "paper")))
     monkeypatch.setitem(__import__("sys").modules, "sklearn", None)
     with pytest.raises(MissingExtra, match=r"hthor\[calibration\]"):
-        run.run_calibration(_options(tmp_path), stage_progress.SilentProgress())
+        run.run_calibration(_options(tmp_path), terminal.SilentProgress())
 
 
 def test_a_folder_that_is_called_like_a_target_is_not_taken_for_logs(tmp_path, monkeypatch):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 
 import msgspec
 import numpy as np
@@ -15,16 +14,17 @@ from hypothesis import strategies as st
 from hthor import jsonio, tasks
 from hthor.calibration import targets
 from hthor.calibration.diagnostics import acceptance
+from hthor.calibration.evidence import AbcShift
 from hthor.calibration.pipeline.artifact_cache import ArtifactCache
 from hthor.calibration.simulation import design_points, session_store, trial_identity, trial_table
 from hthor.calibration.simulation.session_simulation import SessionOutcome
 from hthor.calibration.simulation.session_store import SessionStore
-from hthor.calibration.simulation.trial_identity import Identity
+from hthor.calibration.simulation.trial_identity import TrialIdentity
 from hthor.errors import HthorError, RunError, RunLocked, UnknownName
 from hthor.eval.records import trial_record
 
 SUITE = tasks.load_suite("paper")
-PAPER = targets.load("paper")
+PAPER = targets.load_targets("paper")
 
 
 # -------------------------------------------------------------------------------------------------------------- targets
@@ -84,22 +84,22 @@ def test_a_file_that_contradicts_itself_is_told_so(tmp_path, change, says):
     document.pop("left_out")
     path = tmp_path / "mine.json"
     path.write_bytes(jsonio.pretty(document))
-    assert targets.load(path).sha256 == PAPER.sha256
+    assert targets.load_targets(path).sha256 == PAPER.sha256
     change(document)
     path.write_bytes(jsonio.pretty(document))
     with pytest.raises(HthorError, match=says) as told:
-        targets.load(path)
+        targets.load_targets(path)
     assert str(path) in str(told.value)
 
 
 def test_an_unknown_name_and_a_missing_file_are_told_apart(tmp_path):
     with pytest.raises(UnknownName, match="Did you mean 'paper'"):
-        targets.load("papers")
+        targets.load_targets("papers")
     with pytest.raises(HthorError, match="cannot be read"):
-        targets.load(tmp_path / "none.json")
+        targets.load_targets(tmp_path / "none.json")
     (tmp_path / "torn.json").write_text("{")
     with pytest.raises(HthorError, match=r"torn\.json"):
-        targets.load(tmp_path / "torn.json")
+        targets.load_targets(tmp_path / "torn.json")
 
 
 # --------------------------------------------------------------------------------------------------------------- points
@@ -108,17 +108,17 @@ def test_an_unknown_name_and_a_missing_file_are_told_apart(tmp_path):
 @given(st.integers(1, 60), st.integers(1, 60), st.integers(0, 5))
 @settings(max_examples=20, deadline=None)
 def test_points_of_a_smaller_number_are_the_first_of_a_larger(few, many, seed):
-    small, large = (design_points.spread(count, 5, seed, "some") for count in sorted((few, many)))
+    small, large = (design_points.sobol_points(count, 5, seed, "some") for count in sorted((few, many)))
     assert np.array_equal(small, large[: len(small)])
     assert ((large > 0.0) & (large < 1.0)).all()
 
 
 def test_points_fill_the_cube_and_depend_on_seed_and_name():
-    first = design_points.spread(256, len(NAMES), 0, "a")
+    first = design_points.sobol_points(256, len(NAMES), 0, "a")
     counts = np.stack([np.histogram(column, 8, (0, 1))[0] for column in first.T])
     assert (counts == 32).all()
-    assert not np.array_equal(first, design_points.spread(256, len(NAMES), 1, "a"))
-    assert not np.array_equal(first, design_points.spread(256, len(NAMES), 0, "b"))
+    assert not np.array_equal(first, design_points.sobol_points(256, len(NAMES), 1, "a"))
+    assert not np.array_equal(first, design_points.sobol_points(256, len(NAMES), 0, "b"))
     assert json.loads(json.dumps(first.tolist())) == first.tolist()
 
 
@@ -126,35 +126,35 @@ def test_points_fill_the_cube_and_depend_on_seed_and_name():
 
 
 def _some(count=6, seed=0, name="some"):
-    return sessions(design_points.spread(count, len(NAMES), seed, name), SUITE, seed, None, 1, None, name)
+    return sessions(design_points.sobol_points(count, len(NAMES), seed, name), SUITE, seed, None, 1, None, name)
 
 
 def test_a_table_is_the_same_from_its_file_and_its_bytes_repeat(tmp_path):
     made = _some()
     for name in ("one.npz", "two.npz"):
-        trial_table.store(tmp_path / name, made)
+        trial_table.save_table(tmp_path / name, made)
     assert (tmp_path / "one.npz").read_bytes() == (tmp_path / "two.npz").read_bytes()
-    back = trial_table.load(tmp_path / "one.npz")
+    back = trial_table.load_table(tmp_path / "one.npz")
     assert back.names == made.names
-    for name in ("points", *trial_table.TRIAL):
+    for name in ("points", *trial_table.COLUMNS):
         assert np.array_equal(getattr(back, name), getattr(made, name)), name
         assert getattr(back, name).dtype == getattr(made, name).dtype
     (tmp_path / "one.npz").write_bytes((tmp_path / "two.npz").read_bytes()[:400])
     with pytest.raises(RunError, match="Delete it"):
-        trial_table.load(tmp_path / "one.npz")
+        trial_table.load_table(tmp_path / "one.npz")
 
 
 def test_joined_tables_keep_each_trials_point():
     first, second = _some(4), _some(3, seed=1, name="more")
-    both = trial_table.join([first, second])
+    both = trial_table.join_tables([first, second])
     assert len(both) == len(first) + len(second)
     assert np.array_equal(both.unit(), np.concatenate([first.unit(), second.unit()]))
     assert np.array_equal(both.take(both.point >= len(first.points)).unit(), second.unit())
 
 
 def test_twsr_is_the_metric_of_a_trial():
-    made, least = _some(12), trial_table.t_star(SUITE)
-    worth, spent = trial_table.twsr(made, least), trial_table.seconds(made)
+    made, least = _some(12), trial_table.suite_t_star(SUITE)
+    worth, spent = trial_table.twsr(made, least), trial_table.time_spent_s(made)
     for number in range(0, len(made), 7):
         best = SUITE.tasks[made.task[number]].t_star
         expected = best / max(best, spent[number]) if made.met[number] else 0.0
@@ -163,7 +163,7 @@ def test_twsr_is_the_metric_of_a_trial():
 
 
 def test_a_simulated_study_loses_as_many_trials_as_the_published_one():
-    made = whole(design_points.spread(3, len(NAMES), 0, "s"), SUITE, 0, None, 1, None, "s", PAPER.design)
+    made = whole(design_points.sobol_points(3, len(NAMES), 0, "s"), SUITE, 0, None, 1, None, "s", PAPER.design)
     assert len(made) == 3 * 180
     for study in range(3):
         for number, name in enumerate(targets.CONDITIONS):
@@ -197,7 +197,7 @@ def test_identity_has_the_code_the_rules_and_the_priors():
 
 
 def _identity(**parts):
-    return Identity(parts=parts)
+    return TrialIdentity(parts=parts)
 
 
 def _line(key, *rows):
@@ -247,36 +247,46 @@ def test_a_product_is_made_again_only_when_what_it_comes_of_has_changed(tmp_path
         return np.arange(3)
 
     for key in ("a", "a", "b", "b", "a"):
-        assert ArtifactCache(tmp_path, key * 64).kept("thing", make).tolist() == [0, 1, 2]
+        assert ArtifactCache(tmp_path, key * 64).get("thing", make).tolist() == [0, 1, 2]
     assert len(made) == 3
 
 
 # ---------------------------------------------------------------------------------------------------------------- gates
 
-GOOD = acceptance.Figures(
-    coverage=0.9, studies=200, z_sd=1.0, shift=0.2, worst="v_pace", effective=4000.0, covered=(8, 8), close=(8, 8)
+GOOD = acceptance.QualityFigures(
+    coverage=0.9,
+    studies=200,
+    z_sd=1.0,
+    shifts=(AbcShift(name="v_pace", shift=-0.2),),
+    effective=4000.0,
+    covered=(8, 8),
+    close=(8, 8),
 )
 
 
 def test_each_gate_fails_alone():
-    assert all(gate.passed for gate in acceptance.judge(GOOD, quick=False))
+    assert all(gate.passed for gate in acceptance.judge_calibration(GOOD, quick=False))
     bad = {
         "coverage": 0.8,
         "studies": 199,
         "z_sd": 1.2,
-        "shift": 0.6,
+        "shifts": (*GOOD.shifts, AbcShift(name="a0", shift=-0.6)),
         "effective": 10.0,
         "covered": (7, 8),
         "close": (7, 8),
     }
     for name, value in bad.items():
-        verdicts = acceptance.judge(msgspec.structs.replace(GOOD, **{name: value}), quick=False)
+        verdicts = acceptance.judge_calibration(msgspec.structs.replace(GOOD, **{name: value}), quick=False)
         assert sum(not gate.passed for gate in verdicts) == 1, name
-    assert not all(gate.passed for gate in acceptance.judge(msgspec.structs.replace(GOOD, shift=math.nan), quick=False))
+    assert not all(
+        gate.passed for gate in acceptance.judge_calibration(msgspec.structs.replace(GOOD, shifts=()), quick=False)
+    )
 
 
 def test_a_small_calibration_has_wider_gates_and_they_still_can_fail():
-    small = msgspec.structs.replace(GOOD, studies=10, shift=math.nan, close=(3, 8), z_sd=1.3)
-    assert all(gate.passed for gate in acceptance.judge(small, quick=True))
+    small = msgspec.structs.replace(GOOD, studies=10, shifts=(), close=(3, 8), z_sd=1.3)
+    assert all(gate.passed for gate in acceptance.judge_calibration(small, quick=True))
     for change in ({"z_sd": 2.2}, {"coverage": 0.5}, {"covered": (2, 8)}, {"effective": 3.0}):
-        assert not all(gate.passed for gate in acceptance.judge(msgspec.structs.replace(small, **change), quick=True))
+        assert not all(
+            gate.passed for gate in acceptance.judge_calibration(msgspec.structs.replace(small, **change), quick=True)
+        )

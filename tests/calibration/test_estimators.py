@@ -28,9 +28,9 @@ from hthor.calibration.from_logs.models import (
 from hthor.calibration.from_logs.models.choice_model import Choice
 from hthor.calibration.from_logs.models.detection_model import Exposure
 from hthor.calibration.from_logs.models.mixed_effects import Fit, Term
-from hthor.calibration.from_logs.models.priors import on
+from hthor.calibration.from_logs.models.priors import to_scale
 from hthor.calibration.from_logs.models.trust_model import Experience
-from hthor.calibration.from_logs.update_population import update
+from hthor.calibration.from_logs.update_population import update_draws
 from hthor.errors import RunError
 from hthor.eval.records import trial_record
 from hthor.eval.records.trial_record import TrialRecord
@@ -41,7 +41,7 @@ from hthor.humans.population import population_file
 from hthor.humans.population.parameters import Parameters
 from hthor.tasks.suite import make_suite
 
-BELIEFS = priors.of_registry()
+BELIEFS = priors.prior_beliefs()
 PEOPLE = 12
 RNG = "estimators"
 
@@ -66,7 +66,7 @@ def test_a_random_effect_is_told_from_noise(rng: np.random.Generator) -> None:
         return -0.5 * ((y - values["m"] - effects) / 0.3) ** 2
 
     wide = [Term(name="m", start=0.0, sd=100.0)]
-    found = mixed_effects.fit(likelihood, wide, person, Term(name="spread", start=-1.0, sd=100.0))
+    found = mixed_effects.fit_mixed_model(likelihood, wide, person, Term(name="spread", start=-1.0, sd=100.0))
     means = np.bincount(person, y) / 8.0
     exact = math.sqrt(means.var() - 0.3**2 / 8.0)  # where the likelihood of the thirty means is largest
     assert found.value["m"] == pytest.approx(means.mean(), abs=1e-3)
@@ -82,8 +82,8 @@ def test_a_median_is_found_with_practice_and_with_what_the_device_cuts_off(rng: 
     pace = 0.8 * np.exp(own) * (1.0 + 0.3 * (1.0 - np.exp(-index / 3.0))) * np.exp(rng.normal(0.0, 0.03, len(person)))
     rows = [(min(y, 1.0), p, i, int(y >= 1.0)) for y, p, i in zip(pace, person, index, strict=True)]
     assert sum(cut for *_, cut in rows) > 30
-    data, terms = timing_models.sample(rows), (BELIEFS["v_pace"].term(), BELIEFS["learn"].term())
-    found = timing_models.log_normal(data, terms[0], 0.5, noise=0.03, practice=1, learn=terms[1])
+    data, terms = timing_models.make_sample(rows), (BELIEFS["v_pace"].term(), BELIEFS["learn"].term())
+    found = timing_models.fit_log_normal(data, terms[0], 0.5, noise=0.03, practice=1, learn=terms[1])
     assert near(found, "v_pace", math.log(0.8))
     assert near(found, "learn", 0.3)
     assert math.exp(found.value["spread"]) == pytest.approx(0.15, rel=0.5)
@@ -106,10 +106,10 @@ def some_choices(rng: np.random.Generator, beta: float, kappa: float, w: float, 
 
 def test_choices_tell_rationality_and_the_weight_of_time(rng: np.random.Generator) -> None:
     made = list(some_choices(rng, beta=2.0, kappa=0.8, w=0.7, count=600))
-    found = choice_model.conditional_logit(made, np.arange(600) % PEOPLE, BELIEFS)
+    found = choice_model.fit_choices(made, np.arange(600) % PEOPLE, BELIEFS)
     assert near(found, "beta", math.log(2.0))
     assert near(found, "kappa", 0.8)
-    assert near(found, "w_prior", float(on(0.7, "logit")))
+    assert near(found, "w_prior", float(to_scale(0.7, "logit")))
 
 
 def test_exposures_tell_the_rate_of_noticing(rng: np.random.Generator) -> None:
@@ -126,7 +126,7 @@ def test_exposures_tell_the_rate_of_noticing(rng: np.random.Generator) -> None:
             noticed = float(rng.random()) < 1.0 - math.exp(-rate * 0.3)
         found.append(Exposure(rows=rows, noticed=noticed))
         person.append(k % PEOPLE)
-    fit = detection_model.regression(found, np.array(person), BELIEFS)
+    fit = detection_model.fit_detection(found, np.array(person), BELIEFS)
     assert near(fit, "lam0", math.log(1.2))
     assert near(fit, "a50", 0.04)
 
@@ -140,7 +140,7 @@ def test_reading_time_is_found_though_some_never_answer(rng: np.random.Generator
         notice, reads = 1.4 * math.exp(rng.normal(0.0, 0.4)), 3.5 * length * math.exp(own[who] + rng.normal(0.0, 0.4))
         left = bool(rng.random() < 0.15)
         read.append(Reading(seconds=40.0 if left else notice + reads, answered=not left, words=words, known=known))
-    fit = reading_time.durations(read, person, BELIEFS)
+    fit = reading_time.fit_reading(read, person, BELIEFS)
     total = math.exp(fit.value["t_notice"]) + math.exp(fit.value["t_read"])
     assert total == pytest.approx(1.4 + 3.5, rel=0.1)
 
@@ -153,7 +153,7 @@ def test_answers_tell_willingness_and_what_sways_it(rng: np.random.Generator) ->
         logit = 0.5 + own[who] + 4.0 * (level - 0.5) + 0.5 * math.log1p(gain) - 1.5 * load - 0.5 * again
         said = bool(rng.random() < 1.0 / (1.0 + math.exp(-logit)))
         offers.append(Offer(gain=gain, load=load, again=again, confirmed=said))
-    fit = acceptance_model.regression(offers, trust, person, BELIEFS)
+    fit = acceptance_model.fit_acceptance(offers, trust, person, BELIEFS)
     for name, truth in (("a0", 0.5), ("a_trust", 4.0), ("a_gain", 0.5), ("a_load", 1.5), ("a_again", 0.5)):
         assert abs(fit.value[name] - truth) < 3.0 * fit.se[name], name
     assert near(fit, "a0", 0.5)
@@ -181,7 +181,7 @@ def test_ratings_tell_first_trust_and_what_moves_it(rng: np.random.Generator) ->
     for _ in range(24):
         mu0 = 1.0 / (1.0 + math.exp(-(0.8 + 0.4 * float(rng.normal()))))
         people.append(a_session(rng, Parameters(mu0=mu0, n0=6.0, w_s=2.5, w_f=0.8)))
-    fit = trust_model.dynamics(trust_model.course(people, np.arange(24)), BELIEFS)
+    fit = trust_model.fit_trust(trust_model.make_trust_data(people, np.arange(24)), BELIEFS)
     assert near(fit, "mu0", 0.8)
     assert near(fit, "w_s", math.log(2.5))
     assert near(fit, "w_f", math.log(0.8))
@@ -193,10 +193,10 @@ def test_trust_is_followed_as_the_person_has_it(rng: np.random.Generator) -> Non
     traits = Parameters(mu0=0.4, n0=3.0, w_s=1.1, w_f=2.2, tau_s=31.0)
     session = a_session(rng, traits)
     values = {
-        "mu0": float(on(0.4, "logit")),
+        "mu0": float(to_scale(0.4, "logit")),
         **{k: math.log(getattr(traits, k)) for k in ("n0", "w_s", "w_f", "tau_s")},
     }
-    before, after = trust_model.means(trust_model.course([session], np.array([0])), values, np.zeros(1))
+    before, after = trust_model.mean_trust(trust_model.make_trust_data([session], np.array([0])), values, np.zeros(1))
     trust: Trust = initial_trust(traits)
     for k, one in enumerate(session):
         assert before[0, k] == pytest.approx(trust.mean)
@@ -211,20 +211,20 @@ def test_trust_is_followed_as_the_person_has_it(rng: np.random.Generator) -> Non
 
 def test_too_few_data_are_said_to_be_too_few() -> None:
     belief = BELIEFS["t_manip"]
-    few, some, many = (estimate.of(belief, belief.mean, 0.1, n, "") for n in (5, 12, 40))
+    few, some, many = (estimate.make_estimate(belief, belief.mean, 0.1, n, "") for n in (5, 12, 40))
     assert not few.used
     assert "too few data: 5 attempts, 30 are wanted" in few.words
     assert some.used
     assert some.words == "few data: 12 of 30 attempts"
     assert (many.used, many.words) == (True, "estimated")
-    assert estimate.of(belief, belief.mean, belief.sd, 40, "").words == "little learnt"
+    assert estimate.make_estimate(belief, belief.mean, belief.sd, 40, "").words == "little learnt"
 
 
 @settings(max_examples=50)
 @given(st.sampled_from(sorted(BELIEFS.keys() & estimate.NEEDS.keys())), st.floats(-3.0, 3.0), st.floats(0.01, 1.0))
 def test_an_estimate_lies_within_its_prior_and_its_interval(name: str, z: float, share: float) -> None:
     belief = BELIEFS[name]
-    found = estimate.of(belief, belief.mean + z * belief.sd, share * belief.sd, 1000, "")
+    found = estimate.make_estimate(belief, belief.mean + z * belief.sd, share * belief.sd, 1000, "")
     assert belief.low <= found.low <= found.value <= found.high <= belief.high
 
 
@@ -241,25 +241,25 @@ def correlated(rng: np.random.Generator) -> np.ndarray:
 def test_what_was_measured_is_replaced_and_the_rest_follows(rng: np.random.Generator) -> None:
     draws = correlated(rng)
     names, weights = ("t_manip", "tau_mem"), np.full(1000, 1e-3)
-    held = priors.of_draws(names, draws, weights)
-    found = estimate.of(held["t_manip"], 1.1 + 0.5, 0.05, 100, "")
-    new = update(names, draws, weights, held, [found], seed=1)
+    held = priors.population_beliefs(names, draws, weights)
+    found = estimate.make_estimate(held["t_manip"], 1.1 + 0.5, 0.05, 100, "")
+    new = update_draws(names, draws, weights, held, [found], seed=1)
     logs = np.log(new.draws)
     assert new.direct == ("t_manip",)
     assert logs[:, 0].mean() == pytest.approx(1.6, abs=0.02)
     assert logs[:, 0].std() == pytest.approx(0.05, rel=0.15)
     assert logs[:, 1].mean() > 4.7 + 0.4, "what goes with slow hands must go with them"
     assert new.effective >= 100.0
-    again = update(names, draws, weights, held, [found], seed=1)
+    again = update_draws(names, draws, weights, held, [found], seed=1)
     assert np.array_equal(again.draws, new.draws)
-    assert not np.array_equal(update(names, draws, weights, held, [found], seed=2).draws, new.draws)
+    assert not np.array_equal(update_draws(names, draws, weights, held, [found], seed=2).draws, new.draws)
 
 
 def test_too_few_data_leave_a_population_as_it_was(rng: np.random.Generator) -> None:
     draws, weights = correlated(rng), np.full(1000, 1e-3)
-    held = priors.of_draws(("t_manip", "tau_mem"), draws, weights)
-    found = estimate.of(held["t_manip"], 2.5, 0.05, 3, "")
-    new = update(("t_manip", "tau_mem"), draws, weights, held, [found], seed=1)
+    held = priors.population_beliefs(("t_manip", "tau_mem"), draws, weights)
+    found = estimate.make_estimate(held["t_manip"], 2.5, 0.05, 3, "")
+    new = update_draws(("t_manip", "tau_mem"), draws, weights, held, [found], seed=1)
     assert new.direct == ()
     assert np.array_equal(np.sort(new.draws, axis=0), np.sort(draws, axis=0))
 
@@ -273,17 +273,20 @@ def played() -> tuple[Parameters, list[TrialRecord]]:
     smoke = tasks.load_suite("smoke")
     few = make_suite("few", 1, tuple(task for task in smoke.tasks if task.house in ("alder", "hazel"))[:4])
     population = Parameters(v_pace=0.45, omega=1.2, t_manip=1.6, t_read=4.2, sigma=0.1, a0=3.0)
-    return population, parameter_recovery.logs(population, few, trial_runner.TrialRunner(), seed=5, people=6)
+    return population, parameter_recovery.simulate_logs(population, few, trial_runner.TrialRunner(), seed=5, people=6)
 
 
 def test_real_logs_tell_what_people_were_made_of(played: tuple[Parameters, list[TrialRecord]]) -> None:
     population, records = played
-    found = {one.name: one for one in estimate_all.everything(load_sessions.of(records), BELIEFS)}
+    found = {one.name: one for one in estimate_all.estimate_parameters(load_sessions.sessions_of(records), BELIEFS)}
     for name, off in (("v_pace", 0.1), ("omega", 0.1), ("t_manip", 0.35)):
         assert found[name].value == pytest.approx(getattr(population, name), rel=off), name
     assert found[estimate_all.READING].value == pytest.approx(population.t_notice + population.t_read, rel=0.35)
     assert found["t_on"].value == pytest.approx(population.t_on, abs=0.15)
-    again = {one.name: one for one in estimate_all.everything(load_sessions.of(list(reversed(records))), BELIEFS)}
+    again = {
+        one.name: one
+        for one in estimate_all.estimate_parameters(load_sessions.sessions_of(list(reversed(records))), BELIEFS)
+    }
     assert again == found, "the order of the records must not matter"
 
 
@@ -295,9 +298,9 @@ def test_logs_are_read_from_folders_and_files_each_trial_once(
     lines = [trial_record.encode(one) for one in records]
     (tmp_path / "run" / "trials.jsonl").write_bytes(b"".join(lines))
     (tmp_path / "some.jsonl").write_bytes(b"".join(lines[:3]))
-    whole = load_sessions.read([tmp_path / "run"])
+    whole = load_sessions.read_sessions([tmp_path / "run"])
     assert (whole.people, whole.sessions, len(whole.trials)) == (6, 6, len(records))
-    assert load_sessions.read([tmp_path / "some.jsonl", tmp_path / "run"]) == whole
+    assert load_sessions.read_sessions([tmp_path / "some.jsonl", tmp_path / "run"]) == whole
 
 
 @pytest.mark.parametrize(
@@ -317,16 +320,16 @@ def test_foreign_and_broken_logs_are_refused(
     path = tmp_path / "trials.jsonl"
     path.write_bytes(damage(lines))  # type: ignore[operator]
     with pytest.raises(RunError) as caught:
-        load_sessions.read([tmp_path])
+        load_sessions.read_sessions([tmp_path])
     assert words in str(caught.value)
     assert str(path) in str(caught.value)
 
 
 def test_a_log_that_is_not_there(tmp_path: Path) -> None:
     with pytest.raises(RunError, match=r"a folder without trials\.jsonl"):
-        load_sessions.read([tmp_path])
+        load_sessions.read_sessions([tmp_path])
     with pytest.raises(RunError, match="is not there"):
-        load_sessions.read([tmp_path / "nowhere.jsonl"])
+        load_sessions.read_sessions([tmp_path / "nowhere.jsonl"])
 
 
 def test_recovery_counts_what_was_found_and_what_was_covered() -> None:
@@ -336,7 +339,7 @@ def test_recovery_counts_what_was_found_and_what_was_covered() -> None:
         )
         for k, error in enumerate((0.1, 0.1, 0.01, 0.1))
     ]
-    (row,) = parameter_recovery.summary(made)
+    (row,) = parameter_recovery.summarize_recovery(made)
     assert (row.name, row.datasets, row.bar, row.passed) == ("v_pace", 4, 0.8, True)
     assert row.r == pytest.approx(np.corrcoef([0, 1, 2, 3], [0.1, 0.9, 2.1, 2.9])[0, 1])
     assert row.covered == 0.75
@@ -344,7 +347,7 @@ def test_recovery_counts_what_was_found_and_what_was_covered() -> None:
         parameter_recovery.Dataset(truth=a.truth, found=b.found, errors=a.errors)
         for a, b in zip(made, made[::-1], strict=True)
     ]
-    assert not parameter_recovery.summary(scrambled)[0].passed
+    assert not parameter_recovery.summarize_recovery(scrambled)[0].passed
 
 
 def test_logs_become_a_population_the_same_every_time(

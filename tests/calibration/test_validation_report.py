@@ -17,9 +17,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
-from hthor.calibration import targets
-from hthor.calibration.pipeline import evidence
-from hthor.calibration.pipeline.evidence import FIGURES
+from hthor.calibration import evidence, targets
+from hthor.calibration.evidence import FIGURES
 from hthor.calibration.simulation import trial_table as tables
 from hthor.calibration.validation import plan, run
 from hthor.calibration.validation.report import (
@@ -28,22 +27,21 @@ from hthor.calibration.validation.report import (
     measures,
     page,
     phrases,
-    published,
     study_groups,
     trial_tables,
 )
 from hthor.calibration.validation.report.figures import diagnostics
-from hthor.calibration.validation.report.findings import Findings, Setting, Subject
+from hthor.calibration.validation.report.findings import Findings, ModelUnderTest, Setting
 from hthor.cli import app as cli
 from hthor.errors import HthorError, RunError
 from hthor.humans.population import resolve
 from hthor.report.html import elements, matplotlib_svg
 
-PUBLISHED = published.of(targets.load("paper"))
+PUBLISHED = build.published_study(targets.load_targets("paper"))
 
 
-def subject(**more: str) -> Subject:
-    return Subject(**{"name": "paper", "model": "proxy", "sha256": "12" * 32, **more})
+def subject(**more: str) -> ModelUnderTest:
+    return ModelUnderTest(**{"name": "paper", "model": "proxy", "sha256": "12" * 32, **more})
 
 
 def setting(**more: object) -> Setting:
@@ -62,21 +60,23 @@ def setting(**more: object) -> Setting:
 
 @functools.cache
 def whole(*, known: bool = True, quick: bool = False, seed: int = 0) -> Findings:
-    return build.findings(
+    return build.make_findings(
         subject(),
         setting(quick=quick),
-        targets.load("paper"),
-        build.Materials(
-            trials=fakes.trials(12, seed), least=fakes.LEAST, hands=3, rivals={"greedy": fakes.trials(6, 9)}
+        targets.load_targets("paper"),
+        build.PlayedTrials(
+            trials=fakes.trials(12, seed), t_star=fakes.LEAST, round_size=3, rivals={"greedy": fakes.trials(6, 9)}
         ),
         evidence=fakes.evidence(PUBLISHED.figures) if known else None,
         evidence_missing="" if known else "This human model was not calibrated.",
     )
 
 
-def drawn(table: tables.Table, draws: int = 400) -> dict[str, study_groups.Groups]:
-    design = targets.load("paper").design
-    return study_groups.together(table, fakes.LEAST, hands=3, valid=design.valid, counted=design.counted, draws=draws)
+def drawn(table: tables.Table, draws: int = 400) -> dict[str, study_groups.StudyGroups]:
+    design = targets.load_targets("paper").design
+    return study_groups.make_groups(
+        table, fakes.LEAST, round_size=3, valid=design.valid, counted=design.counted, draws=draws
+    )
 
 
 # ------------------------------------------------------------------------------------------------------------- groups
@@ -87,7 +87,7 @@ def test_a_group_is_of_the_published_size() -> None:
     for name, count in (("none", 58), ("frontier", 59), ("oracle", 58)):
         assert np.allclose(made[name].sr * count, np.round(made[name].sr * count))
     assert np.allclose(made["oracle"].adoption * 50, np.round(made["oracle"].adoption * 50))
-    assert set(study_groups.figures(made)) == set(FIGURES)
+    assert set(study_groups.group_figures(made)) == set(FIGURES)
 
 
 def test_groups_do_every_task_twice() -> None:
@@ -107,8 +107,8 @@ def test_groups_of_people_who_are_all_alike_are_all_alike() -> None:
 def test_the_mean_of_groups_is_the_mean_of_all_trials() -> None:
     run = fakes.trials(30)
     made = drawn(run, draws=2000)
-    average = measures.means(run, fakes.LEAST)
-    for name, draws in study_groups.figures(made).items():
+    average = measures.mean_figures(run, fakes.LEAST)
+    for name, draws in study_groups.group_figures(made).items():
         assert average[name] == pytest.approx(float(draws.mean()), abs=0.01)
 
 
@@ -161,27 +161,27 @@ def test_the_table_tells_covered_from_close() -> None:
 
 def test_a_share_in_the_middle_has_a_percentile_in_the_middle() -> None:
     made = drawn(fakes.trials(30))
-    median = {name: float(np.median(draws)) for name, draws in study_groups.figures(made).items()}
+    median = {name: float(np.median(draws)) for name, draws in study_groups.group_figures(made).items()}
     study = msgspec.structs.replace(PUBLISHED, figures=median)
-    for row in measures.table(study, fakes.trials(30), fakes.LEAST, made):
+    for row in measures.predict_figures(study, fakes.trials(30), fakes.LEAST, made):
         assert 0.4 < row.percentile < 0.6
 
 
 def test_time_spent_is_what_it_is() -> None:
     run = fakes.trials(12)
-    found = {one.condition: one for one in measures.spent(run)}
-    seconds = tables.seconds(run)[run.condition == 2]
+    found = {one.condition: one for one in measures.time_spent(run)}
+    seconds = tables.time_spent_s(run)[run.condition == 2]
     assert found["oracle"].least == pytest.approx(seconds.min())
     assert found["oracle"].lower == pytest.approx(np.percentile(seconds, 25))
     assert found["oracle"].most <= 90.0
-    gaps = {(one.statistic, one.a, one.b): one.value for one in measures.differences(run, drawn(run))}
+    gaps = {(one.statistic, one.a, one.b): one.value for one in measures.time_differences(run, drawn(run))}
     assert gaps["lower quartile", "oracle", "none"] == pytest.approx(found["oracle"].lower - found["none"].lower)
     assert len(gaps) == 6
 
 
 def test_trust_is_known_only_where_both_robots_were_rated() -> None:
     run = fakes.trials(12)
-    found = measures.trust(run, drawn(run))
+    found = measures.trust_findings(run, drawn(run))
     assert found is not None
     rated = run.trust[run.condition == 2].astype(float)
     oracle = next(curve for curve in found.curves if curve.condition == "oracle")
@@ -189,7 +189,7 @@ def test_trust_is_known_only_where_both_robots_were_rated() -> None:
     assert len(oracle.mean) == 10
     assert oracle.slope > 0.0
     silent = msgspec.structs.replace(run, trust=np.zeros_like(run.trust))
-    assert measures.trust(silent, drawn(silent)) is None
+    assert measures.trust_findings(silent, drawn(silent)) is None
 
 
 def test_a_model_that_is_right_scores_better() -> None:
@@ -197,8 +197,8 @@ def test_a_model_that_is_right_scores_better() -> None:
         fakes.trials(30, 1),
         fakes.trials(30, 1, dict.fromkeys(fakes.RATES, 0.3), dict.fromkeys(fakes.RATES, 0.1)),
     )
-    good = measures.rival("good", PUBLISHED, right, fakes.LEAST, drawn(right)).log_score
-    bad = measures.rival("bad", PUBLISHED, wrong, fakes.LEAST, drawn(wrong)).log_score
+    good = measures.score_model("good", PUBLISHED, right, fakes.LEAST, drawn(right)).log_score
+    bad = measures.score_model("bad", PUBLISHED, wrong, fakes.LEAST, drawn(wrong)).log_score
     assert all(good[name] > bad[name] + 1.0 for name in good)
 
 
@@ -208,14 +208,14 @@ def test_records_become_the_same_numbers() -> None:
     for condition, absent in (("none", True), ("oracle", False)):
         _, dealt = eval_fakes.run_of(30, absent=absent)
         runs[condition] = [done for session in dealt for done in eval_fakes.records(session)]
-    made = trial_tables.table(runs, suite)
+    made = trial_tables.records_table(runs, suite)
     for number, condition in ((0, "none"), (2, "oracle")):
         one = made.take(made.condition == number)
         order = sorted(runs[condition], key=lambda done: (done.spec.participant, done.spec.index))
         place = np.lexsort((one.index, one.participant))
         assert np.array_equal(one.met[place], [bool(done.metrics.sr) for done in order])
-        assert np.allclose(tables.seconds(one)[place], [done.metrics.time_s for done in order])
-        assert np.allclose(tables.twsr(one, tables.t_star(suite))[place], [done.metrics.twsr for done in order])
+        assert np.allclose(tables.time_spent_s(one)[place], [done.metrics.time_s for done in order])
+        assert np.allclose(tables.twsr(one, tables.suite_t_star(suite))[place], [done.metrics.twsr for done in order])
         assert np.array_equal(one.adopted[place], [bool(done.metrics.adoption) for done in order])
         assert np.array_equal(one.trust[place], [done.metrics.trust or 0 for done in order])
 
@@ -287,7 +287,7 @@ def test_small_words() -> None:
 
 def test_the_worst_kind_is_named() -> None:
     kinds = tuple(
-        measures.played(name, fakes.trials(6, 1, {"none": 0.3, "frontier": 0.6, "oracle": oracle}), fakes.LEAST)
+        measures.model_figures(name, fakes.trials(6, 1, {"none": 0.3, "frontier": 0.6, "oracle": oracle}), fakes.LEAST)
         for name, oracle in (("fast", 0.95), ("slow", 0.4))
     )
     said = phrases.kinds(msgspec.structs.replace(whole(), kinds=kinds))
@@ -299,7 +299,7 @@ def test_the_worst_kind_is_named() -> None:
 
 
 def verdicts(found: Findings) -> dict[str, str]:
-    return {gate.name: gate.verdict for gate in criteria.judge(found)}
+    return {gate.name: gate.verdict for gate in criteria.judge_findings(found)}
 
 
 def changed(**parts: object) -> Findings:
@@ -333,7 +333,7 @@ def test_each_bar_can_be_missed() -> None:
         "held-out log scores": {"held_out": (msgspec.structs.replace(first, log_score=-99.0),)},
         "coverage": {"coverage": msgspec.structs.replace(known.coverage, mean=0.85)},
         "emulator": {"emulator_z": 1.11},
-        "ABC cross-check": {"abc": (evidence.Shift(name="v_pace", shift=-0.5),)},
+        "ABC cross-check": {"abc": (evidence.AbcShift(name="v_pace", shift=-0.5),)},
         "order of the robots": {"rankings": (order,)},
     }
     for name, parts in missed.items():
@@ -432,29 +432,29 @@ def test_findings_travel_as_json() -> None:
 
 def test_evidence_is_read_back(tmp_path: Path) -> None:
     known = fakes.evidence(PUBLISHED.figures)
-    (tmp_path / evidence.FILE).write_bytes(evidence.encode(known))
-    assert evidence.load(tmp_path) == evidence.load(tmp_path / evidence.FILE) == known
+    (tmp_path / evidence.FILE).write_bytes(evidence.encode_evidence(known))
+    assert evidence.load_evidence(tmp_path) == evidence.load_evidence(tmp_path / evidence.FILE) == known
 
 
 def test_evidence_that_cannot_be_used_says_what_to_do(tmp_path: Path) -> None:
     with pytest.raises(RunError, match="hthor calibrate"):
-        evidence.load(tmp_path)
+        evidence.load_evidence(tmp_path)
     (tmp_path / evidence.FILE).write_text("{")
     with pytest.raises(RunError, match=r"evidence\.json"):
-        evidence.load(tmp_path)
+        evidence.load_evidence(tmp_path)
     strange = msgspec.structs.replace(fakes.evidence(PUBLISHED.figures), schema="hthor.evidence/0")
-    (tmp_path / evidence.FILE).write_bytes(evidence.encode(strange))
+    (tmp_path / evidence.FILE).write_bytes(evidence.encode_evidence(strange))
     with pytest.raises(RunError, match="schema"):
-        evidence.load(tmp_path)
+        evidence.load_evidence(tmp_path)
 
 
 def test_evidence_of_another_population_is_not_believed(tmp_path: Path) -> None:
     known = fakes.evidence(PUBLISHED.figures)
-    (tmp_path / evidence.FILE).write_bytes(evidence.encode(known))
+    (tmp_path / evidence.FILE).write_bytes(evidence.encode_evidence(known))
     found = resolve.resolve_humans("literature")
     assert run._evidence(found, tmp_path) == (None, run.OTHERS)
     mine = msgspec.structs.replace(known.origin, population_sha256=found.population.sha256)
-    (tmp_path / evidence.FILE).write_bytes(evidence.encode(msgspec.structs.replace(known, origin=mine)))
+    (tmp_path / evidence.FILE).write_bytes(evidence.encode_evidence(msgspec.structs.replace(known, origin=mine)))
     assert run._evidence(found, tmp_path)[0] is not None
 
 
@@ -475,11 +475,11 @@ def stage(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, str, int]]:
     """Nobody plays; what would have been played is noted."""
     asked: list[tuple[str, str, int]] = []
 
-    def play(self: object, one: plan.Round) -> tables.Table:
+    def play(self: object, one: plan.ValidationRun) -> tables.Table:
         asked.append((one.word, one.suite, one.participants))
         return fakes.trials(one.participants)
 
-    monkeypatch.setattr(run._Stage, "play", play)
+    monkeypatch.setattr(run._ConditionRuns, "trials", play)
     return asked
 
 
@@ -488,7 +488,7 @@ def test_the_command_writes_the_report_and_fails_with_its_bars(
 ) -> None:
     done = CliRunner().invoke(cli, ["humans", "validate", "literature", "--out", str(tmp_path), "--json"])
     stored = msgspec.json.decode((tmp_path / "validation.json").read_bytes(), type=Findings)
-    failed = criteria.failed(stored.gates)
+    failed = criteria.failed_gates(stored.gates)
     assert done.exit_code == (1 if failed else 0)
     assert failed  # the made-up people are too slow for the published TWSR
     assert msgspec.json.decode(done.stdout, type=Findings) == stored
@@ -522,9 +522,9 @@ def test_a_dry_run_says_what_would_be_played_and_writes_nothing(tmp_path: Path) 
 
 
 def test_kinds_and_suites_are_played_when_asked_for(stage: list[tuple[str, str, int]], tmp_path: Path) -> None:
-    options = run.Options(name="literature", quick=True, kinds=True, suites=("smoke",), out=tmp_path)
+    options = run.ValidationOptions(name="literature", quick=True, kinds=True, suites=("smoke",), out=tmp_path)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(measures, "played", lambda name, run, least: _played(name))
+        patch.setattr(measures, "model_figures", lambda name, run, least: _played(name))
         done = run.run_validation(options, lambda _: pytest.fail("nobody plays"))
     names = [word for word, suite, _ in stage if suite == "paper"]
     assert "cautious" in names
@@ -534,19 +534,19 @@ def test_kinds_and_suites_are_played_when_asked_for(stage: list[tuple[str, str, 
 
 
 def _played(name: str) -> object:
-    from hthor.calibration.validation.report.findings import Played
+    from hthor.calibration.validation.report.findings import ModelFigures
 
-    return Played(name=name, figures=dict.fromkeys(FIGURES, 0.5), trials=30)
+    return ModelFigures(name=name, figures=dict.fromkeys(FIGURES, 0.5), trials=30)
 
 
 def test_too_few_participants_are_refused_before_anything_is_played(stage: list[tuple[str, str, int]]) -> None:
     with pytest.raises(HthorError, match="too few"):
-        run.run_validation(run.Options(participants=5), lambda _: pytest.fail("nobody plays"))
+        run.run_validation(run.ValidationOptions(participants=5), lambda _: pytest.fail("nobody plays"))
     assert not stage
 
 
 def test_few_people_are_not_judged(stage: list[tuple[str, str, int]], tmp_path: Path) -> None:
-    options = run.Options(name="greedy", participants=12, out=tmp_path)
+    options = run.ValidationOptions(name="greedy", participants=12, out=tmp_path)
     done = run.run_validation(options, lambda _: pytest.fail("nobody plays"))
     assert [many for _, _, many in stage] == [12, 12]
     assert set(verdicts(done.findings).values()) == {"not judged"}

@@ -512,7 +512,7 @@ def board(reference: Path, brief: tasks.Suite) -> Path:
     jsonio.write(FOLDER / "commitment.json", jsonio.pretty(made))
     opened = hthor("leaderboard", "open", str(FOLDER / "commitment.json"), "--board", str(FOLDER / "board"), cwd=FOLDER)
     assert opened.returncode == 0, opened.stderr
-    enter.add(both / "run", FOLDER / "board")
+    enter.add_runs(both / "run", FOLDER / "board")
     return FOLDER / "board"
 
 
@@ -548,19 +548,21 @@ def test_leaderboard(
     assert "V1" in (here / "index.html").read_text()
 
     alone = next(here.glob("entries/none-*.json"))
-    control, true = files.read(alone), files.read(entry)
+    control, true = files.read_entry(alone), files.read_entry(entry)
     lie = forging.forged(true, 1.0, control, brief)
     elsewhere = ({**lie.platforms[0], "libc": "another"},)
     monkeypatch.setattr(engines, "find_engine", lambda *_, **__: fakes.Here())
     for platforms, tier in ((lie.platforms, "V1"), (elsewhere, "V2")):
-        files.write(entry, msgspec.structs.replace(lie, platforms=platforms))
+        files.write_document(entry, msgspec.structs.replace(lie, platforms=platforms))
         assert say("leaderboard", "validate", *on).code == 0  # all of it follows from its trials, which never were
         said = say(*verify)
         assert (said.code, json.loads(said.out)["trials"]["tier"]) == (5, tier)
     worse = forging.forged(control, 1.0, None, brief)
-    uplift = entry_metrics.uplift(true, trial_outcomes.unpack(true.trials), worse, trial_outcomes.unpack(worse.trials))
-    files.write(alone, worse)
-    files.write(entry, msgspec.structs.replace(true, uplift=uplift))
+    uplift = entry_metrics.entry_uplift(
+        true, trial_outcomes.unpack(true.trials), worse, trial_outcomes.unpack(worse.trials)
+    )
+    files.write_document(alone, worse)
+    files.write_document(entry, msgspec.structs.replace(true, uplift=uplift))
     said = say(*verify)
     parts = json.loads(said.out)
     assert (said.code, parts["trials"]["passed"], parts["control"]["passed"]) == (5, True, False)

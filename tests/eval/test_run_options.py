@@ -89,8 +89,8 @@ def test_both_are_part_of_a_run_and_of_the_command_that_plays_it() -> None:
     words = cli_command.resume_command(Path("runs/x"), short)
     assert "--limit 30" in words
     assert "--step-limit 2.5" in words
-    assert overrides.of(bare) == {}
-    assert overrides.of(short) == {"limit": "30", "step_limit": "2.5"}
+    assert overrides.overridden_settings(bare) == {}
+    assert overrides.overridden_settings(short) == {"limit": "30", "step_limit": "2.5"}
 
 
 def test_a_deadline_is_part_of_the_trials_of_submitted_agents_alone() -> None:

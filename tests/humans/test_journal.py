@@ -99,7 +99,7 @@ def played() -> list[TrialRecord]:
 def test_nobody_goes_farther_than_the_stick_says(played: list[TrialRecord]) -> None:
     went = 0.0
     for one in played:
-        stick = locomotion.stick(one)
+        stick = locomotion.stick_deflection(one)
         assert stick is not None
         assert len(stick) == one.ticks
         path = one.paths[HUMAN]
@@ -113,7 +113,7 @@ def test_nobody_goes_farther_than_the_stick_says(played: list[TrialRecord]) -> N
 def test_every_deed_of_the_hands_was_an_attempt(played: list[TrialRecord]) -> None:
     done = {"picked", "placed", "opened"}
     deeds_done = [e for one in played for e in one.events if e.seat == HUMAN and e.kind in done]
-    worked = [a for one in played for a in manipulation.of(one) if not a.missed and not a.cut]
+    worked = [a for one in played for a in manipulation.manipulation_attempts(one) if not a.missed and not a.cut]
     assert deeds_done
     assert len(worked) >= len(deeds_done)
     assert all(a.seconds >= rules.HANDLING_S for a in worked)

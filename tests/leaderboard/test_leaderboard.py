@@ -31,7 +31,7 @@ from hthor.eval.config import run_config
 from hthor.eval.records.run_folder import RunFolder
 from hthor.guest.agent import manifest
 from hthor.leaderboard import board_check, canonical_form, enter, publish, rescore
-from hthor.leaderboard.entries import column_packing, entry_metrics, files, merkle, overrides
+from hthor.leaderboard.entries import column_packing, entry_metrics, files, overrides, trial_outcomes
 from hthor.leaderboard.page import page
 from hthor.leaderboard.ranking import admission, listing
 from hthor.leaderboard.submission import archive, submission
@@ -41,8 +41,8 @@ from hthor.leaderboard.verify import verify
 
 
 def test_a_run_of_other_people_is_refused_in_one_sentence_that_says_what_would_do(runs: Path, tmp_path: Path):
-    with mock.patch.object(overrides, "tasks_of", return_value=60), pytest.raises(HthorError) as refused:
-        enter.add(runs / "helper", tmp_path / "board")
+    with mock.patch.object(overrides, "suite_size", return_value=60), pytest.raises(HthorError) as refused:
+        enter.add_runs(runs / "helper", tmp_path / "board")
     said = str(refused.value)
     assert "was played with --participants 2, and cannot stand on the leaderboard" in said
     assert "each of the 60 tasks of 'fake' done once, by 6 people; this run has 20 trials" in said
@@ -57,14 +57,14 @@ def test_half_and_twice_the_people_of_a_shipped_suite_are_a_setting_of_its_own()
     suite = run_config.SuiteRef(name="smoke", version=str(smoke.version), sha256=smoke.sha256)
     for participants, trials, found in ((6, 60, {}), (2, 20, {"participants": "2"}), (12, 120, {"participants": "12"})):
         some = msgspec.structs.replace(plan, suite=suite, participants=participants, trials=trials)
-        assert overrides.of(some) == found
+        assert overrides.overridden_settings(some) == found
 
 
 def test_twice_is_once_in_any_order_and_the_control_comes_too(whole: Path, runs: Path, tmp_path: Path):
     other = committed(tmp_path / "other")
     for name in ("clumsy", "helper", "clumsy"):
-        enter.add(runs / name, other)
-    publish.build(other)
+        enter.add_runs(runs / name, other)
+    publish.build_board(other)
     assert contents(other) == contents(whole)
     assert [path.name.partition("-")[0] for path in files.entry_paths(other)] == ["clumsy", "helper", "silent"]
 
@@ -77,7 +77,7 @@ def test_every_file_is_as_the_schema_says(whole: Path):
         document = json.loads(path.read_bytes())
         valid.validate(document)
         assert not valid.is_valid({**document, "extra": 1})
-    assert board_check.problems(whole) == []
+    assert board_check.check_board(whole) == []
     assert publish.differences(whole) == []
 
 
@@ -90,37 +90,37 @@ def test_parts_and_departures_are_refused(runs: Path, tmp_path: Path):
     lines = (part / "trials.jsonl").read_bytes().splitlines(keepends=True)
     (part / "trials.jsonl").write_bytes(b"".join(lines[:7]))
     with pytest.raises(RunError, match=r"lacks 13 of its 20 trials.*hthor eval --agent helper\.py .*--seed 0 "):
-        enter.add(part, tmp_path / "board")
+        enter.add_runs(part, tmp_path / "board")
     alone = shutil.copytree(runs / "helper", tmp_path / "elsewhere" / "helper")
     with pytest.raises(RunError, match="no run without a robot beside it"):
-        enter.add(alone, tmp_path / "board")
+        enter.add_runs(alone, tmp_path / "board")
     with pytest.raises(RunError, match=r"no run\.json is there"):
-        enter.add(tmp_path / "elsewhere" / "helper" / "none", tmp_path / "board")
+        enter.add_runs(tmp_path / "elsewhere" / "helper" / "none", tmp_path / "board")
     plan = msgspec.json.decode((runs / "helper" / "run.json").read_bytes(), type=type(fakes.run_of(COUNT)[0]))
-    assert overrides.of(plan, ("scout",)) == {}
+    assert overrides.overridden_settings(plan, ("scout",)) == {}
     seat = msgspec.structs.replace(plan.robots[0], detector="ideal", robot="mine")
     other = msgspec.structs.replace(plan, participants=1, robots=(seat,))
-    assert overrides.of(other, ("tender",)).keys() == {"participants", "detector", "robot", "robots"}
+    assert overrides.overridden_settings(other, ("tender",)).keys() == {"participants", "detector", "robot", "robots"}
     with (
         mock.patch.object(code_identity, "code_sha256", return_value="56" * 32),
         pytest.raises(RunError, match="code_"),
     ):
-        enter.add(runs / "helper", tmp_path / "board")
+        enter.add_runs(runs / "helper", tmp_path / "board")
     assert not (tmp_path / "board").exists()
 
 
 def test_what_is_refused_leaves_the_board_as_it_was(runs: Path, tmp_path: Path):
-    with pytest.raises(files.BoardError, match=r"of no suite of hthor's own"):
-        enter.add(runs, tmp_path / "board")
+    with pytest.raises(files.BoardError, match=r"to no suite of hthor"):
+        enter.add_runs(runs, tmp_path / "board")
     assert not (tmp_path / "board").exists()
 
 
 def test_a_board_that_is_not_there_is_not_in_order(whole: Path, tmp_path: Path):
-    for look in (board_check.problems, publish.build, rescore.rescore):
-        with pytest.raises(files.BoardError, match="no folder"):
+    for look in (board_check.check_board, publish.build_board, rescore.rescore):
+        with pytest.raises(files.BoardError, match="not a folder"):
             look(tmp_path / "board")
     with pytest.raises(files.BoardError, match="is no file"):
-        verify.verify(whole, whole, verify.Request(word="chance"))
+        verify.verify_entry(whole, whole, verify.Request(word="chance"))
 
 
 def test_a_column_that_cannot_be_read_is_named_with_its_file(board: Path):
@@ -128,10 +128,10 @@ def test_a_column_that_cannot_be_read_is_named_with_its_file(board: Path):
     held = json.loads(path.read_bytes())
     held["trials"]["time"] += "AAAA"
     path.write_text(json.dumps(held))
-    for look in (rescore.rescore, publish.build):
+    for look in (rescore.rescore, publish.build_board):
         with pytest.raises(files.BoardError, match=rf"{path.name}: trials\.time: "):
             look(board)
-    assert "trials.time" in [one.field for one in board_check.problems(board)]
+    assert "trials.time" in [one.field for one in board_check.check_board(board)]
 
 
 # -------------------------------------------------------------------------------------------------- what is changed
@@ -151,12 +151,12 @@ CHANGES = {
     "faults": ("counts.faults", lambda one: one["counts"].update(faults=7)),
     "kinds of faults": ("counts.faults_by_kind", lambda one: one["counts"]["faults_by_kind"].clear()),
     "successes": ("counts.successes", lambda one: one["counts"].update(successes=0)),
-    "a bit": ("hashes.merkle", lambda one: one["trials"].update(met=column_packing.bits(np.ones(COUNT)))),
-    "bits beyond": ("trials.met", lambda one: one["trials"].update(met=column_packing.bits(np.ones(COUNT + 4)))),
+    "a bit": ("hashes.merkle", lambda one: one["trials"].update(met=column_packing.pack_bits(np.ones(COUNT)))),
+    "bits beyond": ("trials.met", lambda one: one["trials"].update(met=column_packing.pack_bits(np.ones(COUNT + 4)))),
     "too few": ("trials.twsr", lambda one: one["trials"].update(twsr="AAAA")),
     "too much": (
         "trials.twsr",
-        lambda one: one["trials"].update(twsr=column_packing.numbers(np.full(COUNT, 10**6 + 1), 3)),
+        lambda one: one["trials"].update(twsr=column_packing.pack_numbers(np.full(COUNT, 10**6 + 1), 3)),
     ),
     "label": ("trials.labels.split.of", lambda one: one["trials"]["labels"]["split"].update(of="9" * COUNT)),
     "seed": ("hashes.run", lambda one: one["run"].update(seed=5)),
@@ -186,11 +186,11 @@ def test_what_was_changed_is_named(board: Path, change: str):
     document = json.loads(path.read_bytes())
     spoil(document)
     path.write_bytes(jsonio.pretty(document))
-    found = board_check.problems(board)
+    found = board_check.check_board(board)
     assert field in {one.field for one in found}
     assert {one.file for one in found} == {str(path)}
     with pytest.raises(files.BoardError, match=r"helper|clumsy"):
-        publish.build(board)
+        publish.build_board(board)
 
 
 def test_all_problems_are_listed(board: Path):
@@ -201,15 +201,15 @@ def test_all_problems_are_listed(board: Path):
     document["run"]["seed"] = 3
     path.write_bytes(jsonio.pretty(document))
     (board / "entries" / "rubbish.json").write_text("{")
-    fields = [one.field for one in board_check.problems(board)]
+    fields = [one.field for one in board_check.check_board(board)]
     assert {"metrics.sr.mean", "counts.faults", "hashes.run", "$"} <= set(fields)
 
 
 def test_another_spelling_is_refused_and_can_be_fixed(board: Path, whole: Path):
     path = entry_of(board, "helper")
     path.write_text(json.dumps(json.loads(path.read_bytes())))
-    assert [one.field for one in board_check.problems(board)] == [canonical_form.SPELLING]
-    assert canonical_form.fix(files.entry_paths(board)) == [path]
+    assert [one.field for one in board_check.check_board(board)] == [canonical_form.SPELLING]
+    assert canonical_form.fix_forms(files.entry_paths(board)) == [path]
     assert contents(board) == contents(whole)
     (board / "leaderboard.json").write_bytes(b"{}")
     assert [one.file for one in publish.differences(board)] == [str(board / "leaderboard.json")]
@@ -217,21 +217,23 @@ def test_another_spelling_is_refused_and_can_be_fixed(board: Path, whole: Path):
 
 def test_a_forger_who_makes_all_follow_passes_the_laws_but_not_an_old_verification(board: Path):
     path = entry_of(board, "helper")
-    control = files.read(entry_of(board, "silent"))
-    true = files.read(path)
+    control = files.read_entry(entry_of(board, "silent"))
+    true = files.read_entry(path)
     lie = forging.forged(true, 0.2, control)
-    files.write(path, lie)
-    assert board_check.problems(board) == []  # all of it follows from its trials, which never were
+    files.write_document(path, lie)
+    assert board_check.check_board(board) == []  # all of it follows from its trials, which never were
     assert kept(true).of(true) is not None
     assert kept(true).of(lie) is None
 
 
 def test_numbers_of_older_statistics_are_worked_out_anew(board: Path, whole: Path):
     for path in files.entry_paths(board):
-        entry = files.read(path)
+        entry = files.read_entry(path)
         sr = msgspec.structs.replace(entry.metrics.sr, ci95=(0.0, 1.0))
-        files.write(path, msgspec.structs.replace(entry, metrics=msgspec.structs.replace(entry.metrics, sr=sr)))
-    assert board_check.problems(board) != []
+        files.write_document(
+            path, msgspec.structs.replace(entry, metrics=msgspec.structs.replace(entry.metrics, sr=sr))
+        )
+    assert board_check.check_board(board) != []
     assert rescore.rescore(board) == files.entry_paths(board)
     assert contents(board) == contents(whole)
     assert rescore.rescore(board) == []
@@ -247,11 +249,11 @@ def test_one_false_outcome_in_twenty_is_caught_by_two_hundred_trials(tier: Liter
 
 
 def test_ranks_follow_from_entries_alone(whole: Path):
-    entries = [files.read(path) for path in files.entry_paths(whole)]
-    taken = admission.load(whole)
-    assert jsonio.pretty(listing.board(entries, taken=taken)) == (whole / "leaderboard.json").read_bytes()
-    found = listing.board(entries, kept(*entries), taken)
-    assert listing.board(entries[::-1], kept(*entries), taken) == found
+    entries = [files.read_entry(path) for path in files.entry_paths(whole)]
+    taken = admission.load_admission(whole)
+    assert jsonio.pretty(listing.make_board(entries, taken=taken)) == (whole / "leaderboard.json").read_bytes()
+    found = listing.make_board(entries, kept(*entries), taken)
+    assert listing.make_board(entries[::-1], kept(*entries), taken) == found
     (section,) = found.sections
     ranks = {row.name: row.ranks for row in section.rows}
     assert ranks["no robot"] is None
@@ -266,15 +268,15 @@ def test_ranks_follow_from_entries_alone(whole: Path):
 
 
 def test_only_what_can_be_compared_is_ranked_together(whole: Path):
-    entries = [files.read(path) for path in files.entry_paths(whole)]
+    entries = [files.read_entry(path) for path in files.entry_paths(whole)]
     other = msgspec.structs.replace(entries[0], mode="realtime")
     older = msgspec.structs.replace(entries[0], run=msgspec.structs.replace(entries[0].run, code_sha256="56" * 32))
-    assert len(listing.board([*entries, other, older]).sections) == 3
+    assert len(listing.make_board([*entries, other, older]).sections) == 3
 
 
 def test_the_page_says_what_the_list_says_and_needs_nothing_else(whole: Path):
-    entries = [files.read(path) for path in files.entry_paths(whole)]
-    text = page.render(listing.board(entries, kept(*entries), admission.load(whole)))
+    entries = [files.read_entry(path) for path in files.entry_paths(whole)]
+    text = page.render(listing.make_board(entries, kept(*entries), admission.load_admission(whole)))
     for stranger in ("http:", "https:", "src=", "@import", "url(", "fetch"):
         assert stranger not in text
     for word in (
@@ -286,7 +288,7 @@ def test_the_page_says_what_the_list_says_and_needs_nothing_else(whole: Path):
         "n 20, could have seen",
     ):
         assert word in text
-    assert "no ranked entry yet" in page.render(listing.board([]))
+    assert "no ranked entry yet" in page.render(listing.make_board([]))
 
 
 @pytest.mark.skipif(shutil.which("chromium") is None, reason="Chromium is not installed")
@@ -304,31 +306,32 @@ def test_a_browser_shows_the_page_without_complaint(whole: Path, tmp_path: Path)
 @given(st.lists(st.integers(0, 2**24 - 1), min_size=1, max_size=40))
 def test_columns_come_back(values: list[int]):
     column = np.array(values)
-    assert column_packing.unnumbers(column_packing.numbers(column, 3), len(values), 3).tolist() == values
+    assert column_packing.unpack_numbers(column_packing.pack_numbers(column, 3), len(values), 3).tolist() == values
     odd = column % 2 == 1
-    assert (column_packing.unbits(column_packing.bits(odd), len(values)) == odd).all()
+    assert (column_packing.unpack_bits(column_packing.pack_bits(odd), len(values)) == odd).all()
     small = [value % column_packing.LABELS_MAX for value in values]
     assert (
-        column_packing.undigits(column_packing.digits(small), len(values), column_packing.LABELS_MAX).tolist() == small
+        column_packing.unpack_labels(column_packing.pack_labels(small), len(values), column_packing.LABELS_MAX).tolist()
+        == small
     )
 
 
 @given(st.lists(st.binary(max_size=6), min_size=1, max_size=12), st.data())
 def test_no_row_can_be_changed_moved_or_left_out(rows: list[bytes], data: st.DataObject):
-    root = merkle.root(rows)
+    root = trial_outcomes.merkle_root(rows)
     place = data.draw(st.integers(0, len(rows) - 1))
-    assert merkle.root([*rows[:place], rows[place] + b"x", *rows[place + 1 :]]) != root
-    assert merkle.root(rows[:place] + rows[place + 1 :]) != root
-    assert merkle.root([*rows, rows[place]]) != root
+    assert trial_outcomes.merkle_root([*rows[:place], rows[place] + b"x", *rows[place + 1 :]]) != root
+    assert trial_outcomes.merkle_root(rows[:place] + rows[place + 1 :]) != root
+    assert trial_outcomes.merkle_root([*rows, rows[place]]) != root
     turned = rows[::-1]
-    assert (merkle.root(turned) == root) == (turned == rows)
+    assert (trial_outcomes.merkle_root(turned) == root) == (turned == rows)
 
 
 def test_what_an_entry_says_of_people_is_how_they_were_dealt():
     for count in (1, 9, 20, 33):
         _, dealt = fakes.run_of(count)
         whose = [session.participant for session in dealt for _ in session.trials]
-        assert entry_metrics.people(count, len(dealt)) == whose
+        assert entry_metrics.trial_participants(count, len(dealt)) == whose
 
 
 # --------------------------------------------------------------------------------------------------- submissions
@@ -344,7 +347,7 @@ def handed_in(tmp_path: Path) -> Path:
 
 
 def test_a_submission_is_read(handed_in: Path):
-    found = submission.read(handed_in)
+    found = submission.read_submission(handed_in)
     assert (found.name, found.agent.name, found.agent.deterministic) == ("mine", "My agent", True)
 
 
@@ -377,18 +380,18 @@ SPOILT: dict[str, tuple[Callable[[Path], object], str]] = {
 def test_what_is_no_submission_is_refused(handed_in: Path, how: str):
     spoil, told = SPOILT[how]
     spoil(handed_in)
-    assert any(told in one.line for one in submission.problems(handed_in))
+    assert any(told in one.line for one in submission.submission_problems(handed_in))
     with pytest.raises(HthorError, match="mine"):
-        submission.read(handed_in)
+        submission.read_submission(handed_in)
 
 
 def test_names_of_submissions(handed_in: Path):
     other = handed_in.rename(handed_in.with_name("Mine !"))
-    assert any("cannot be a submission's name" in one.problem for one in submission.problems(other))
+    assert any("cannot be a submission's name" in one.problem for one in submission.submission_problems(other))
 
 
 def test_the_entry_is_of_the_file_that_was_handed_in(handed_in: Path, runs: Path, tmp_path: Path):
-    played = submission.listed(handed_in)
+    played = submission.list_files(handed_in)
     mine = shutil.copytree(runs, tmp_path / "runs") / "helper"
     plan = RunFolder(mine).config
     ref = plan.robots[0].agent
@@ -397,20 +400,20 @@ def test_the_entry_is_of_the_file_that_was_handed_in(handed_in: Path, runs: Path
     jsonio.write(mine / "run.json", jsonio.pretty(plan))
     board = committed(tmp_path / "board")
     ((entry, path), *_) = [
-        one for one in enter.add(mine, board, submission.read(handed_in)) if one[0].submission == "mine"
+        one for one in enter.add_runs(mine, board, submission.read_submission(handed_in)) if one[0].submission == "mine"
     ]
     assert entry.files == played
     assert entry.agents == plan.agents
-    assert not board_check.problems(board, [path], submissions=handed_in.parent)
+    assert not board_check.check_board(board, [path], submissions=handed_in.parent)
     (handed_in / "agent.py").write_text("class Agent: pass\n")
-    with pytest.raises(files.BoardError, match=r"agents\[0\]\.files: is not what lies in .*agent\.py is another file"):
-        enter.add(mine, board, submission.read(handed_in))
-    found = board_check.problems(board, [path], submissions=handed_in.parent)
+    with pytest.raises(files.BoardError, match=r"agents\[0\]\.files: is not what is in .*agent\.py is another file"):
+        enter.add_runs(mine, board, submission.read_submission(handed_in))
+    found = board_check.check_board(board, [path], submissions=handed_in.parent)
     assert [(one.field, "agent.py has changed" in one.problem) for one in found] == [("files", True)]
-    files.write(path, msgspec.structs.replace(entry, files=entry.files[1:]))
-    assert "agents[0].files" in {one.field for one in board_check.problems(board, [path])}
-    files.write(path, msgspec.structs.replace(entry, agents=()))
-    assert "agents" in {one.field for one in board_check.problems(board, [path])}
+    files.write_document(path, msgspec.structs.replace(entry, files=entry.files[1:]))
+    assert "agents[0].files" in {one.field for one in board_check.check_board(board, [path])}
+    files.write_document(path, msgspec.structs.replace(entry, agents=()))
+    assert "agents" in {one.field for one in board_check.check_board(board, [path])}
 
 
 def _zipped(folder: Path, path: Path) -> Path:
@@ -430,10 +433,10 @@ def _tarred(folder: Path, path: Path) -> Path:
 def test_an_archive_is_the_same_submission_as_its_folder(handed_in: Path, tmp_path: Path):
     (handed_in / "weights").mkdir()
     (handed_in / "weights" / "net.bin").write_bytes(bytes(range(256)) * 99)
-    wanted = submission.read(handed_in)
+    wanted = submission.read_submission(handed_in)
     for path in (_zipped(handed_in, tmp_path / "mine.zip"), _tarred(handed_in, tmp_path / "mine.tar.gz")):
-        with submission.unpacked(path) as folder:
-            found = submission.read(folder)
+        with submission.submission_folder(path) as folder:
+            found = submission.read_submission(folder)
             assert (found.name, found.files, found.agent) == (wanted.name, wanted.files, wanted.agent)
         assert not folder.exists()
 

@@ -19,7 +19,7 @@ from hthor.eval.statistics.intervals import NOTHING, Estimate
 from hthor.leaderboard import canonical_form
 from hthor.leaderboard.entries import files
 from hthor.leaderboard.entries.entry import Agent, Entry, Group, Harness
-from hthor.leaderboard.entries.verification import Fresh, Kept
+from hthor.leaderboard.entries.verification import Fresh, KeeperRecords
 from hthor.leaderboard.page import page
 from hthor.leaderboard.ranking import admission, listing
 from hthor.leaderboard.ranking.board import Board, Struck
@@ -52,7 +52,7 @@ def hostile(value, name: str = "", within: str = ""):
 
 def boards(whole: Path) -> Board:
     """A board that shows everything that there is to show."""
-    entries = [files.read(path) for path in files.entry_paths(whole)]
+    entries = [files.read_entry(path) for path in files.entry_paths(whole)]
     some = Estimate(mean=0.5, ci95=(0.4, 0.6), n=20, mde80=0.1)
     fresh = Fresh(
         suite="0" * 64, n=20, sr=some, twsr=some, claimed_sr=0.9, claimed_twsr=0.8, fell=True, detectable=0.1, why="x"
@@ -62,7 +62,7 @@ def boards(whole: Path) -> Board:
     told = [msgspec.structs.replace(one, agent=about) if one.agent.name == "helper" else one for one in entries]
     for one in told:
         held[one.id] = verified(one, fresh=fresh)
-    found = listing.board(told, Kept(verifications=held, refutations=()), admission.load(whole))
+    found = listing.make_board(told, KeeperRecords(verifications=held, refutations=()), admission.load_admission(whole))
     return msgspec.structs.replace(found, refuted=(Struck(id="i", name="n", why="w"),))
 
 
@@ -156,7 +156,7 @@ def test_text_is_text_wherever_it_stands(inside: str, attribute: str):
     ],
 )
 def test_the_schema_takes_no_such_values(whole: Path, tmp_path: Path, field: str, value: object):
-    entry: Entry = files.read(next(path for path in files.entry_paths(whole) if path.name.startswith("helper")))
+    entry: Entry = files.read_entry(next(path for path in files.entry_paths(whole) if path.name.startswith("helper")))
     path = tmp_path / f"{entry.id}.json"
-    files.write(path, msgspec.structs.replace(entry, **{field: value}))
-    assert [one.field.partition(".")[0] for one in canonical_form.problems(path)] == [field]
+    files.write_document(path, msgspec.structs.replace(entry, **{field: value}))
+    assert [one.field.partition(".")[0] for one in canonical_form.form_problems(path)] == [field]

@@ -17,7 +17,7 @@ from hthor.eval.records import trial_record
 from hthor.leaderboard import enter, publish
 from hthor.leaderboard.entries import files
 from hthor.leaderboard.entries.entry import Entry
-from hthor.leaderboard.entries.verification import Kept, Replayed, Verification
+from hthor.leaderboard.entries.verification import KeeperRecords, Replayed, Verification
 from hthor.leaderboard.ranking import admission
 from hthor.tasks.suites.commitment import Commitment
 from hthor.types import AgentRef
@@ -77,8 +77,10 @@ def committed(board: Path) -> Path:
         name="fake", salt="0" * 64, houses=3, tasks=COUNT, suite_sha256=suite.sha256, files={}, made_with={}
     )
     jsonio.write(board / "suites" / "fake.json", jsonio.pretty(made))
-    who = admission.Named(name="proxy", sha256=fakes.persons().sha256)
-    files.write(board / admission.NAME, msgspec.structs.replace(admission.opened(board, made), people=(who,)))
+    who = admission.Admitted(name="proxy", sha256=fakes.persons().sha256)
+    files.write_document(
+        board / admission.NAME, msgspec.structs.replace(admission.extended_admission(board, made), people=(who,))
+    )
     return board
 
 
@@ -90,8 +92,8 @@ def whole(runs: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def filled(runs: Path, folder: Path) -> Path:
     """A board with these runs."""
     board = committed(folder)
-    enter.add(runs, board)
-    publish.build(board)
+    enter.add_runs(runs, board)
+    publish.build_board(board)
     return board
 
 
@@ -121,6 +123,6 @@ def verified(entry: Entry, /, **changed) -> Verification:
     return Verification(**{**given, "platform": "0" * 64, **changed})
 
 
-def kept(*entries: Entry) -> Kept:
+def kept(*entries: Entry) -> KeeperRecords:
     """What a keeper wrote who verified these entries."""
-    return Kept(verifications={one.id: verified(one) for one in entries}, refutations=())
+    return KeeperRecords(verifications={one.id: verified(one) for one in entries}, refutations=())

@@ -8,7 +8,8 @@ import numpy as np
 
 from hthor import seeds
 from hthor.calibration.simulation import design_points, studies, trial_table
-from hthor.calibration.simulation.trial_table import CONDITIONS, Table
+from hthor.calibration.simulation.trial_table import Table
+from hthor.calibration.targets import CONDITIONS
 from hthor.eval.config.sessions import assign_tasks
 from hthor.humans.population import parameter_registry
 
@@ -39,22 +40,22 @@ def trials(where: np.ndarray, condition: np.ndarray, task: np.ndarray, chance: n
 
 
 def sessions(where, suite, seed, folder, jobs, watch, name) -> Table:
-    """In place of `simulate.at`."""
-    spots = design_points.tidy(where)
+    """In place of `simulate.simulate_sessions`."""
+    spots = design_points.round_points(where)
     rows = np.repeat(np.arange(len(spots)), 10)
     return _table(spots, suite, seed, name, np.full(len(rows), -1), rows, rows, (rows + rows // 3) % 3, rows)
 
 
 def whole(where, suite, seed, folder, jobs, watch, name, design) -> Table:
-    """In place of `studies.at`."""
-    spots = design_points.tidy(where)
+    """In place of `studies.simulate_studies`."""
+    spots = design_points.round_points(where)
     people = design.people * len(CONDITIONS)
     study = np.repeat(np.arange(len(spots)), people * 10)
     person = np.tile(np.repeat(np.arange(people), 10), len(spots))
     made = _table(spots, suite, seed, name, study, person, study, person // design.people, person)
-    valid, counted = studies.kept(made, seed, name, design)
-    columns = {column: getattr(made, column) for column in trial_table.TRIAL}
-    return trial_table.build(NAMES, spots, {**columns, "valid": valid, "counted": counted})
+    valid, counted = studies.select_counted(made, seed, name, design)
+    columns = {column: getattr(made, column) for column in trial_table.COLUMNS}
+    return trial_table.build_table(NAMES, spots, {**columns, "valid": valid, "counted": counted})
 
 
 def _table(spots, suite, seed, name, study, number, point, condition, person) -> Table:
@@ -74,7 +75,7 @@ def _table(spots, suite, seed, name, study, number, point, condition, person) ->
         "counted": condition > 0,
         **trials(spots[point], condition, task, chance),
     }
-    return trial_table.build(NAMES, spots, columns)
+    return trial_table.build_table(NAMES, spots, columns)
 
 
 def nowhere(folder: Path) -> Path:

@@ -8,7 +8,8 @@ from msgspec import Struct
 from hthor import seeds
 from hthor.calibration.emulator.emulator import Rates
 from hthor.calibration.simulation import trial_table
-from hthor.calibration.simulation.trial_table import CONDITIONS, Table
+from hthor.calibration.simulation.trial_table import Table
+from hthor.calibration.targets import CONDITIONS
 from hthor.humans.population import parameter_registry
 
 NAMES = parameter_registry.free_parameter_names()
@@ -125,4 +126,4 @@ def _played(where: np.ndarray, study: np.ndarray, point: np.ndarray, condition: 
         "valid": valid,
         "counted": counted,
     }
-    return trial_table.build(NAMES, where, columns)
+    return trial_table.build_table(NAMES, where, columns)

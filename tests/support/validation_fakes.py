@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from hthor.calibration.pipeline import evidence as ev
+from hthor.calibration import evidence as ev
 from hthor.calibration.simulation import trial_table as tables
-from hthor.calibration.simulation.trial_table import CONDITIONS, Table
+from hthor.calibration.simulation.trial_table import Table
+from hthor.calibration.targets import CONDITIONS
 from hthor.humans.population import parameter_registry
 
 LEAST = np.linspace(20.0, 50.0, 30)
@@ -52,8 +53,8 @@ def trials(people: int = 12, seed: int = 0, sr: dict[str, float] = RATES, adopts
                         "counted": number > 0,
                     }
                 )
-    columns = {name: [row[name] for row in rows] for name in tables.TRIAL}
-    return tables.build(("none",), np.zeros((1, 1)), columns)
+    columns = {name: [row[name] for row in rows] for name in tables.COLUMNS}
+    return tables.build_table(("none",), np.zeros((1, 1)), columns)
 
 
 def band(middle: float, half: float) -> ev.Band:
@@ -77,7 +78,7 @@ def evidence(figures: dict[str, float], seed: int = 1) -> ev.Evidence:
             effective=640.0,
         ),
         predictive=tuple(
-            ev.Predictive(
+            ev.PredictedFigure(
                 figure=name,
                 prior=band(0.5, 0.35),
                 posterior=band(value - 0.01, 0.12),
@@ -86,11 +87,11 @@ def evidence(figures: dict[str, float], seed: int = 1) -> ev.Evidence:
             for name, value in figures.items()
         ),
         held_out=tuple(
-            ev.HeldOut(
+            ev.HeldOutCondition(
                 condition=condition,
                 fitted=others[condition],
                 figures=tuple(
-                    ev.HeldFigure(figure=name, published=value, band=band(value + 0.03, 0.10))
+                    ev.HeldOutFigure(figure=name, published=value, band=band(value + 0.03, 0.10))
                     for name, value in figures.items()
                     if name.endswith(condition)
                 ),
@@ -121,10 +122,10 @@ def evidence(figures: dict[str, float], seed: int = 1) -> ev.Evidence:
             for one in parameter_registry.PARAMETERS
             if one.prior is not None
         ),
-        coverage=ev.Coverage(studies=240, mean=0.902, low=0.87, high=0.94),
+        coverage=ev.CoverageFinding(studies=240, mean=0.902, low=0.87, high=0.94),
         emulator_z=1.03,
         emulated=tuple(
-            ev.Emulated(
+            ev.EmulatorFit(
                 outcome=outcome,
                 condition=condition,
                 z_sd=1.0 + 0.02 * number,
@@ -139,12 +140,12 @@ def evidence(figures: dict[str, float], seed: int = 1) -> ev.Evidence:
             if outcome == "success" or condition != "none"
         ),
         abc=tuple(
-            ev.Shift(name=one.name, shift=float(chance.normal(0, 0.15)))
+            ev.AbcShift(name=one.name, shift=float(chance.normal(0, 0.15)))
             for one in parameter_registry.PARAMETERS
             if one.fitted
         ),
         rankings=(
-            ev.Ranking(
+            ev.RobotRanking(
                 suite="paper",
                 draws=2000,
                 trials=600,
@@ -152,7 +153,7 @@ def evidence(figures: dict[str, float], seed: int = 1) -> ev.Evidence:
                 twsr=0.985,
                 both=0.96,
                 swings=tuple(
-                    ev.Swing(
+                    ev.ParameterSwing(
                         name=one.name,
                         better=better,
                         worse=worse,

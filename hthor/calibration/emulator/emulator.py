@@ -1,9 +1,9 @@
-"""Foretells what people do without simulating them: rates of every condition at any point of the prior. It is trained
-on single trials and averages over people, tasks and the order of trials by not being told of them: sessions are
-dealt evenly, so that nothing is lost by it but noise.
+"""Predicts what people do without simulating them: rates of every condition at any point of the prior.
 
-The mean of a committee's members foretells; how far they disagree says how well, up to a factor that is found on
-studies that no member has seen (`hthor.calibration.inference.design_effects`).
+It is trained on single trials and averages over people, tasks and the order of trials because these are not among its
+inputs: sessions are assigned evenly, so nothing is lost by it except precision. The mean of an ensemble's members is
+the prediction; how far they disagree says how good it is, up to a factor that is estimated on studies that no member
+has seen (`hthor.calibration.inference.design_effects`).
 """
 
 from __future__ import annotations
@@ -17,8 +17,9 @@ from msgspec import Struct
 from hthor.calibration.emulator import ensemble, outcomes
 from hthor.calibration.emulator.ensemble import MEMBERS
 from hthor.calibration.emulator.mlp import Network
-from hthor.calibration.emulator.single_thread import alone
-from hthor.calibration.simulation.trial_table import CONDITIONS, Table
+from hthor.calibration.emulator.single_thread import single_thread
+from hthor.calibration.simulation.trial_table import Table
+from hthor.calibration.targets import CONDITIONS
 
 Array = np.ndarray[Any, Any]
 
@@ -30,8 +31,8 @@ class Rates(Struct, frozen=True, kw_only=True, eq=False):
 
     Attributes:
         sr: chance of success. ratio: mean of T*/max(T*, T) over successes. ratio_sd: its spread between successes.
-        adoption: chance that a robot's message is confirmed.
-        sr_se, ratio_se, adoption_se: how far the committee disagrees, sd of a member's answer.
+        adoption: chance that a robot's message is accepted.
+        sr_se, ratio_se, adoption_se: how far the ensemble disagrees, sd of a member's prediction.
     """
 
     sr: Array
@@ -50,61 +51,42 @@ class Rates(Struct, frozen=True, kw_only=True, eq=False):
         """(N, 3) success weighted by time."""
         return self.sr * self.ratio
 
-    def take(self, rows: Array) -> Rates:
-        """The same at some of the points."""
-        return Rates(**{name: getattr(self, name)[rows] for name in self.__struct_fields__})
-
 
 class Emulator(Struct, frozen=True, kw_only=True, eq=False):
-    """Committees of networks: ``doing`` for success and time, ``listening`` for messages.
-
-    ``names`` are the parameters of the points; ``trials`` and ``sessions`` what it was trained on.
-    """
+    """Ensembles of networks: ``success`` for success and time, ``messages`` for adoption; ``names`` are parameters."""
 
     names: tuple[str, ...]
-    doing: tuple[Network, ...]
-    listening: tuple[Network, ...]
-    trials: int
-    sessions: int
+    success: tuple[Network, ...]
+    messages: tuple[Network, ...]
 
     def rates(self, points: Array) -> Rates:
         """What to expect of the populations at points (N, P) of the unit cube."""
-        with alone():
-            parts = [self._rates(chunk) for chunk in _chunks(points)]
-        return Rates(**{name: np.concatenate([getattr(p, name) for p in parts]) for name in Rates.__struct_fields__})
+        with single_thread():
+            return join_rates([self._rates(chunk) for chunk in _chunks(points)])
 
     def _rates(self, points: Array) -> Rates:
         columns: dict[str, list[Array]] = {name: [] for name in Rates.__struct_fields__}
-        for place, condition in enumerate(CONDITIONS):
-            told = outcomes.inputs(points, place)
-            done = [outcomes.rates(member(told, outcomes.WORTHY)) for member in self.doing]
-            sr, ratio, spread = (np.array(part) for part in zip(*done, strict=True))
-            alone = condition == CONDITIONS[0]
-            heard = [np.zeros(len(points)) if alone else member(told, 1)[:, 0] for member in self.listening]
-            adoption = np.array(heard)
-            for name, members in (("sr", sr), ("ratio", ratio), ("adoption", adoption)):
-                columns[name].append(members.mean(axis=0))
-                columns[f"{name}_se"].append(members.std(axis=0, ddof=1))
+        for number, condition in enumerate(CONDITIONS):
+            inputs = outcomes.network_inputs(points, number)
+            members = [outcomes.success_rates(member(inputs, outcomes.SUCCESS_QUESTIONS)) for member in self.success]
+            sr, ratio, spread = (np.array(part) for part in zip(*members, strict=True))
+            if condition == CONDITIONS[0]:
+                adoption = np.zeros((len(self.messages), len(points)))
+            else:
+                adoption = np.array([member(inputs, 1)[:, 0] for member in self.messages])
+            for name, predictions in (("sr", sr), ("ratio", ratio), ("adoption", adoption)):
+                columns[name].append(predictions.mean(axis=0))
+                columns[f"{name}_se"].append(predictions.std(axis=0, ddof=1))
             columns["ratio_sd"].append(spread.mean(axis=0))
         return Rates(**{name: np.stack(parts, axis=1) for name, parts in columns.items()})
 
-    def quartiles(self, points: Array, shares: tuple[float, ...] = (0.25, 0.5, 0.75)) -> Array:
-        """(N, 3, len(shares)) quantiles of the time spent on a trial [s]; a failure takes the whole time limit."""
-        found = []
-        for place in range(len(CONDITIONS)):
-            told = outcomes.inputs(points, place)
-            with alone():
-                answers = np.mean([member(told) for member in self.doing], axis=0)
-            found.append(outcomes.quartiles(answers, shares))
-        return np.stack(found, axis=1)
 
-
-def fit(table: Table, least: Array, seed: int = 0, members: int = MEMBERS) -> Emulator:
+def fit_emulator(table: Table, t_star: Array, seed: int = 0, members: int = MEMBERS) -> Emulator:
     """An emulator of the trials of a table. Points of any density will do: it learns what follows from a point.
 
     Args:
         table: sessions; each should have a point of its own.
-        least: T* [s] by task.
+        t_star: T* [s] by task.
         seed: of the networks.
 
     Raises:
@@ -112,18 +94,22 @@ def fit(table: Table, least: Array, seed: int = 0, members: int = MEMBERS) -> Em
         ValueError: with fewer than two members, or fewer points than members.
     """
     if members < 2 or len(np.unique(table.point)) < members:
-        raise ValueError(f"a committee needs two members and a point for each, got {members} members")
-    told = outcomes.inputs(table.unit(), table.condition)
+        raise ValueError(f"an ensemble needs two members and a point for each, got {members} members")
+    inputs = outcomes.network_inputs(table.unit(), table.condition)
     robots, width = table.condition > 0, len(table.names)
+    success, messages = outcomes.success_outcomes(table, t_star), outcomes.message_outcomes(table)[robots]
     return Emulator(
         names=table.names,
-        doing=ensemble.fit(told, outcomes.doing(table, least), table.point, width, seed, "doing", members),
-        listening=ensemble.fit(
-            told[robots], outcomes.listening(table)[robots], table.point[robots], width, seed, "listening", members
+        success=ensemble.fit_ensemble(inputs, success, table.point, width, seed, "doing", members),
+        messages=ensemble.fit_ensemble(
+            inputs[robots], messages, table.point[robots], width, seed, "listening", members
         ),
-        trials=len(table),
-        sessions=len(np.unique(np.column_stack([table.study, table.session, table.point]), axis=0)),
     )
+
+
+def join_rates(parts: list[Rates]) -> Rates:
+    """The rates at the points of all parts, one after the other."""
+    return Rates(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in Rates.__struct_fields__})
 
 
 def _chunks(points: Array) -> Iterator[Array]:

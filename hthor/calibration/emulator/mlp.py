@@ -1,4 +1,4 @@
-"""Small networks that foretell several yes-or-no outcomes at once."""
+"""Small networks that predict several yes-or-no outcomes at once."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from msgspec import Struct
 
-from hthor.calibration.emulator.single_thread import alone
+from hthor.calibration.emulator.single_thread import single_thread
 from hthor.errors import MissingExtra
 
 Array = np.ndarray[Any, Any]
@@ -34,20 +34,20 @@ class Network(Struct, frozen=True, kw_only=True, eq=False):
 
     def __call__(self, inputs: Array, first: int | None = None) -> Array:
         """(N, K) float64 probabilities of K outcomes, or of the ``first`` of them, for inputs (N, F)."""
-        told = inputs.astype(np.float32)
-        return np.concatenate([self._run(told[at : at + _CHUNK], first) for at in range(0, max(1, len(told)), _CHUNK)])
+        rows = inputs.astype(np.float32)
+        return np.concatenate([self._run(rows[at : at + _CHUNK], first) for at in range(0, max(1, len(rows)), _CHUNK)])
 
-    def _run(self, held: Array, first: int | None) -> Array:
+    def _run(self, layer: Array, first: int | None) -> Array:
         for weight, bias in zip(self.weights[:-1], self.biases[:-1], strict=True):
-            held = held @ weight
-            held += bias
-            np.maximum(held, 0.0, out=held)
-        logits = held @ self.weights[-1][:, :first] + self.biases[-1][:first]
+            layer = layer @ weight
+            layer += bias
+            np.maximum(layer, 0.0, out=layer)
+        logits = layer @ self.weights[-1][:, :first] + self.biases[-1][:first]
         chance: Array = (1.0 / (1.0 + np.exp(-np.clip(logits, -30.0, 30.0)))).astype(np.float64)
         return chance
 
 
-def fit(inputs: Array, outcomes: Array, seed: int, scale: Array | None = None, epochs: int = EPOCHS) -> Network:
+def fit_network(inputs: Array, outcomes: Array, seed: int, scale: Array | None = None, epochs: int = EPOCHS) -> Network:
     """A network for inputs (N, F) and outcomes (N, K) of 0 and 1, K at least 2.
 
     Args:
@@ -62,7 +62,7 @@ def fit(inputs: Array, outcomes: Array, seed: int, scale: Array | None = None, e
         from sklearn.neural_network import MLPClassifier
     except ImportError:
         raise MissingExtra("calibration", "calibration") from None
-    weighed = np.ones(inputs.shape[1]) if scale is None else scale
+    weights = np.ones(inputs.shape[1]) if scale is None else scale
     model = MLPClassifier(
         hidden_layer_sizes=HIDDEN,
         alpha=ALPHA,
@@ -72,12 +72,12 @@ def fit(inputs: Array, outcomes: Array, seed: int, scale: Array | None = None, e
         tol=0.0,
         random_state=seed % 2**32,
     )
-    with warnings.catch_warnings(), alone():
+    with warnings.catch_warnings(), single_thread():
         warnings.simplefilter("ignore", ConvergenceWarning)
-        model.fit((inputs * weighed).astype(np.float32), outcomes.astype(np.int64))
+        model.fit((inputs * weights).astype(np.float32), outcomes.astype(np.int64))
     first, *others = (weight.astype(np.float32) for weight in model.coefs_)
     biases = tuple(bias.astype(np.float32) for bias in model.intercepts_)
-    return Network(weights=(first * weighed[:, None].astype(np.float32), *others), biases=biases)
+    return Network(weights=(first * weights[:, None].astype(np.float32), *others), biases=biases)
 
 
 def sensitivity(networks: list[Network], inputs: Array, step: float = 0.1) -> Array:

@@ -8,7 +8,7 @@ from typing import Any
 from hthor.errors import MissingExtra
 
 
-def alone() -> AbstractContextManager[Any]:
+def single_thread() -> AbstractContextManager[Any]:
     """A context in which numerical libraries use one thread.
 
     Raises:

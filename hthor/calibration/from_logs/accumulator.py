@@ -1,4 +1,4 @@
-"""Where estimates are gathered: trials in, estimates and spreads out."""
+"""Collects estimates of parameters and of the spread between people, one estimator after the other."""
 
 from __future__ import annotations
 
@@ -14,94 +14,96 @@ from hthor.calibration.from_logs.models import timing_models
 from hthor.calibration.from_logs.models.mixed_effects import Array, Fit
 from hthor.calibration.from_logs.models.priors import Belief
 from hthor.calibration.from_logs.models.timing_models import SPREAD, Sample
-from hthor.calibration.from_logs.trial_features import Reduced
+from hthor.calibration.from_logs.trial_features import TrialFeatures
 from hthor.humans.population.parameter_registry import parameter
 
 _CAPPED = 0.985
-"""Who comes so near to what the device allows might be faster without it."""
+"""Measurements this near to what the device allows are lower bounds: the person might be faster without it."""
 _LEAST_SE = 1e-3
 
 
-class Desk:
-    """The trials, what was believed of each parameter, and what was ``found``.
+class EstimateCollector:
+    """The trials, the prior belief about each parameter, and the ``estimates`` so far.
 
-    ``spreads`` are logarithms of ``sigma`` with their standard errors, one from each model with effects.
+    ``spreads`` are logarithms of ``sigma`` with their standard errors, one from each model with random effects.
     """
 
-    def __init__(self, trials: Sequence[Reduced], beliefs: dict[str, Belief]) -> None:
+    def __init__(self, trials: Sequence[TrialFeatures], beliefs: dict[str, Belief]) -> None:
         self.trials, self.beliefs = trials, beliefs
-        self.found: dict[str, Estimate] = {}
+        self.estimates: dict[str, Estimate] = {}
         self.spreads: list[tuple[float, float]] = []
         self.people = len({one.person for one in trials})
 
-    def keep(self, names: Sequence[str], fit: Fit, n: int, method: str) -> None:
-        """These terms of a model are estimates."""
+    def add(self, names: Sequence[str], fit: Fit, n: int, method: str) -> None:
+        """Keep these terms of a fitted model as estimates."""
         for name in names:
-            self.found[name] = estimate.of_fit(self.beliefs[name], fit, n, method)
+            self.estimates[name] = estimate.estimate_from_fit(self.beliefs[name], fit, n, method)
 
     def spread(self, name: str, fit: Fit) -> None:
-        """How much people differ in this parameter tells how much they differ in all."""
+        """Note the spread between people in this parameter, as one measurement of ``sigma``."""
         log, se = fit.value[SPREAD], fit.se[SPREAD]
         self.spreads.append((log - math.log(parameter(name).effect), se))
-        if name in self.found:
-            self.found[name] = msgspec.structs.replace(self.found[name], between=(math.exp(log), se))
+        if name in self.estimates:
+            self.estimates[name] = msgspec.structs.replace(self.estimates[name], between=(math.exp(log), se))
 
-    def capped(self, rows: Sequence[tuple[float, Reduced, float]]) -> Sample:
-        """Numbers of trials with the most that the device allows; those near that are lower bounds."""
-        return timing_models.sample([(y, one.person, one.index, int(y >= _CAPPED * most)) for y, one, most in rows])
+    def capped(self, rows: Sequence[tuple[float, TrialFeatures, float]]) -> Sample:
+        """A sample of (value, trial, most that the device allows); values near that are lower bounds."""
+        return timing_models.make_sample(
+            [(y, one.person, one.index, int(y >= _CAPPED * most)) for y, one, most in rows]
+        )
 
     def median(self, name: str, values: Sequence[float], method: str, *, least: float) -> None:
-        """A number that is the same for everybody, where some measurements are wrong altogether.
+        """Estimate a number that is the same for everybody by its median, as some measurements are plainly wrong.
 
         Args:
-            least: how exact such a measurement can be at best, in the parameter's unit, however many there are.
+            least: the least error that such a measurement can have, in the parameter's unit, however many there are.
         """
-        held = np.array([value for value in values if math.isfinite(value) and value > 0.0])
-        if len(held):
-            middle = float(np.median(held))
-            deviation = 1.4826 * float(np.median(np.abs(held - middle))) if len(held) > 1 else middle
-            error = math.hypot(1.2533 * deviation / math.sqrt(len(held)), least)
-            self._settle(name, middle, error, len(held), method)
+        finite = np.array([value for value in values if math.isfinite(value) and value > 0.0])
+        if len(finite):
+            middle = float(np.median(finite))
+            deviation = 1.4826 * float(np.median(np.abs(finite - middle))) if len(finite) > 1 else middle
+            error = math.hypot(1.2533 * deviation / math.sqrt(len(finite)), least)
+            self._combine(name, middle, error, len(finite), method)
 
     def rate(self, name: str, total: float, count: int, method: str, *, least: float) -> None:
-        """The mean time from one event to the next, of events that come at random; ``least`` is relative."""
+        """Estimate the mean time from one event to the next, of events at random times; ``least`` is relative."""
         if count and total > 0.0:
             every = total / count
-            self._settle(name, every, every * math.hypot(count**-0.5, least), count, method)
+            self._combine(name, every, every * math.hypot(count**-0.5, least), count, method)
 
     def share(self, name: str, hits: int, count: int, method: str) -> None:
-        """The chance of a hit."""
+        """Estimate the probability of a hit."""
         if count:
             share = (hits + 0.5) / (count + 1.0)
-            self._settle(name, share, math.sqrt(share * (1.0 - share) / count), count, method)
+            self._combine(name, share, math.sqrt(share * (1.0 - share) / count), count, method)
 
     def between_people(self) -> None:
-        """``sigma`` from all the spreads, each as good as it is exact."""
+        """Estimate ``sigma`` from all the spreads, weighted by their precision."""
         if not self.spreads:
             return
         logs, errors = (np.array(part) for part in zip(*self.spreads, strict=True))
         weights = 1.0 / np.maximum(errors, 0.05) ** 2
         at, se = float((weights * logs).sum() / weights.sum()), float(weights.sum() ** -0.5)
         value = math.exp(at)
-        self._settle("sigma", value, value * se, self.people, f"spreads of {len(logs)} mixed models")
+        self._combine("sigma", value, value * se, self.people, f"spreads of {len(logs)} mixed models")
 
-    def _settle(self, name: str, value: float, se: float, n: int, method: str) -> None:
-        """A value with its error in the parameter's own unit, brought together with what was believed before."""
+    def _combine(self, name: str, value: float, se: float, n: int, method: str) -> None:
+        """Combine a value and its error, in the parameter's own unit, with the prior belief."""
         belief = self.beliefs[name]
         at, slope = _on(value, belief)
         error = max(abs(slope) * se, _LEAST_SE)
         weight, before = 1.0 / error**2, 1.0 / belief.sd**2
         mean = (weight * at + before * belief.mean) / (weight + before)
-        self.found[name] = estimate.of(belief, mean, (weight + before) ** -0.5, n, method)
+        self.estimates[name] = estimate.make_estimate(belief, mean, (weight + before) ** -0.5, n, method)
 
 
-def numbers(people: Sequence[int]) -> Array:
-    """People numbered anew, from 0."""
+def renumber(people: Sequence[int]) -> Array:
+    """The people's numbers, replaced by consecutive ones from 0."""
     return np.unique(np.array(people), return_inverse=True)[1].astype(int)
 
 
 def _on(value: float, belief: Belief) -> tuple[float, float]:
-    """The value on the belief's scale, and the scale's slope there."""
+    """The value on the belief's scale, and the slope of the scale there."""
     if belief.scale == "log":
         return math.log(value), 1.0 / value
     if belief.scale == "logit":

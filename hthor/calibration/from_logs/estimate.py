@@ -1,15 +1,15 @@
-"""One parameter as logs tell it: value, error, how much data, by which method."""
+"""One parameter estimated from logs: value, error, amount of data, method."""
 
 from __future__ import annotations
 
 from msgspec import Struct
 
 from hthor.calibration.from_logs.models.mixed_effects import Fit
-from hthor.calibration.from_logs.models.priors import Belief, Scale, off, on
+from hthor.calibration.from_logs.models.priors import Belief, Scale, from_scale, to_scale
 
 _Z90 = 1.6449
 _LEAST_SHARE = 0.25
-"""Of the data that an estimate needs to be trusted: with less than this it is not used."""
+"""Share of the data in `NEEDS` below which an estimate is not used."""
 
 NEEDS: dict[str, tuple[int, str]] = {
     "v_pace": (12, "trials with a walk"),
@@ -42,15 +42,15 @@ NEEDS: dict[str, tuple[int, str]] = {
     "tau_s": (100, "ratings"),
     "sigma": (12, "people"),
 }
-"""How much of what each estimate needs before it may be relied on: about 15 % of error, by experience."""
+"""Data that each estimate needs to be reliable: its error is then about 15 %, by experience."""
 
 
 class Estimate(Struct, frozen=True, kw_only=True):
     """A parameter's value in its own unit; ``at`` and ``se`` are that value and its standard error on ``scale``.
 
-    ``low`` and ``high`` bound 90 % of it, ``n`` counts the data, ``needed`` of them are wanted. ``words`` says in words
-    how far it can be relied on. ``between`` is the standard deviation between people on the scale, with its standard
-    error relative to it, None where everybody is taken to be alike.
+    ``low`` and ``high`` bound a 90 % interval, ``n`` counts the data, ``needed`` is how many are wanted. ``words`` says
+    how reliable it is. ``between`` is the standard deviation between people on the scale, with its relative standard
+    error, None where no difference between people is modelled.
     """
 
     name: str
@@ -69,21 +69,20 @@ class Estimate(Struct, frozen=True, kw_only=True):
 
     @property
     def used(self) -> bool:
-        """Whether there were data enough to believe it rather than what was believed before."""
+        """Whether there were enough data to use it instead of the prior belief."""
         return self.n >= _LEAST_SHARE * self.needed
 
 
-def of(belief: Belief, at: float, se: float, n: int, method: str) -> Estimate:
-    """An estimate of a parameter of which something was believed.
+def make_estimate(belief: Belief, at: float, se: float, n: int, method: str) -> Estimate:
+    """An estimate of a parameter with a prior belief.
 
     Args:
-        at: value on the belief's scale, brought back to the prior's bounds when it is beyond them. se: its standard
-            error there.
+        at: value on the belief's scale, clipped to the prior's bounds. se: its standard error there.
     """
     needed, what = NEEDS[belief.name]
-    at = min(max(at, float(on(belief.low, belief.scale))), float(on(belief.high, belief.scale)))
+    at = min(max(at, float(to_scale(belief.low, belief.scale))), float(to_scale(belief.high, belief.scale)))
     value, low, high = (
-        min(max(float(off(at + z * se, belief.scale)), belief.low), belief.high) for z in (0.0, -_Z90, _Z90)
+        min(max(float(from_scale(at + z * se, belief.scale)), belief.low), belief.high) for z in (0.0, -_Z90, _Z90)
     )
     return Estimate(
         name=belief.name,
@@ -101,9 +100,9 @@ def of(belief: Belief, at: float, se: float, n: int, method: str) -> Estimate:
     )
 
 
-def of_fit(belief: Belief, fit: Fit, n: int, method: str) -> Estimate:
-    """The same, of the model's term of that name."""
-    return of(belief, fit.value[belief.name], fit.se[belief.name], n, method)
+def estimate_from_fit(belief: Belief, fit: Fit, n: int, method: str) -> Estimate:
+    """An estimate from a fitted model's term of the parameter's name."""
+    return make_estimate(belief, fit.value[belief.name], fit.se[belief.name], n, method)
 
 
 def _words(n: int, needed: int, what: str, se: float, prior_sd: float) -> str:

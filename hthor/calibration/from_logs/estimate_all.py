@@ -1,7 +1,7 @@
-"""Every parameter that logs measure directly, estimated from them one after the other; reads no files.
+"""Estimates every parameter that logs measure directly, one group after the other.
 
-What an earlier estimate has found is known to the later ones: the trust at which a message was answered comes from the
-ratings, practice from the pace.
+Later estimators use earlier estimates: the trust at which a message was answered comes from the ratings, practice
+from the pace.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 
 from hthor import rules
 from hthor.calibration.from_logs import estimate, trial_features
-from hthor.calibration.from_logs.accumulator import Desk, numbers
+from hthor.calibration.from_logs.accumulator import EstimateCollector, renumber
 from hthor.calibration.from_logs.estimate import Estimate
 from hthor.calibration.from_logs.load_sessions import Sessions
 from hthor.calibration.from_logs.models import (
@@ -27,7 +27,6 @@ from hthor.calibration.from_logs.models import (
 )
 from hthor.calibration.from_logs.models.mixed_effects import Array, Fit
 from hthor.calibration.from_logs.models.priors import Belief, Beliefs
-from hthor.errors import MissingExtra
 from hthor.humans.population.parameter_registry import parameter
 
 Tell = Callable[[str], None]
@@ -35,164 +34,156 @@ READING = "reading"
 """The name of the time from a message to its answer, of twelve words: the sum of ``t_notice`` and ``t_read``."""
 
 
-def everything(sessions: Sessions, beliefs: Beliefs, tell: Tell = lambda _: None) -> tuple[Estimate, ...]:
+def estimate_parameters(sessions: Sessions, beliefs: Beliefs, tell: Tell = lambda _: None) -> tuple[Estimate, ...]:
     """All estimates, in the registry's order, and `READING`.
 
     Args:
-        beliefs: what was believed before; priors where the logs tell little.
-        tell: told what is being estimated, for people who wait.
-
-    Raises:
-        MissingExtra: without scipy.
+        beliefs: the prior belief about each parameter, which decides where the logs say little.
+        tell: called with the name of each step, to report progress.
     """
-    _need_scipy()
-    desk = Desk(trial_features.reduce(sessions), dict(beliefs))
+    collector = EstimateCollector(trial_features.extract_features(sessions), dict(beliefs))
     for name, step in _STEPS.items():
         tell(name)
-        step(desk)
-    desk.between_people()
-    return tuple(desk.found[name] for name in (*beliefs, READING) if name in desk.found)
+        step(collector)
+    collector.between_people()
+    return tuple(collector.estimates[name] for name in (*beliefs, READING) if name in collector.estimates)
 
 
-def walking(desk: Desk) -> None:
-    """Pace with its practice, turning, starting, stopping, following a map."""
-    beliefs, walks = desk.beliefs, [(one, one.walk) for one in desk.trials if one.walk is not None]
-    pace = desk.capped([(w.pace, t, w.full) for t, w in walks])
+def estimate_walking(collector: EstimateCollector) -> None:
+    """Walking pace and its practice, turning, starting, stopping, and following a map."""
+    beliefs, walks = collector.beliefs, [(one, one.walk) for one in collector.trials if one.walk is not None]
+    pace = collector.capped([(w.pace, t, w.full) for t, w in walks])
     if len(pace.y):
         practice = beliefs["learn"].term()
-        fit = timing_models.log_normal(
+        fit = timing_models.fit_log_normal(
             pace, beliefs["v_pace"].term(), parameter("v_pace").effect, noise=0.03, practice=1, learn=practice
         )
-        desk.keep(("v_pace", "learn"), fit, len(pace.y), "median stick under way, mixed model")
-        desk.spread("v_pace", fit)
-    turns = desk.capped([(rate, t, w.fastest) for t, w in walks for rate in w.turns])
+        collector.add(("v_pace", "learn"), fit, len(pace.y), "median stick under way, mixed model")
+        collector.spread("v_pace", fit)
+    turns = collector.capped([(rate, t, w.fastest) for t, w in walks for rate in w.turns])
     if len(turns.y):
-        fit = timing_models.log_normal(turns, beliefs["omega"].term(), parameter("omega").effect, noise=0.05)
-        desk.keep(("omega",), fit, len(turns.y), "speed of turns over 45 degrees, mixed model")
-        desk.spread("omega", fit)
+        fit = timing_models.fit_log_normal(turns, beliefs["omega"].term(), parameter("omega").effect, noise=0.05)
+        collector.add(("omega",), fit, len(turns.y), "speed of turns over 45 degrees, mixed model")
+        collector.spread("omega", fit)
     stops = [stop for _, w in walks for stop in w.stops]
-    desk.median("t_on", [w.start for _, w in walks], "first move or turn", least=rules.TICK_S)
-    desk.rate("stop_every", sum(w.under_way for _, w in walks), len(stops), "time under way by stops", least=0.2)
-    desk.median("stop_s", stops, "standing still in a straight walk", least=rules.TICK_S / 2)
-    desk.median("k_map", [r for _, w in walks for r in w.guided], "pace after a confirmed message", least=0.02)
+    collector.median("t_on", [w.start for _, w in walks], "first move or turn", least=rules.TICK_S)
+    collector.rate("stop_every", sum(w.under_way for _, w in walks), len(stops), "time under way by stops", least=0.2)
+    collector.median("stop_s", stops, "standing still in a straight walk", least=rules.TICK_S / 2)
+    collector.median("k_map", [r for _, w in walks for r in w.guided], "pace after a confirmed message", least=0.02)
 
 
-def handling(desk: Desk) -> None:
-    """Length and misses of attempts with the hands; what takes the device's least time might be faster without it."""
-    attempts = [(one, attempt) for one in desk.trials for attempt in one.attempts]
+def estimate_manipulation(collector: EstimateCollector) -> None:
+    """Duration and misses of manipulation attempts; the least duration that the device allows is an upper bound."""
+    attempts = [(one, attempt) for one in collector.trials for attempt in one.attempts]
     if not attempts:
         return
     least = 1.01 * rules.HANDLING_S
-    data = timing_models.sample(
+    data = timing_models.make_sample(
         [(a.seconds, t.person, t.index, 1 if a.cut else -int(a.seconds <= least)) for t, a in attempts]
     )
-    practice = desk.found["learn"].value if "learn" in desk.found else desk.beliefs["learn"].middle
-    prior, effect = desk.beliefs["t_manip"].term(), parameter("t_manip").effect
-    fit = timing_models.log_normal(data, prior, effect, noise=0.35, practice=-1, learn=practice)
-    desk.keep(("t_manip",), fit, len(data.y), "attempt to outcome, mixed model")
-    desk.spread("t_manip", fit)
+    learn = collector.estimates.get("learn")
+    practice = collector.beliefs["learn"].middle if learn is None else learn.value
+    prior, effect = collector.beliefs["t_manip"].term(), parameter("t_manip").effect
+    fit = timing_models.fit_log_normal(data, prior, effect, noise=0.35, practice=-1, learn=practice)
+    collector.add(("t_manip",), fit, len(data.y), "attempt to outcome, mixed model")
+    collector.spread("t_manip", fit)
     ended = [attempt for _, attempt in attempts if not attempt.cut]
-    desk.share("p_fail", sum(attempt.missed for attempt in ended), len(ended), "misses among attempts")
+    collector.share("p_fail", sum(attempt.missed for attempt in ended), len(ended), "misses among attempts")
 
 
-def messages(desk: Desk) -> None:
+def estimate_messages(collector: EstimateCollector) -> None:
     """Noticing and reading messages."""
-    beliefs = dict(desk.beliefs)
-    rows = [(s, one.person, one.index, int(not seen)) for one in desk.trials for s, seen in one.noticings]
+    beliefs = dict(collector.beliefs)
+    rows = [(s, one.person, one.index, int(not seen)) for one in collector.trials for s, seen in one.noticings]
     if any(not censored for *_, censored in rows):
-        fit = reading_time.notice(rows, beliefs["t_notice"])
+        fit = reading_time.fit_noticing(rows, beliefs["t_notice"])
         beliefs["t_notice"] = msgspec.structs.replace(
             beliefs["t_notice"], mean=fit.value["t_notice"], sd=fit.se["t_notice"]
         )
-    read = [(one, each) for one in desk.trials for each in one.readings]
+    read = [(one, each) for one in collector.trials for each in one.readings]
     if not read:
         return
-    fit = reading_time.durations([each for _, each in read], numbers([t.person for t, _ in read]), beliefs)
+    fit = reading_time.fit_reading([each for _, each in read], renumber([t.person for t, _ in read]), beliefs)
     answers = sum(each.answered for _, each in read)
     method = "shown to answer, mixed model of two log-normals"
-    desk.keep(("t_notice", "t_read"), fit, answers, method)
-    desk.found[READING] = _whole(desk.beliefs, fit, answers, method)
-    desk.spread("t_read", fit)
+    collector.add(("t_notice", "t_read"), fit, answers, method)
+    collector.estimates[READING] = _reading_total(collector.beliefs, fit, answers, method)
+    collector.spread("t_read", fit)
 
 
-def trust_and_answers(desk: Desk) -> None:
-    """First trust and what moves it, by the ratings; then, at that trust, which messages were confirmed."""
+def estimate_trust(collector: EstimateCollector) -> None:
+    """Initial trust and what changes it, from the ratings; then, at that trust, which messages were accepted."""
     sessions: dict[int, list[int]] = {}
-    for number, one in enumerate(desk.trials):
+    for number, one in enumerate(collector.trials):
         sessions.setdefault(one.session, []).append(number)
-    rated = [own for own in sessions.values() if any(desk.trials[k].experience.rating for k in own)]
-    trust = np.full(len(desk.trials), desk.beliefs["mu0"].middle)
+    rated = [own for own in sessions.values() if any(collector.trials[k].experience.rating for k in own)]
+    trust = np.full(len(collector.trials), collector.beliefs["mu0"].middle)
     if rated:
-        data = trust_model.course(
-            [[desk.trials[k].experience for k in own] for own in rated],
-            numbers([desk.trials[own[0]].person for own in rated]),
+        data = trust_model.make_trust_data(
+            [[collector.trials[k].experience for k in own] for own in rated],
+            renumber([collector.trials[own[0]].person for own in rated]),
         )
-        fit = trust_model.dynamics(data, desk.beliefs)
+        fit = trust_model.fit_trust(data, collector.beliefs)
         ratings = int((data.rating > 0.0).sum())
-        desk.keep(trust_model.TERMS, fit, ratings, "ratings, hierarchical Beta law")
-        desk.spread("mu0", fit)
-        before, _ = trust_model.means(data, fit.value, fit.effects[data.person])
+        collector.add(trust_model.TERMS, fit, ratings, "ratings, hierarchical Beta law")
+        collector.spread("mu0", fit)
+        before, _ = trust_model.mean_trust(data, fit.value, fit.effects[data.person])
         for row, own in enumerate(rated):
             trust[own] = before[row, : len(own)]
-    _answers(desk, trust)
+    _answers(collector, trust)
 
 
-def _answers(desk: Desk, trust: Array) -> None:
-    offers = [(k, each) for k, one in enumerate(desk.trials) for each in one.offers]
+def _answers(collector: EstimateCollector, trust: Array) -> None:
+    offers = [(k, each) for k, one in enumerate(collector.trials) for each in one.offers]
     if not offers:
         return
     rows = [k for k, _ in offers]
-    people = numbers([desk.trials[k].person for k in rows])
-    fit = acceptance_model.regression([each for _, each in offers], trust[rows], people, desk.beliefs)
-    desk.keep(acceptance_model.TERMS, fit, len(offers), "confirmed or not, mixed logistic regression")
-    desk.spread("a0", fit)
+    people = renumber([collector.trials[k].person for k in rows])
+    fit = acceptance_model.fit_acceptance([each for _, each in offers], trust[rows], people, collector.beliefs)
+    collector.add(acceptance_model.TERMS, fit, len(offers), "confirmed or not, mixed logistic regression")
+    collector.spread("a0", fit)
 
 
-def choices(desk: Desk) -> None:
+def estimate_choices(collector: EstimateCollector) -> None:
     """Where people chose to search."""
-    made = [(one, each) for one in desk.trials for each in one.choices]
+    made = [(one, each) for one in collector.trials for each in one.choices]
     if made:
-        known = {name: _found(desk, name) for name in ("beta", "kappa", "w_prior", "t_dwell", "t_manip")}
-        people = numbers([t.person for t, _ in made])
-        fit = choice_model.conditional_logit([each for _, each in made], people, known)
-        desk.keep(("beta", "kappa", "w_prior"), fit, len(made), "where to search, conditional logit")
-        desk.spread("beta", fit)
+        known = {name: _current_belief(collector, name) for name in ("beta", "kappa", "w_prior", "t_dwell", "t_manip")}
+        people = renumber([t.person for t, _ in made])
+        fit = choice_model.fit_choices([each for _, each in made], people, known)
+        collector.add(("beta", "kappa", "w_prior"), fit, len(made), "where to search, conditional logit")
+        collector.spread("beta", fit)
 
 
-def seeing(desk: Desk) -> None:
-    """How fast people noticed what they looked for."""
-    seen = [(one, each) for one in desk.trials for each in one.exposures]
+def estimate_detection(collector: EstimateCollector) -> None:
+    """How fast people noticed what they were searching for."""
+    seen = [(one, each) for one in collector.trials for each in one.exposures]
     if seen:
-        fit = detection_model.regression([each for _, each in seen], numbers([t.person for t, _ in seen]), desk.beliefs)
-        desk.keep(("lam0", "a50", "clutter"), fit, len(seen), "noticed or not, complementary log-log")
-        desk.spread("lam0", fit)
+        fit = detection_model.fit_detection(
+            [each for _, each in seen], renumber([t.person for t, _ in seen]), collector.beliefs
+        )
+        collector.add(("lam0", "a50", "clutter"), fit, len(seen), "noticed or not, complementary log-log")
+        collector.spread("lam0", fit)
 
 
-_STEPS: dict[str, Callable[[Desk], None]] = {
-    "walking": walking,
-    "handling": handling,
-    "messages": messages,
-    "trust and answers": trust_and_answers,
-    "choices": choices,
-    "seeing": seeing,
+_STEPS: dict[str, Callable[[EstimateCollector], None]] = {
+    "walking": estimate_walking,
+    "handling": estimate_manipulation,
+    "messages": estimate_messages,
+    "trust and answers": estimate_trust,
+    "choices": estimate_choices,
+    "seeing": estimate_detection,
 }
 
 
-def _need_scipy() -> None:
-    try:
-        import scipy.optimize  # noqa: F401
-    except ImportError:
-        raise MissingExtra("estimating parameters from logs", "calibration") from None
-
-
-def _found(desk: Desk, name: str) -> Belief:
-    """What is believed by now: the median of an earlier estimate, where there is one."""
-    belief, found = desk.beliefs[name], desk.found.get(name)
+def _current_belief(collector: EstimateCollector, name: str) -> Belief:
+    """The current belief: around an earlier estimate, where there is one."""
+    belief, found = collector.beliefs[name], collector.estimates.get(name)
     return belief if found is None else msgspec.structs.replace(belief, mean=found.at)
 
 
-def _whole(beliefs: Beliefs, fit: Fit, n: int, method: str) -> Estimate:
-    """The time from a message to its answer, with the error that its two parts have together."""
+def _reading_total(beliefs: Beliefs, fit: Fit, n: int, method: str) -> Estimate:
+    """The time from a message to its answer, with the joint error of its two parts."""
     names = list(fit.value)
     first, second = (math.exp(fit.value[name]) for name in ("t_notice", "t_read"))
     slope = np.zeros(len(names))
@@ -210,4 +201,4 @@ def _whole(beliefs: Beliefs, fit: Fit, n: int, method: str) -> Estimate:
         low=sum(part.low for part in parts),
         high=sum(part.high for part in parts),
     )
-    return estimate.of(belief, math.log(first + second), se, n, method)
+    return estimate.make_estimate(belief, math.log(first + second), se, n, method)

@@ -1,4 +1,4 @@
-"""Logs as people and their trials in order."""
+"""Reads logs as people and their trials in order."""
 
 from __future__ import annotations
 
@@ -26,10 +26,10 @@ class Trial(Struct, frozen=True, kw_only=True):
 
 
 class Sessions(Struct, frozen=True, kw_only=True):
-    """Everybody's trials, ordered by person, session and index.
+    """All trials, ordered by person, session and index.
 
-    Who has the same human model, seed and participant's number is the same person, whatever robots they met; each crew
-    of robots that they met is a session of its own.
+    Trials with the same human model, seed and participant number are of the same person, with any robots; each robot
+    team that a person met is a session of its own.
     """
 
     trials: tuple[Trial, ...]
@@ -37,7 +37,7 @@ class Sessions(Struct, frozen=True, kw_only=True):
     sessions: int
 
 
-def read(paths: Sequence[Path]) -> Sessions:
+def read_sessions(paths: Sequence[Path]) -> Sessions:
     """The trials in some logs, each once.
 
     Args:
@@ -46,23 +46,23 @@ def read(paths: Sequence[Path]) -> Sessions:
     Raises:
         RunError: when one cannot be read, naming file, line and field.
     """
-    found: dict[str, TrialRecord] = {}
+    records_by_key: dict[str, TrialRecord] = {}
     for path in paths:
         for one in _records(path):
-            found.setdefault(one.key, one)
-    return of(found.values())
+            records_by_key.setdefault(one.key, one)
+    return sessions_of(records_by_key.values())
 
 
-def of(records: Iterable[TrialRecord]) -> Sessions:
-    """The same, of records at hand."""
-    ordered = sorted(records, key=lambda one: (*_person(one), _crew(one), one.spec.index, one.key))
+def sessions_of(records: Iterable[TrialRecord]) -> Sessions:
+    """The sessions that these records belong to."""
+    ordered = sorted(records, key=lambda one: (*_person(one), _team(one), one.spec.index, one.key))
     people: dict[object, int] = {}
     sessions: dict[object, int] = {}
     trials = tuple(
         Trial(
             record=one,
             person=people.setdefault(_person(one), len(people)),
-            session=sessions.setdefault((_person(one), _crew(one)), len(sessions)),
+            session=sessions.setdefault((_person(one), _team(one)), len(sessions)),
         )
         for one in ordered
     )
@@ -73,7 +73,7 @@ def _person(one: TrialRecord) -> tuple[str, str, int, int]:
     return one.spec.human, one.spec.human_sha256, one.spec.seed, one.spec.participant
 
 
-def _crew(one: TrialRecord) -> tuple[str, ...]:
+def _team(one: TrialRecord) -> tuple[str, ...]:
     return tuple(f"{robot.seat} {robot.robot} {robot.agent.name} {robot.agent.sha256}" for robot in one.spec.robots)
 
 

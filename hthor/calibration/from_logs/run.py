@@ -1,4 +1,4 @@
-"""From logs to a population and a table of what was found."""
+"""Estimates parameters from logs and updates a population with them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from hthor.calibration.from_logs import estimate_all, load_sessions
 from hthor.calibration.from_logs.estimate import Estimate
 from hthor.calibration.from_logs.load_sessions import Sessions
 from hthor.calibration.from_logs.models import priors
-from hthor.calibration.from_logs.update_population import Updated, update
+from hthor.calibration.from_logs.update_population import Updated, update_draws
 from hthor.errors import RunError
 from hthor.humans.population import parameter_registry, population_file, resolve
 from hthor.humans.population.population import Population, Validity
@@ -22,7 +22,7 @@ SCHEMA = "hthor.estimates/1"
 
 
 class EstimateRow(Struct, frozen=True, kw_only=True):
-    """A parameter before and after, medians and 90 % intervals in its unit, and what the logs say of it, if any."""
+    """A parameter before and after: medians and 90 % intervals in its unit, and the estimate from the logs, if any."""
 
     name: str
     unit: str
@@ -36,7 +36,7 @@ class EstimateRow(Struct, frozen=True, kw_only=True):
 
 
 class LogEstimates(Struct, frozen=True, kw_only=True):
-    """What a calibration with logs gave; ``effective`` old draws stand behind the new ones."""
+    """The result of a calibration with logs; ``effective`` is the effective number of old draws behind the new ones."""
 
     schema: str = SCHEMA
     prior: str
@@ -52,32 +52,31 @@ class LogEstimates(Struct, frozen=True, kw_only=True):
 def estimate_from_logs(
     logs: Sequence[Path], prior: str, out: Path, tell: Callable[[str], None], *, seed: int = 0
 ) -> tuple[LogEstimates, Population]:
-    """Estimate, bring the population ``prior`` up to date, and write both to the folder ``out``.
+    """Estimate, update the population ``prior``, and write both to the folder ``out``.
 
     Raises:
-        RunError: when a log cannot be read, or holds no stick.
-        MissingExtra: without scipy.
+        RunError: when a log cannot be read, or has no journal of the person's movements.
     """
     tell("reading")
-    data = load_sessions.read(logs)
+    data = load_sessions.read_sessions(logs)
     if not any(event.kind == "stick" for one in data.trials for event in one.record.journal):
         raise RunError(
             f"{logs[0]} holds no journal of the person: no stick, no attempts. It was written by an older version of "
-            "hthor; play the run again with 'hthor eval'."
+            "hthor; repeat the run with 'hthor eval'."
         )
     old = population_file.load_population(resolve.default_population() if prior == PROXY else prior)
-    before = priors.of_draws(old.names, old.draws, old.weights)
-    estimates = estimate_all.everything(data, before, tell)
+    before = priors.population_beliefs(old.names, old.draws, old.weights)
+    estimates = estimate_all.estimate_parameters(data, before, tell)
     tell("updating")
-    changed = update(old.names, old.draws, old.weights, before, estimates, seed)
-    new = _population(old, changed, estimates, data, logs, out, seed)
+    updated = update_draws(old.names, old.draws, old.weights, before, estimates, seed)
+    new = _population(old, updated, estimates, data, logs, out, seed)
     found = LogEstimates(
         prior=old.name,
         people=data.people,
         sessions=data.sessions,
         trials=len(data.trials),
-        effective=round(changed.effective, 1),
-        widening=round(changed.widening, 3),
+        effective=round(updated.effective, 1),
+        widening=round(updated.widening, 3),
         rows=_rows(old, new, estimates),
         notes=new.notes,
     )
@@ -89,7 +88,7 @@ def estimate_from_logs(
 
 def _population(
     old: Population,
-    changed: Updated,
+    updated: Updated,
     estimates: Sequence[Estimate],
     data: Sessions,
     logs: Sequence[Path],
@@ -99,20 +98,20 @@ def _population(
     suites = {one.record.spec.suite_sha256 for one in data.trials}
     few = [one.name for one in estimates if not one.used]
     notes = [
-        f"Brought up to date with {len(data.trials)} trials of {data.people} people; {len(changed.direct)} parameters "
-        f"were estimated from them, the others were weighted by those ({changed.effective:.0f} effective draws)."
+        f"Brought up to date with {len(data.trials)} trials of {data.people} people; {len(updated.direct)} parameters "
+        f"were estimated from them, the others were weighted by those ({updated.effective:.0f} effective draws)."
     ]
     if few:
         notes.append(f"The logs held too little on {', '.join(few)}; they are as they were.")
     return Population.make(
         out.resolve().name,
-        changed.draws,
+        updated.draws,
         purpose=f"{old.name}, brought up to date with logs of {data.people} people",
         seed=seed,
         command=f"hthor calibrate {' '.join(f'--target {log.name}' for log in logs)} --prior {old.name}",
         names=old.names,
         statistics=tuple(f"{one.name}: {one.method}" for one in estimates if one.used),
-        figures={"effective": round(changed.effective, 1), "widening": round(changed.widening, 3)},
+        figures={"effective": round(updated.effective, 1), "widening": round(updated.widening, 3)},
         notes=notes,
         validity=Validity(
             suite=old.validity.suite if suites == {old.validity.suite_sha256} else "the suite of the logs",

@@ -1,4 +1,4 @@
-"""All that one trial's log tells the estimators, in one record."""
+"""Everything that the estimators use of one trial's log, in one record."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from hthor.calibration.from_logs.models.trust_model import Experience
 from hthor.eval.records.trial_record import TrialRecord
 
 
-class Reduced(Struct, frozen=True, kw_only=True):
-    """A trial as numbers; ``walk`` is None where the log holds no stick."""
+class TrialFeatures(Struct, frozen=True, kw_only=True):
+    """A trial as numbers; ``walk`` is None where the log has no joystick data."""
 
     person: int
     session: int
@@ -34,23 +34,23 @@ class Reduced(Struct, frozen=True, kw_only=True):
     experience: Experience
 
 
-def reduce(sessions: Sessions) -> tuple[Reduced, ...]:
-    """Every trial of some sessions, in their order."""
+def extract_features(sessions: Sessions) -> tuple[TrialFeatures, ...]:
+    """The features of every trial of some sessions, in their order."""
     return tuple(_reduced(one.record, one.person, one.session, one.index) for one in sessions.trials)
 
 
-def _reduced(record: TrialRecord, person: int, session: int, index: int) -> Reduced:
-    walk = locomotion.of(record)
+def _reduced(record: TrialRecord, person: int, session: int, index: int) -> TrialFeatures:
+    walk = locomotion.walk_features(record)
     pace = walk.pace if walk is not None and not math.isnan(walk.pace) else default_pace()
-    return Reduced(
+    return TrialFeatures(
         person=person,
         session=session,
         index=index,
         walk=walk,
-        attempts=manipulation.of(record),
-        readings=messages.readings(record),
-        noticings=messages.noticings(record),
-        offers=messages.offers(record),
+        attempts=manipulation.manipulation_attempts(record),
+        readings=messages.message_readings(record),
+        noticings=messages.message_noticings(record),
+        offers=messages.message_offers(record),
         choices=tuple(
             Choice(options=event.data["options"], chosen=event.data["chosen"], pace=pace)
             for event in record.journal

@@ -1,10 +1,10 @@
-"""A population brought up to date with what logs say.
+"""Updates a population with estimates from logs.
 
-What the logs measure takes the place of what was believed: each draw gets new values of those parameters, by their
-estimates and errors. The other parameters keep the draws that go with such values, by importance weights: draws far
-from the estimates count less. Only measured parameters that the others evidently go together with are weighed: where
-draws are independent, weighing would add nothing but noise. Estimates are often far more exact than draws are dense,
-so their errors are widened for the weights, as little as leaves enough draws.
+Measured parameters are replaced: each draw gets new values of those parameters, from their estimates and errors. The
+other parameters are resampled by importance weights: draws far from the estimates count less. Only measured parameters
+that are correlated with others are used as weights: where draws are independent, weighting would add nothing except
+noise. Estimates are often far more precise than draws are dense, so their errors are widened for the weights, as little
+as leaves enough draws.
 """
 
 from __future__ import annotations
@@ -19,20 +19,20 @@ from msgspec import Struct
 from hthor import seeds
 from hthor.calibration.from_logs.estimate import Estimate
 from hthor.calibration.from_logs.estimate_all import READING
-from hthor.calibration.from_logs.models.priors import Belief, Beliefs, off, on
+from hthor.calibration.from_logs.models.priors import Belief, Beliefs, from_scale, to_scale
 
 _WIDENINGS = tuple(0.05 * 1.2**k for k in range(30))
 _LEAST_SHARE, _LEAST_DRAWS = 0.1, 50.0
 _REACH = 3.0
 _EVIDENT = 4.0
-"""A correlation is evident when it is so many times what independent draws show by chance."""
+"""A correlation counts when it is this many times what independent draws show by chance."""
 
 
 class Updated(Struct, frozen=True, kw_only=True):
     """New draws (D, P) in the parameters' units, all of equal weight.
 
-    ``effective`` is how many of the old draws they are worth, ``widening`` by how many standard deviations of the old
-    draws the errors were widened, ``direct`` the parameters that the logs measured.
+    ``effective`` is the effective number of old draws, ``widening`` by how many standard deviations of the old draws
+    the errors were widened, ``direct`` the parameters that the logs measured.
     """
 
     draws: Any
@@ -41,29 +41,31 @@ class Updated(Struct, frozen=True, kw_only=True):
     direct: tuple[str, ...]
 
 
-def update(
+def update_draws(
     names: Sequence[str], draws: Any, weights: Any, beliefs: Beliefs, estimates: Sequence[Estimate], seed: int
 ) -> Updated:
-    """Bring draws up to date.
+    """Update the draws of a population.
 
     Args:
         names: of the columns (P). draws: (D, P). weights: (D,), adding up to 1.
-        beliefs: of these draws, see `hthor.calibration.from_logs.models.priors.of_draws`.
+        beliefs: of these draws, see `hthor.calibration.from_logs.models.priors.population_beliefs`.
     """
     used = {one.name: one for one in estimates if one.used and one.name in names}
-    scaled = {name: on(draws[:, names.index(name)], beliefs[name].scale) for name in used}
-    others = [on(draws[:, names.index(name)], beliefs[name].scale) for name in names if name not in used]
-    telling = {name: values for name, values in scaled.items() if _tells(values, others, np.asarray(weights))}
-    weight, effective, widening = _weights(telling, used, beliefs, np.asarray(weights))
-    kept = np.array(draws)[_picked(weight, seeds.draw(seed, "pick"), len(draws))]
+    scaled = {name: to_scale(draws[:, names.index(name)], beliefs[name].scale) for name in used}
+    others = [to_scale(draws[:, names.index(name)], beliefs[name].scale) for name in names if name not in used]
+    correlated = {
+        name: values for name, values in scaled.items() if _is_correlated(values, others, np.asarray(weights))
+    }
+    weight, effective, widening = _weights(correlated, used, beliefs, np.asarray(weights))
+    new_draws = np.array(draws)[_resample(weight, seeds.draw(seed, "pick"), len(draws))]
     for name in used:
-        kept[:, names.index(name)] = _drawn(used[name], beliefs[name], len(kept), seed)
-    _whole_reading(kept, names, estimates, beliefs, seed)
-    return Updated(draws=kept, effective=effective, widening=widening, direct=tuple(used))
+        new_draws[:, names.index(name)] = _draw_values(used[name], beliefs[name], len(new_draws), seed)
+    _replace_reading_times(new_draws, names, estimates, beliefs, seed)
+    return Updated(draws=new_draws, effective=effective, widening=widening, direct=tuple(used))
 
 
-def _tells(values: Any, others: Sequence[Any], weights: Any) -> bool:
-    """Whether any of the others goes together with these values, more than chance would make it."""
+def _is_correlated(values: Any, others: Sequence[Any], weights: Any) -> bool:
+    """Whether any of the others is correlated with these values, beyond chance."""
     chance = _EVIDENT * math.sqrt(float((weights**2).sum()))
     return any(abs(_correlation(values, other, weights)) > chance for other in others)
 
@@ -85,7 +87,7 @@ def _weights(
     for widening in _WIDENINGS:
         log = np.log(np.maximum(before, 1e-300))
         for name, values in scaled.items():
-            at, error = _told(used[name], beliefs[name])
+            at, error = _from_logs_alone(used[name], beliefs[name])
             spread = math.hypot(error, widening * beliefs[name].sd)
             log = log - 0.5 * ((values - at) / spread) ** 2
         weight = np.exp(log - log.max())
@@ -96,35 +98,37 @@ def _weights(
     return weight, effective, widening
 
 
-def _told(estimate: Estimate, belief: Belief) -> tuple[float, float]:
-    """What the logs alone say: the estimate without what was believed before."""
+def _from_logs_alone(estimate: Estimate, belief: Belief) -> tuple[float, float]:
+    """What the logs alone say: value and error of the estimate without the prior belief."""
     precision = max(estimate.se**-2 - belief.sd**-2, (_REACH * belief.sd) ** -2)
     at = (estimate.at * estimate.se**-2 - belief.mean * belief.sd**-2) / precision
     near = _REACH * belief.sd
     return min(max(at, belief.mean - near), belief.mean + near), precision**-0.5
 
 
-def _picked(weight: Any, start: float, count: int) -> Any:
+def _resample(weight: Any, start: float, count: int) -> Any:
     """Rows, each as often as its weight says: systematic resampling."""
     marks = (np.arange(count) + start) / count
     return np.minimum(np.searchsorted(np.cumsum(weight), marks), count - 1)
 
 
-def _drawn(estimate: Estimate, belief: Belief, count: int, seed: int) -> Any:
+def _draw_values(estimate: Estimate, belief: Belief, count: int, seed: int) -> Any:
     """Values by the estimate and its error, within the bounds of the prior."""
     normal = np.array([seeds.normal(seed, estimate.name, k) for k in range(count)])
-    return np.clip(off(estimate.at + estimate.se * normal, belief.scale), belief.low, belief.high)
+    return np.clip(from_scale(estimate.at + estimate.se * normal, belief.scale), belief.low, belief.high)
 
 
-def _whole_reading(kept: Any, names: Sequence[str], estimates: Sequence[Estimate], beliefs: Beliefs, seed: int) -> None:
-    """Noticing and reading are measured better together than each: the sum is drawn, noticing is its part."""
-    whole = next((one for one in estimates if one.name == READING and one.used), None)
-    if whole is None or "t_notice" not in names or "t_read" not in names:
+def _replace_reading_times(
+    new_draws: Any, names: Sequence[str], estimates: Sequence[Estimate], beliefs: Beliefs, seed: int
+) -> None:
+    """Noticing and reading times are measured better together than each: their sum is drawn and split in proportion."""
+    total_estimate = next((one for one in estimates if one.name == READING and one.used), None)
+    if total_estimate is None or "t_notice" not in names or "t_read" not in names:
         return
-    normal = np.array([seeds.normal(seed, READING, k) for k in range(len(kept))])
-    total = np.exp(whole.at + whole.se * normal)
+    normal = np.array([seeds.normal(seed, READING, k) for k in range(len(new_draws))])
+    total = np.exp(total_estimate.at + total_estimate.se * normal)
     notice, read = names.index("t_notice"), names.index("t_read")
-    part = kept[:, notice] / (kept[:, notice] + kept[:, read])
+    part = new_draws[:, notice] / (new_draws[:, notice] + new_draws[:, read])
     for column, share in ((notice, part), (read, 1.0 - part)):
         belief = beliefs[names[column]]
-        kept[:, column] = np.clip(total * share, belief.low, belief.high)
+        new_draws[:, column] = np.clip(total * share, belief.low, belief.high)

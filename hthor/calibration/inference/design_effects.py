@@ -1,11 +1,11 @@
-"""How noisy studies are: design effects, and how far an emulator may be trusted.
+"""How noisy studies are: design effects, and how far an emulator can be trusted.
 
 People and tasks cluster trials, so a study's count varies more than a binomial one. Both that and the emulator's own
-error are found on simulated studies that the emulator was not trained on: the variance of an error is
+error are estimated from simulated studies that the emulator was not trained on: the variance of an error is
 
     phi * p (1 - p) / n  +  spread^2 * se^2
 
-with a design effect phi for each figure, and one factor ``spread`` for the committee's disagreement se.
+with a design effect phi for each figure, and one factor ``spread`` for the ensemble's disagreement se.
 """
 
 from __future__ import annotations
@@ -16,9 +16,8 @@ import numpy as np
 from msgspec import Struct
 
 from hthor.calibration.emulator.emulator import Rates
-from hthor.calibration.inference.summary_statistics import Observed
-from hthor.calibration.simulation.trial_table import CONDITIONS
-from hthor.errors import MissingExtra
+from hthor.calibration.inference.summary_statistics import StudyResults
+from hthor.calibration.targets import CONDITIONS
 
 Array = np.ndarray[Any, Any]
 
@@ -29,9 +28,10 @@ NAMES = tuple(
     for condition in CONDITIONS
     if (metric, condition) != ("adoption", CONDITIONS[0])
 )
-"""The eight things that a likelihood looks at."""
+"""The eight quantities in the likelihood."""
+_PLACES = tuple((name.split()[0], CONDITIONS.index(name.split()[1])) for name in NAMES)
 FOLDS = 5
-"""Parts of the studies; the design effects for one are found on the others."""
+"""Parts of the studies; the design effects for one are estimated from the others."""
 _EDGE = 0.02
 _USUAL, _SPREAD, _WIDTH = 1.6, 1.0, 0.7
 """Weak prior of phi and of the spread factor, and its sd in logarithms: it matters with a few dozen studies only."""
@@ -39,10 +39,10 @@ _LEAST, _MOST = 0.25, 8.0
 _MOST_SPREAD = 4.0
 
 
-class Effects(Struct, frozen=True, kw_only=True, eq=False):
+class DesignEffects(Struct, frozen=True, kw_only=True, eq=False):
     """Design effects (3,) by condition of the metrics; 1 is binomial noise, or noise of independent successes.
 
-    ``spread`` multiplies the committee's disagreement. ``correlation`` (3, 3) is that of the ratios'
+    ``spread`` multiplies the ensemble's disagreement. ``correlation`` (3, 3) is that of the ratios'
     errors between conditions.
     """
 
@@ -54,42 +54,42 @@ class Effects(Struct, frozen=True, kw_only=True, eq=False):
 
     def figures(self) -> dict[str, float]:
         """Design effects by name, and the spread factor."""
-        named = {name: float(getattr(self, name.split()[0])[CONDITIONS.index(name.split()[1])]) for name in NAMES}
-        return {**named, "spread": self.spread}
+        return {**dict(zip(NAMES, self.by_name().tolist(), strict=True)), "spread": self.spread}
+
+    def by_name(self) -> Array:
+        """(8,) in the order of `NAMES`."""
+        return np.array([getattr(self, metric)[place] for metric, place in _PLACES])
 
 
-class Quality(Struct, frozen=True, kw_only=True):
-    """How well an emulator foretells studies that neither it nor the design effects have seen.
+class EmulatorQuality(Struct, frozen=True, kw_only=True):
+    """How well an emulator predicts studies that neither it nor the design effects have seen.
 
-    ``z_sd`` is the sd of standardised errors over all figures, ``by_figure`` that of each and ``bias`` their mean;
-    ``r2`` the share of the variance between studies that is foretold; ``studies`` how many there were.
+    ``z_sd`` is the sd of standardised errors over all figures, ``by_figure`` that of each; ``studies`` how many there
+    were.
     """
 
     z_sd: float
     by_figure: dict[str, float]
-    bias: dict[str, float]
-    r2: dict[str, float]
     studies: int
 
 
 class _Errors(Struct, frozen=True, eq=False):
-    """Arrays (S, 8) in the order of `NAMES`: error, variance of independent trials, squared disagreement, observed."""
+    """Arrays (S, 8) in the order of `NAMES`: error, variance of independent trials, squared disagreement."""
 
     error: Array
     base: Array
     doubt: Array
-    seen: Array
 
     def take(self, rows: Array) -> _Errors:
-        return _Errors(self.error[rows], self.base[rows], self.doubt[rows], self.seen[rows])
+        return _Errors(self.error[rows], self.base[rows], self.doubt[rows])
 
 
-def effects(rates: Rates, studies: Observed) -> Effects:
+def estimate_effects(rates: Rates, studies: StudyResults) -> DesignEffects:
     """Design effects and spread: the likeliest ones, for normal errors and a weak prior.
 
     Args:
-        rates: what the emulator foretells at the points of the studies.
-        studies: what came out, in the same order; at least ten.
+        rates: predicted by the emulator at the points of the studies.
+        studies: their results, in the same order; at least ten.
 
     Raises:
         ValueError: with fewer than ten studies.
@@ -99,37 +99,34 @@ def effects(rates: Rates, studies: Observed) -> Effects:
     return _effects(_errors(rates, studies))
 
 
-def crossed(rates: Rates, studies: Observed) -> list[tuple[Array, Effects]]:
-    """Parts of the studies, as row numbers, each with the effects that the other parts show."""
+def cross_validated_effects(rates: Rates, studies: StudyResults) -> list[tuple[Array, DesignEffects]]:
+    """Parts of the studies, as row numbers, each with the effects estimated from the other parts."""
     errors, fold = _errors(rates, studies), np.arange(len(studies)) % FOLDS
     return [(np.flatnonzero(fold == out), _effects(errors.take(fold != out))) for out in range(FOLDS)]
 
 
-def quality(rates: Rates, studies: Observed) -> Quality:
-    """The emulator's errors, standardised by effects that were found on other studies."""
+def emulator_quality(rates: Rates, studies: StudyResults) -> EmulatorQuality:
+    """The emulator's errors, standardised by effects that were estimated from other studies."""
     errors = _errors(rates, studies)
     z = np.full(errors.error.shape, np.nan)
-    for rows, found in crossed(rates, studies):
+    for rows, effects in cross_validated_effects(rates, studies):
         part = errors.take(rows)
-        z[rows] = part.error / np.sqrt(_phi(found) * part.base + found.spread**2 * part.doubt)
-    unexplained = np.nanvar(errors.error, axis=0) / np.nanvar(errors.seen, axis=0)
-    return Quality(
+        z[rows] = part.error / np.sqrt(effects.by_name() * part.base + effects.spread**2 * part.doubt)
+    return EmulatorQuality(
         z_sd=float(np.sqrt(np.nanmean(z**2))),
         by_figure=dict(zip(NAMES, np.nanstd(z, axis=0).tolist(), strict=True)),
-        bias=dict(zip(NAMES, np.nanmean(z, axis=0).tolist(), strict=True)),
-        r2=dict(zip(NAMES, (1.0 - unexplained).tolist(), strict=True)),
         studies=len(studies),
     )
 
 
-def variance(share: Array, trials: Array | float, phi: Array, doubt: Array) -> Array:
-    """Variance of an observed share: clustered trials, and the emulator's doubt (a variance, already scaled)."""
+def share_variance(share: Array, trials: Array | float, phi: Array, doubt: Array) -> Array:
+    """Variance of an observed share: clustered trials, and the emulator's own variance (already scaled)."""
     safe = np.clip(share, _EDGE, 1.0 - _EDGE)
-    found: Array = phi * safe * (1.0 - safe) / np.maximum(trials, 1.0) + doubt
-    return found
+    variance: Array = phi * safe * (1.0 - safe) / np.maximum(trials, 1.0) + doubt
+    return variance
 
 
-def _errors(rates: Rates, studies: Observed) -> _Errors:
+def _errors(rates: Rates, studies: StudyResults) -> _Errors:
     with np.errstate(invalid="ignore", divide="ignore"):
         seen = {
             "sr": studies.successes / studies.trials,
@@ -137,30 +134,29 @@ def _errors(rates: Rates, studies: Observed) -> _Errors:
             "ratio": studies.ratio,
         }
     base = {
-        "sr": variance(rates.sr, studies.trials, np.ones(3), np.zeros(3)),
-        "adoption": variance(rates.adoption, studies.asked, np.ones(3), np.zeros(3)),
+        "sr": share_variance(rates.sr, studies.trials, np.ones(3), np.zeros(3)),
+        "adoption": share_variance(rates.adoption, studies.asked, np.ones(3), np.zeros(3)),
         "ratio": rates.ratio_sd**2 / np.maximum(studies.successes, 1.0),
     }
-    columns: list[list[Array]] = [[], [], [], []]
-    for name in NAMES:
-        metric, place = name.split()[0], CONDITIONS.index(name.split()[1])
-        columns[0].append(seen[metric][:, place] - getattr(rates, metric)[:, place])
-        columns[1].append(base[metric][:, place])
-        columns[2].append(getattr(rates, f"{metric}_se")[:, place] ** 2)
-        columns[3].append(seen[metric][:, place])
-    return _Errors(*(np.stack(column, axis=1) for column in columns))
+    columns = [
+        (
+            seen[metric][:, place] - getattr(rates, metric)[:, place],
+            base[metric][:, place],
+            getattr(rates, f"{metric}_se")[:, place] ** 2,
+        )
+        for metric, place in _PLACES
+    ]
+    return _Errors(*(np.stack(parts, axis=1) for parts in zip(*columns, strict=True)))
 
 
-def _effects(errors: _Errors) -> Effects:
-    try:
-        from scipy.optimize import minimize
-    except ImportError:
-        raise MissingExtra("calibration", "calibration") from None
+def _effects(errors: _Errors) -> DesignEffects:
+    from scipy.optimize import minimize
+
     usual = np.log([_USUAL] * len(NAMES) + [_SPREAD])
     known = np.isfinite(errors.error)
     square = np.where(known, errors.error, 0.0) ** 2
 
-    def surprise(logs: Array) -> tuple[float, Array]:
+    def negative_log_posterior(logs: Array) -> tuple[float, Array]:
         phi, spread = np.exp(logs[:-1]), np.exp(2.0 * logs[-1])
         var = phi * errors.base + spread * errors.doubt
         slope = np.where(known, (1.0 - square / var) / var, 0.0)
@@ -170,20 +166,16 @@ def _effects(errors: _Errors) -> Effects:
         return total, np.append(by_phi, (slope * spread * errors.doubt).sum()) + off / _WIDTH
 
     bounds = [(np.log(_LEAST), np.log(_MOST))] * len(NAMES) + [(np.log(0.05), np.log(_MOST_SPREAD))]
-    best = minimize(surprise, usual, jac=True, method="L-BFGS-B", bounds=bounds)
+    best = minimize(negative_log_posterior, usual, jac=True, method="L-BFGS-B", bounds=bounds)
     phi, spread = np.exp(best.x[:-1]), float(np.exp(best.x[-1]))
     z = errors.error / np.sqrt(phi * errors.base + spread**2 * errors.doubt)
     by_name = dict(zip(NAMES, phi, strict=True))
-    held = {m: np.array([by_name.get(f"{m} {condition}", 1.0) for condition in CONDITIONS]) for m in METRICS}
-    return Effects(**held, spread=spread, correlation=_correlation(z[:, 3:6]))
-
-
-def _phi(found: Effects) -> Array:
-    return np.array([getattr(found, name.split()[0])[CONDITIONS.index(name.split()[1])] for name in NAMES])
+    by_metric = {m: np.array([by_name.get(f"{m} {condition}", 1.0) for condition in CONDITIONS]) for m in METRICS}
+    return DesignEffects(**by_metric, spread=spread, correlation=_correlation(z[:, 3:6]))
 
 
 def _correlation(z: Array) -> Array:
-    """(3, 3), a little towards none, so that it can be inverted whatever the sample."""
+    """(3, 3), shrunk a little towards none, so that it can be inverted for any sample."""
     whole = z[np.isfinite(z).all(axis=1)]
     found = np.corrcoef(whole.T) if len(whole) > 2 else np.eye(len(CONDITIONS))
     mixed: Array = 0.97 * found + 0.03 * np.eye(len(CONDITIONS))

@@ -7,10 +7,9 @@ from typing import Any
 import numpy as np
 
 from hthor.calibration.emulator.emulator import Rates
-from hthor.calibration.inference.design_effects import Effects
-from hthor.calibration.inference.summary_statistics import Observed
-from hthor.calibration.simulation.trial_table import CONDITIONS
-from hthor.errors import MissingExtra
+from hthor.calibration.inference.design_effects import DesignEffects
+from hthor.calibration.inference.summary_statistics import StudyResults
+from hthor.calibration.targets import CONDITIONS
 
 Array = np.ndarray[Any, Any]
 
@@ -19,7 +18,7 @@ _LEAST_RHO = 1e-4
 _MOST_RHO = 0.95
 
 
-def log(rates: Rates, study: Observed, effects: Effects) -> Array:
+def log_likelihood(rates: Rates, study: StudyResults, effects: DesignEffects) -> Array:
     """(N,) log likelihood [nats] of one study at the rates of N points; what the study does not tell adds nothing."""
     total = np.zeros(len(rates))
     for metric, hits, out_of in (("sr", "successes", "trials"), ("adoption", "adopted", "asked")):
@@ -28,45 +27,43 @@ def log(rates: Rates, study: Observed, effects: Effects) -> Array:
             if trials > 0.0:
                 share = getattr(rates, metric)[:, place]
                 doubt = (effects.spread * getattr(rates, f"{metric}_se")[:, place]) ** 2
-                phi = clustering(share, trials, getattr(effects, metric)[place], doubt)
-                total += count(float(getattr(study, hits)[0, place]), trials, share, phi)
+                phi = total_design_effect(share, trials, getattr(effects, metric)[place], doubt)
+                total += log_beta_binomial(float(getattr(study, hits)[0, place]), trials, share, phi)
     return total + _ratios(rates, study, effects)
 
 
-def clustering(share: Array, trials: float, phi: Array | float, doubt: Array) -> Array:
+def total_design_effect(share: Array, trials: float, phi: Array | float, doubt: Array) -> Array:
     """(N,) design effects, the emulator's doubt (a variance of ``share``) included."""
     safe = np.clip(share, _EDGE * 4.0, 1.0 - _EDGE * 4.0)
     whole: Array = phi + doubt * trials / (safe * (1.0 - safe))
     return whole
 
 
-def count(hits: float, trials: float, share: Array, phi: Array) -> Array:
+def log_beta_binomial(hits: float, trials: float, share: Array, phi: Array) -> Array:
     """(N,) log probability of a beta-binomial count with mean ``share`` and ``phi`` times the binomial variance."""
-    try:
-        from scipy.special import betaln, gammaln
-    except ImportError:
-        raise MissingExtra("calibration", "calibration") from None
-    a, b = shape(share, trials, phi)
+    from scipy.special import betaln, gammaln
+
+    a, b = beta_shape(share, trials, phi)
     ways = gammaln(trials + 1.0) - gammaln(hits + 1.0) - gammaln(trials - hits + 1.0)
     chance: Array = ways + betaln(hits + a, trials - hits + b) - betaln(a, b)
     return chance
 
 
-def shape(share: Array, trials: float, phi: Array) -> tuple[Array, Array]:
+def beta_shape(share: Array, trials: float, phi: Array) -> tuple[Array, Array]:
     """The two counts of the beta distribution that a beta-binomial one draws its chance from."""
     safe = np.clip(share, _EDGE, 1.0 - _EDGE)
     rho = np.clip((phi - 1.0) / max(trials - 1.0, 1.0), _LEAST_RHO, _MOST_RHO)
     return safe * (1.0 - rho) / rho, (1.0 - safe) * (1.0 - rho) / rho
 
 
-def ratio_variance(rates: Rates, successes: Array, effects: Effects) -> Array:
+def ratio_variance(rates: Rates, successes: Array, effects: DesignEffects) -> Array:
     """(N, 3) variance of the ratio of a group with so many successes (3,)."""
     noise = effects.ratio * rates.ratio_sd**2 / np.maximum(successes, 1.0)
     found: Array = noise + (effects.spread * rates.ratio_se) ** 2
     return found
 
 
-def _ratios(rates: Rates, study: Observed, effects: Effects) -> Array:
+def _ratios(rates: Rates, study: StudyResults, effects: DesignEffects) -> Array:
     known = np.flatnonzero(np.isfinite(study.ratio[0]))
     if not len(known):
         return np.zeros(len(rates))

@@ -7,20 +7,15 @@ from typing import Any
 import numpy as np
 from msgspec import Struct
 
+from hthor.calibration.evidence import FIGURES
 from hthor.calibration.simulation import trial_table as tables
-from hthor.calibration.simulation.trial_table import CONDITIONS, Table
-from hthor.calibration.targets import Targets
+from hthor.calibration.simulation.trial_table import Table
+from hthor.calibration.targets import CONDITIONS, Targets
 
 Array = np.ndarray[Any, Any]
 
-FIGURES = (
-    *(f"{metric} {condition}" for metric in ("sr", "twsr") for condition in CONDITIONS),
-    *(f"adoption {condition}" for condition in CONDITIONS[1:]),
-)
-"""The eight published figures; nobody can adopt a robot that is not there."""
 
-
-class Observed(Struct, frozen=True, kw_only=True, eq=False):
+class StudyResults(Struct, frozen=True, kw_only=True, eq=False):
     """Results of S studies, float64 arrays (S, 3) by study and condition.
 
     Attributes:
@@ -38,21 +33,21 @@ class Observed(Struct, frozen=True, kw_only=True, eq=False):
     def __len__(self) -> int:
         return len(self.trials)
 
-    def one(self, study: int) -> Observed:
+    def one(self, study: int) -> StudyResults:
         """A single study, still with S = 1."""
-        return Observed(**{name: getattr(self, name)[study : study + 1] for name in self.__struct_fields__})
+        return StudyResults(**{name: getattr(self, name)[study : study + 1] for name in self.__struct_fields__})
 
-    def without(self, condition: str) -> Observed:
+    def without(self, condition: str) -> StudyResults:
         """The same studies, without anything about one condition."""
         return self._keeping([name != condition for name in CONDITIONS])
 
-    def only(self, condition: str) -> Observed:
+    def only(self, condition: str) -> StudyResults:
         """The same studies, with nothing but one condition."""
         return self._keeping([name == condition for name in CONDITIONS])
 
-    def _keeping(self, kept: list[bool]) -> Observed:
+    def _keeping(self, kept: list[bool]) -> StudyResults:
         counts = {name: getattr(self, name) * np.array(kept) for name in ("successes", "trials", "adopted", "asked")}
-        return Observed(**counts, ratio=np.where(kept, self.ratio, np.nan))
+        return StudyResults(**counts, ratio=np.where(kept, self.ratio, np.nan))
 
     def figures(self) -> dict[str, Array]:
         """The eight figures (S,) by name, as fractions; NaN where a study does not tell."""
@@ -62,7 +57,7 @@ class Observed(Struct, frozen=True, kw_only=True, eq=False):
         return {name: held[name.split()[0]][:, CONDITIONS.index(name.split()[1])] for name in FIGURES}
 
 
-def published(targets: Targets) -> Observed:
+def published_results(targets: Targets) -> StudyResults:
     """The one study that was published; what the targets leave out is left out."""
     counts = np.zeros((4, 1, len(CONDITIONS)))
     ratio = np.full((1, len(CONDITIONS)), np.nan)
@@ -72,10 +67,10 @@ def published(targets: Targets) -> Observed:
         if name in targets.adoption:
             counts[2:, 0, place] = targets.adoption[name].k, targets.adoption[name].n
         ratio[0, place] = targets.ratio.get(name, np.nan)
-    return Observed(successes=counts[0], trials=counts[1], adopted=counts[2], asked=counts[3], ratio=ratio)
+    return StudyResults(successes=counts[0], trials=counts[1], adopted=counts[2], asked=counts[3], ratio=ratio)
 
 
-def studies(table: Table, least: Array) -> tuple[Array, Observed]:
+def study_results(table: Table, least: Array) -> tuple[Array, StudyResults]:
     """Simulated studies as if they had been published: points (S, P) of the unit cube, and results in that order.
 
     Args:
@@ -95,7 +90,7 @@ def studies(table: Table, least: Array) -> tuple[Array, Observed]:
     successes, worth = total(met), total(np.where(met, tables.twsr(held, least), 0.0))
     with np.errstate(invalid="ignore", divide="ignore"):
         ratio = worth / successes
-    found = Observed(
+    found = StudyResults(
         successes=successes,
         trials=total(held.valid),
         adopted=total(held.adopted & held.counted),

@@ -1,36 +1,31 @@
-"""The stages of a calibration on published numbers, each made once and kept."""
+"""The stages of a calibration on published numbers, each computed once and stored."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from functools import cached_property
-from pathlib import Path
-from typing import TYPE_CHECKING, Protocol, TypeVar
+from typing import Protocol, TypeVar
 
 import numpy as np
-from msgspec import Struct
 
 from hthor import jsonio
-from hthor.calibration.emulator.single_thread import alone
+from hthor.calibration.diagnostics import abc_check, coverage, held_out, ranking_robustness
+from hthor.calibration.diagnostics.coverage import Coverage
+from hthor.calibration.emulator import emulator
+from hthor.calibration.emulator.emulator import Emulator
+from hthor.calibration.emulator.single_thread import single_thread
+from hthor.calibration.evidence import AbcShift, HeldOutCondition, ParameterSwing, RobotRanking
+from hthor.calibration.inference import design_effects, posterior, predictive, summary_statistics
+from hthor.calibration.inference.design_effects import DesignEffects, EmulatorQuality
+from hthor.calibration.inference.posterior import Posterior
+from hthor.calibration.inference.summary_statistics import StudyResults
 from hthor.calibration.pipeline.artifact_cache import ArtifactCache
+from hthor.calibration.pipeline.config import CalibrationConfig
 from hthor.calibration.simulation import design_points, simulate, studies, trial_identity, trial_table
-from hthor.calibration.simulation.budget import Sizes
 from hthor.calibration.simulation.trial_table import Table
-from hthor.calibration.targets import Targets
 from hthor.eval.runner.progress import Watcher
 from hthor.humans.population import parameter_registry
-from hthor.tasks import Suite
-
-if TYPE_CHECKING:
-    from hthor.calibration.diagnostics.abc_check import Check
-    from hthor.calibration.diagnostics.coverage import Coverage
-    from hthor.calibration.diagnostics.held_out import HeldOut
-    from hthor.calibration.diagnostics.ranking_robustness import Ranking, Swing
-    from hthor.calibration.emulator.emulator import Emulator
-    from hthor.calibration.inference.design_effects import Effects, Quality
-    from hthor.calibration.inference.posterior import Posterior
-    from hthor.calibration.inference.summary_statistics import Observed
 
 _T = TypeVar("_T")
 
@@ -38,108 +33,100 @@ FITTED = tuple(one.name for one in parameter_registry.PARAMETERS if one.fitted)
 """Parameters that the published numbers are expected to move."""
 
 
-class Teller(Protocol):
-    """Who is told how a calibration goes."""
+class ProgressReporter(Protocol):
+    """Reports the progress of a calibration."""
 
     def watch(self, stage: str) -> AbstractContextManager[Watcher]:
-        """Somebody who follows a stage that simulates."""
+        """Report a stage that simulates, trial by trial, for as long as the context lasts."""
 
     def work(self, stage: str) -> AbstractContextManager[None]:
-        """A stage that only computes begins, and ends with the context."""
+        """Report a stage that only computes, for as long as the context lasts."""
 
 
-class Brief(Struct, frozen=True, kw_only=True):
-    """What is to be calibrated, on what, with which chances; ``folder`` keeps everything, ``jobs`` are processes."""
+class CalibrationStages:
+    """The products of a calibration: asking for one computes those that it needs. Each is stored in the folder."""
 
-    suite: Suite
-    targets: Targets
-    seed: int
-    sizes: Sizes
-    folder: Path
-    jobs: int
-
-
-class Stages:
-    """The stages, in order of need: to ask for one makes those that it needs. Each is kept in the folder."""
-
-    def __init__(self, brief: Brief, teller: Teller) -> None:
-        self.brief, self._teller = brief, teller
-        self.t_star = trial_table.t_star(brief.suite)
-        self.known = trial_identity.trials_identity(brief.suite)
-        what = (
-            self.known,
-            brief.targets,
-            brief.seed,
-            brief.sizes,
+    def __init__(self, config: CalibrationConfig, progress: ProgressReporter) -> None:
+        self.config, self._progress = config, progress
+        self.t_star = trial_table.suite_t_star(config.suite)
+        inputs = (
+            trial_identity.trials_identity(config.suite),
+            config.targets,
+            config.seed,
+            config.sizes,
             self.t_star.tolist(),
             trial_identity.statistics_sha256(),
         )
-        self._shelf = ArtifactCache(brief.folder / "products", jsonio.sha256(what))
+        self._cache = ArtifactCache(config.folder / "products", jsonio.sha256(inputs))
 
     # ------------------------------------------------------------------------------------------------------- simulated
 
     @cached_property
     def training(self) -> Table:
-        """Sessions all over the prior."""
-        size = self.brief.sizes.sessions
-        where = design_points.spread(size, len(parameter_registry.free_parameter_names()), self.brief.seed, "training")
-        return self._sessions("training", where)
+        """Sessions spread over the prior."""
+        return self._sessions("training", self._prior_points(self.config.sizes.sessions, "training"))
 
     @cached_property
     def studies(self) -> Table:
-        """Whole studies all over the prior."""
-        size = self.brief.sizes.studies
-        where = design_points.spread(size, len(parameter_registry.free_parameter_names()), self.brief.seed, "studies")
-        return self._studies("studies", where)
+        """Whole studies spread over the prior."""
+        return self._studies("studies", self._prior_points(self.config.sizes.studies, "studies"))
 
     @cached_property
     def correction(self) -> Table:
         """Sessions near the first posterior."""
-        from hthor.calibration.inference import posterior
-
-        where = posterior.propose(self.first_posterior, self.brief.sizes.correction, self.brief.seed)
-        return self._sessions("correction", where)
+        count, seed = self.config.sizes.correction, self.config.seed
+        return self._sessions("correction", posterior.propose_points(self.first_posterior, count, seed))
 
     @cached_property
     def predicted(self) -> Table:
         """Whole studies of people of the posterior."""
-        draws, count = self.posterior.points, self.brief.sizes.posterior_studies
-        evenly = np.arange(count) * len(draws) // count  # draws that lie together come from the same round of weighing
+        draws, count = self.posterior.points, self.config.sizes.posterior_studies
+        evenly = np.arange(count) * len(draws) // count
         return self._studies("predicted", draws[evenly])
 
-    def _sessions(self, name: str, where: np.ndarray) -> Table:
-        brief = self.brief
-        with self._teller.watch(name) as watch:
-            return simulate.at(where, brief.suite, brief.seed, brief.folder / name, brief.jobs, watch, name)
+    @property
+    def simulated(self) -> dict[str, Table]:
+        """All simulated tables, by name."""
+        more = {"correction": self.correction} if self.config.sizes.correction else {}
+        return {"training": self.training, "studies": self.studies, "predicted": self.predicted, **more}
 
-    def _studies(self, name: str, where: np.ndarray) -> Table:
-        brief = self.brief
-        with self._teller.watch(name) as watch:
-            folder, design = brief.folder / name, brief.targets.design
-            return studies.at(where, brief.suite, brief.seed, folder, brief.jobs, watch, name, design)
+    def _prior_points(self, count: int, name: str) -> np.ndarray:
+        return design_points.sobol_points(count, len(parameter_registry.free_parameter_names()), self.config.seed, name)
+
+    def _sessions(self, name: str, points: np.ndarray) -> Table:
+        config = self.config
+        with self._progress.watch(name) as watch:
+            folder = config.folder / name
+            return simulate.simulate_sessions(points, config.suite, config.seed, folder, config.jobs, watch, name)
+
+    def _studies(self, name: str, points: np.ndarray) -> Table:
+        config = self.config
+        with self._progress.watch(name) as watch:
+            folder, design = config.folder / name, config.targets.design
+            return studies.simulate_studies(points, config.suite, config.seed, folder, config.jobs, watch, name, design)
 
     # ------------------------------------------------------------------------------------------------------------ fits
 
     @cached_property
     def first_emulator(self) -> Emulator:
-        """Fitted to the training alone."""
+        """Fitted to the training sessions alone."""
         return self._emulator("first-emulator", self.training)
 
     @cached_property
     def first_posterior(self) -> Posterior:
-        """By the first emulator: shows where to look closer."""
+        """By the first emulator: shows where to simulate more sessions."""
         effects = self._effects("first-effects", self.first_emulator)
         return self._posterior("first-posterior", self.first_emulator, effects)
 
     @cached_property
     def emulator(self) -> Emulator:
         """Fitted to the training and the correction, where there is one."""
-        if not self.brief.sizes.correction:
+        if not self.config.sizes.correction:
             return self.first_emulator
-        return self._emulator("emulator", trial_table.join([self.training, self.correction]))
+        return self._emulator("emulator", trial_table.join_tables([self.training, self.correction]))
 
     @cached_property
-    def effects(self) -> Effects:
+    def effects(self) -> DesignEffects:
         """Design effects: variance of the published figures over that of independent trials."""
         return self._effects("effects", self.emulator)
 
@@ -148,127 +135,103 @@ class Stages:
         """Of the published numbers."""
         return self._posterior("posterior", self.emulator, self.effects)
 
-    def _emulator(self, name: str, trials: Table) -> Emulator:
-        from hthor.calibration.emulator import emulator
+    def _emulator(self, name: str, table: Table) -> Emulator:
+        members, seed = self.config.sizes.members, self.config.seed
+        return self._cached(name, lambda: emulator.fit_emulator(table, self.t_star, seed=seed, members=members))
 
-        sizes, seed = self.brief.sizes, self.brief.seed
-        return self._made(name, lambda: emulator.fit(trials, self.t_star, seed=seed, members=sizes.members))
+    def _effects(self, name: str, fitted: Emulator) -> DesignEffects:
+        points, observed = self.studies.points, self.observed
+        return self._cached(name, lambda: design_effects.estimate_effects(fitted.rates(points), observed))
 
-    def _effects(self, name: str, fitted: Emulator) -> Effects:
-        from hthor.calibration.inference import design_effects
+    def _posterior(self, name: str, fitted: Emulator, effects: DesignEffects) -> Posterior:
+        published, seed, sizes = self.published, self.config.seed, self.config.sizes
 
-        where, seen = self.studies.points, self.observed
-        return self._made(name, lambda: design_effects.effects(fitted.rates(where), seen))
+        def sample() -> Posterior:
+            return posterior.sample_posterior(
+                fitted, published, effects, seed=seed, draws=sizes.draws, proposals=sizes.proposals
+            )
 
-    def _posterior(self, name: str, fitted: Emulator, effects: Effects) -> Posterior:
-        from hthor.calibration.inference import posterior
-
-        sizes, seed = self.brief.sizes, self.brief.seed
-        return self._made(
-            name,
-            lambda: posterior.sample(
-                fitted, self.published, effects, seed=seed, draws=sizes.draws, proposals=sizes.proposals
-            ),
-        )
+        return self._cached(name, sample)
 
     # ---------------------------------------------------------------------------------------------------------- checks
 
     @cached_property
-    def published(self) -> Observed:
+    def published(self) -> StudyResults:
         """The study that was published."""
-        from hthor.calibration.inference import summary_statistics
-
-        return summary_statistics.published(self.brief.targets)
+        return summary_statistics.published_results(self.config.targets)
 
     @cached_property
-    def observed(self) -> Observed:
+    def observed(self) -> StudyResults:
         """What each simulated study would have published."""
-        return self._published_of(self.studies)
+        return summary_statistics.study_results(self.studies, self.t_star)[1]
 
     @cached_property
-    def quality(self) -> Quality:
-        """How far the emulator is off whole studies, in its own standard deviations."""
-        from hthor.calibration.inference import design_effects
-
-        fitted, where, seen = self.emulator, self.studies.points, self.observed
-        return self._made("quality", lambda: design_effects.quality(fitted.rates(where), seen))
+    def quality(self) -> EmulatorQuality:
+        """The emulator's errors on whole studies, in its own standard deviations."""
+        fitted, points, observed = self.emulator, self.studies.points, self.observed
+        return self._cached("quality", lambda: design_effects.emulator_quality(fitted.rates(points), observed))
 
     @cached_property
     def coverage(self) -> Coverage:
-        """How often simulated studies' 90 % intervals hold the truth."""
-        from hthor.calibration.diagnostics import coverage
-
-        fitted, where, seen = self.emulator, self.studies.points, self.observed
-        seed, size = self.brief.seed, self.brief.sizes.proposals // 2
-        return self._made(
-            "coverage", lambda: coverage.run(fitted, where, seen, seed=seed, proposals=size, fitted=FITTED)
+        """How often the 90 % intervals of simulated studies hold the truth."""
+        fitted, points, observed = self.emulator, self.studies.points, self.observed
+        seed, size = self.config.seed, self.config.sizes.proposals // 2
+        return self._cached(
+            "coverage", lambda: coverage.check_coverage(fitted, points, observed, seed=seed, proposals=size)
         )
 
     @cached_property
-    def check(self) -> Check | None:
-        """The same posterior by approximate Bayesian computation; None with too few studies for it."""
-        from hthor.calibration.diagnostics import abc_check
-
-        if self.brief.sizes.studies < abc_check.FEWEST:
-            return None
-        where, means, seed = self.studies.points, self.coverage.means, self.brief.seed
-        found = self.posterior
-        return self._made("abc", lambda: abc_check.check(found, where, means, seed=seed, fitted=FITTED))
+    def abc_shifts(self) -> tuple[AbcShift, ...]:
+        """The fitted parameters by approximate Bayesian computation; empty with too few studies for it."""
+        if self.config.sizes.studies < abc_check.FEWEST:
+            return ()
+        points, means, seed, ours = self.studies.points, self.coverage.means, self.config.seed, self.posterior
+        return self._cached("abc", lambda: abc_check.compare_posteriors(ours, points, means, FITTED, seed=seed))
 
     @cached_property
-    def held_out(self) -> tuple[HeldOut, ...]:
-        """Each condition foretold by the other two."""
-        from hthor.calibration.diagnostics import held_out
-        from hthor.calibration.inference import posterior
+    def held_out(self) -> tuple[HeldOutCondition, ...]:
+        """Each condition predicted by the other two."""
+        fitted, published, effects = self.emulator, self.published, self.effects
+        seed, size = self.config.seed, self.config.sizes.proposals
 
-        fitted, aim, effects = self.emulator, self.published, self.effects
-        seed, size = self.brief.seed, self.brief.sizes.proposals
-        return self._made(
-            "held-out",
-            lambda: held_out.run(fitted, aim, effects, seed=seed, prior=posterior.bank(fitted, seed, size)),
-        )
+        def predict() -> tuple[HeldOutCondition, ...]:
+            prior = posterior.sample_prior(fitted, seed, size)
+            return held_out.predict_held_out(fitted, published, effects, prior, seed=seed)
+
+        return self._cached("held-out", predict)
 
     @cached_property
-    def ranking(self) -> Ranking:
+    def ranking(self) -> RobotRanking:
         """How posterior draws rank the robots."""
-        from hthor.calibration.diagnostics import ranking_robustness
+        fitted, points, effects = self.emulator, self.posterior.points, self.effects
+        seed, suite = self.config.seed, self.config.suite.name
 
-        fitted, where, effects, seed = self.emulator, self.posterior.points, self.effects, self.brief.seed
-        return self._made("ranking", lambda: ranking_robustness.robots(fitted.rates(where), effects, seed=seed))
+        def rank() -> RobotRanking:
+            return ranking_robustness.rank_robots(fitted.rates(points), effects, seed=seed, suite=suite)
+
+        return self._cached("ranking", rank)
 
     @cached_property
-    def swings(self) -> tuple[Swing, ...]:
+    def swings(self) -> tuple[ParameterSwing, ...]:
         """What each parameter alone does to the gaps between robots."""
-        from hthor.calibration.diagnostics import ranking_robustness
-
-        fitted, found = self.emulator, self.posterior
-        return self._made("swings", lambda: ranking_robustness.sensitivity(fitted, found))
+        fitted, ours = self.emulator, self.posterior
+        return self._cached("swings", lambda: ranking_robustness.parameter_swings(fitted, ours))
 
     @cached_property
-    def foretold(self) -> dict[str, dict[str, np.ndarray]]:
-        """The eight figures of studies: emulated ones of the prior and the posterior, simulated ones of the latter."""
-        from hthor.calibration.inference import predictive
-
-        seed, sizes = self.brief.seed, self.brief.sizes
-        where = {
-            "prior": design_points.spread(
-                sizes.draws, len(parameter_registry.free_parameter_names()), seed, "prior predictive"
-            ),
+    def predictions(self) -> dict[str, dict[str, np.ndarray]]:
+        """The eight figures of studies: emulated for the prior and the posterior, simulated for the posterior."""
+        points = {
+            "prior": self._prior_points(self.config.sizes.draws, "prior predictive"),
             "posterior": self.posterior.points,
         }
         emulated = {
-            name: predictive.draw(self.emulator.rates(some), self.published, self.effects, seed).figures()
-            for name, some in where.items()
+            name: predictive.draw_studies(self.emulator.rates(some), self.published, self.effects, self.config.seed)
+            for name, some in points.items()
         }
-        return {**emulated, "simulated": self._published_of(self.predicted).figures()}
+        simulated = summary_statistics.study_results(self.predicted, self.t_star)[1]
+        return {name: results.figures() for name, results in {**emulated, "simulated": simulated}.items()}
 
-    def _published_of(self, trials: Table) -> Observed:
-        from hthor.calibration.inference import summary_statistics
-
-        _, found = summary_statistics.studies(trials, self.t_star)
-        return found
-
-    def _made(self, name: str, make: Callable[[], _T]) -> _T:
-        """A product, worked out by one thread so that its bytes do not hang on their number."""
-        with self._teller.work(name), alone():
-            return self._shelf.kept(name, make)
+    def _cached(self, name: str, make: Callable[[], _T]) -> _T:
+        """A product, computed by one thread so that its bytes do not depend on the number of threads."""
+        with self._progress.work(name), single_thread():
+            return self._cache.get(name, make)

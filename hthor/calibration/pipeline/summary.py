@@ -1,39 +1,32 @@
-"""What a calibration came to, as data for programs; computes nothing."""
+"""A calibration's result as data for programs."""
 
 from __future__ import annotations
 
 from msgspec import Struct
 
 from hthor.calibration.diagnostics.acceptance import Gate
-from hthor.calibration.simulation.budget import Sizes
+from hthor.calibration.evidence import Band
+from hthor.calibration.pipeline.config import CalibrationSizes
 
 SCHEMA = "hthor.calibration/1"
 
 
-class Span(Struct, frozen=True, kw_only=True):
-    """Median and 90 % interval."""
+class FigureSummary(Struct, frozen=True, kw_only=True):
+    """A published figure and what is predicted of studies: medians and 90 % intervals, all in per cent.
 
-    low: float
-    median: float
-    high: float
-
-
-class Foretold(Struct, frozen=True, kw_only=True):
-    """A published figure and what is foretold of studies, all in per cent.
-
-    ``prior`` and ``posterior`` come from the emulator; ``simulated`` from whole studies of people of the posterior in
-    the real world.
+    ``prior`` and ``posterior`` come from the emulator, ``simulated`` from whole studies simulated with people of the
+    posterior.
     """
 
     figure: str
     published: float
-    prior: Span
-    posterior: Span
-    simulated: Span
+    prior: Band
+    posterior: Band
+    simulated: Band
 
 
-class Learned(Struct, frozen=True, kw_only=True):
-    """What the published numbers say of a parameter, in its unit.
+class ParameterSummary(Struct, frozen=True, kw_only=True):
+    """What the published numbers say of a parameter, in its unit: medians and 90 % intervals.
 
     ``contraction`` is 1 - variance of the posterior / variance of the prior, of its quantile in the prior; ``word``
     says whether that makes it known; ``recovery`` is the correlation of truth and estimate over simulated studies.
@@ -43,14 +36,14 @@ class Learned(Struct, frozen=True, kw_only=True):
     unit: str
     fitted: bool
     grade: str
-    prior: Span
-    posterior: Span
+    prior: Band
+    posterior: Band
     contraction: float
     word: str
     recovery: float
 
 
-class Summary(Struct, frozen=True, kw_only=True):
+class CalibrationSummary(Struct, frozen=True, kw_only=True):
     """A calibration's result.
 
     Attributes:
@@ -63,13 +56,13 @@ class Summary(Struct, frozen=True, kw_only=True):
     suite: str
     suite_sha256: str
     seed: int
-    sizes: Sizes
+    sizes: CalibrationSizes
     trials: int
     effective: float
     population: str
     population_sha256: str
-    figures: tuple[Foretold, ...]
-    parameters: tuple[Learned, ...]
+    figures: tuple[FigureSummary, ...]
+    parameters: tuple[ParameterSummary, ...]
     design_effects: dict[str, float]
     gates: tuple[Gate, ...]
 

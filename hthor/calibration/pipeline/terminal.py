@@ -1,25 +1,80 @@
-"""A calibration's result on the terminal: figures, parameters and gates; computes nothing."""
+"""A calibration on the terminal: its progress on standard error, and the tables of its result."""
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from hthor.calibration.pipeline.summary import Span, Summary
+from hthor.calibration.evidence import Band
+from hthor.calibration.pipeline.summary import CalibrationSummary
+from hthor.eval.runner import progress
 
 if TYPE_CHECKING:
-    from rich.console import RenderableType
+    from rich.console import Console, RenderableType
     from rich.table import Table
 
+    from hthor.eval.runner.progress import Watcher
 
-def parts(found: Summary) -> Iterator[RenderableType]:
-    """The tables, in order."""
+_SHOWN_FROM_S = 1.0
+"""Stages that compute are reported when they take longer than this."""
+
+
+class SilentProgress:
+    """Reports nothing; see `hthor.calibration.pipeline.stages.ProgressReporter`."""
+
+    @contextmanager
+    def watch(self, stage: str) -> Iterator[Watcher]:  # noqa: ARG002
+        """Report nothing of a stage that simulates."""
+        yield progress.Silent()
+
+    @contextmanager
+    def work(self, stage: str) -> Iterator[None]:  # noqa: ARG002
+        """Report nothing of a stage that computes."""
+        yield
+
+
+class PrintedProgress:
+    """A bar, or lines where there is no terminal, for each stage that simulates; a line for each that computes.
+
+    See `hthor.calibration.pipeline.stages.ProgressReporter`.
+    """
+
+    def __init__(self, console: Console, *, live: bool) -> None:
+        self._console, self._live = console, live
+
+    @contextmanager
+    def watch(self, stage: str) -> Iterator[Watcher]:
+        """Report trial by trial."""
+        watcher = progress.Live(self._console, stage) if self._live else progress.Plain(self._console, stage)
+        try:
+            yield watcher
+        finally:
+            watcher.close()
+
+    @contextmanager
+    def work(self, stage: str) -> Iterator[None]:
+        """Report how long the stage took."""
+        began = time.monotonic()
+        yield
+        spent = time.monotonic() - began
+        if spent > _SHOWN_FROM_S:
+            self._console.print(f"{stage}: {spent:.0f} s", markup=False, highlight=False)
+
+
+def result_tables(summary: CalibrationSummary) -> Iterator[RenderableType]:
+    """The tables of a result, in order: figures, parameters, gates."""
     yield _table(
-        f"{found.target} on {found.suite}: studies of the published design, median and 90 % interval [%]",
+        f"{summary.target} on {summary.suite}: studies of the published design, median and 90 % interval [%]",
         ("figure", "published", "prior", "posterior", "simulated"),
         (
-            (row.figure, f"{row.published:.1f}", *_spans(row.prior, row.posterior, row.simulated))
-            for row in found.figures
+            (
+                row.figure,
+                f"{row.published:.1f}",
+                *(_percent(band) for band in (row.prior, row.posterior, row.simulated)),
+            )
+            for row in summary.figures
         ),
     )
     yield _table(
@@ -29,39 +84,39 @@ def parts(found: Summary) -> Iterator[RenderableType]:
             (
                 row.name + ("*" if row.fitted else ""),
                 row.unit,
-                *(_short(span) for span in (row.prior, row.posterior)),
+                _short(row.prior),
+                _short(row.posterior),
                 f"{row.contraction:.2f}",
                 f"{row.recovery:.2f}",
                 row.word,
             )
-            for row in found.parameters
+            for row in summary.parameters
         ),
     )
     yield _table(
-        "gates" + (" of a small calibration" if found.sizes.quick else ""),
+        "gates" + (" of a small calibration" if summary.sizes.quick else ""),
         ("gate", "asks", "found", "verdict"),
-        ((gate.name, gate.asks, gate.found, "passed" if gate.passed else "FAILED") for gate in found.gates),
-        words=4,
+        ((gate.name, gate.asks, gate.found, "passed" if gate.passed else "FAILED") for gate in summary.gates),
+        text_columns=4,
     )
 
 
-def _spans(*spans: Span) -> Iterator[str]:
-    for span in spans:
-        yield f"{span.median:.0f} [{span.low:.0f}, {span.high:.0f}]"
+def _percent(band: Band) -> str:
+    return f"{band.median:.0f} [{band.low:.0f}, {band.high:.0f}]"
 
 
-def _short(span: Span) -> str:
-    return f"{span.median:.3g} [{span.low:.3g}, {span.high:.3g}]"
+def _short(band: Band) -> str:
+    return f"{band.median:.3g} [{band.low:.3g}, {band.high:.3g}]"
 
 
-def _table(title: str, head: Sequence[str], rows: Iterable[Sequence[str]], *, words: int = 1) -> Table:
+def _table(title: str, head: Sequence[str], rows: Iterable[Sequence[str]], *, text_columns: int = 1) -> Table:
     from rich import box
     from rich.table import Table
     from rich.text import Text
 
     table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, pad_edge=False)
     for column, heading in enumerate(head):
-        table.add_column(heading, justify="left" if column < words or heading == "known?" else "right")
+        table.add_column(heading, justify="left" if column < text_columns or heading == "known?" else "right")
     for row in rows:
         table.add_row(*(Text(cell, style="bold red" if cell == "FAILED" else "") for cell in row))
     return table

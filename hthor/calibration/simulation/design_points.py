@@ -5,32 +5,25 @@ from __future__ import annotations
 import numpy as np
 
 from hthor import seeds
-from hthor.errors import MissingExtra
 
 _EDGE = 1e-4
-"""Points stay so far from the cube's faces, where an unbounded prior has no finite quantile."""
+"""Points stay this far from the cube's faces, where an unbounded prior has no finite quantile."""
 _DIGITS = 9
 
 
-def spread(count: int, dimensions: int, seed: int, *names: str) -> np.ndarray:
+def sobol_points(count: int, dimensions: int, seed: int, *names: str) -> np.ndarray:
     """(count, dimensions) float64, points that fill the unit cube evenly: a scrambled Sobol sequence.
 
     The first points are the same for every ``count``, so that more can be asked for later.
-
-    Raises:
-        MissingExtra: without scipy.
     """
-    try:
-        from scipy.stats import qmc
-    except ImportError:
-        raise MissingExtra("calibration", "calibration") from None
-    chance = np.random.Generator(np.random.Philox(seeds.derive(seed, "points", *names)))
+    from scipy.stats import qmc
+
+    rng = np.random.Generator(np.random.Philox(seeds.derive(seed, "points", *names)))
     power = max(0, int(np.ceil(np.log2(max(count, 1)))))
-    drawn = qmc.Sobol(dimensions, scramble=True, rng=chance).random_base2(power)[:count]
-    return tidy(drawn)
+    return round_points(qmc.Sobol(dimensions, scramble=True, rng=rng).random_base2(power)[:count])
 
 
-def tidy(points: np.ndarray) -> np.ndarray:
+def round_points(points: np.ndarray) -> np.ndarray:
     """The same points, away from the faces and rounded, so that they read the same from a file."""
     inside: np.ndarray = np.round(np.clip(points, _EDGE, 1.0 - _EDGE), _DIGITS)
     return inside

@@ -1,12 +1,12 @@
-"""One person's session in the real world, played for its outcomes alone.
+"""One participant's session in the simulated world, run for its outcomes alone.
 
-A person is drawn from the population at a point of the prior's cube, as `hthor.humans.population.random_effects`
-draws people, and plays ten tasks one after the other with the robot of a condition, or without one.
+A person is drawn from the population at a point of the prior's cube, as `hthor.humans.population.random_effects` draws
+people, and does ten tasks one after the other with the robot of a condition, or without one.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from msgspec import Struct
@@ -19,35 +19,25 @@ from hthor.eval.runner.sources import Sources
 from hthor.eval.runner.trial_runner import TrialRunner
 from hthor.humans.models.proxy import Model
 from hthor.humans.population import parameter_registry, random_effects
+from hthor.humans.population.parameters import Parameters
 from hthor.humans.population.participant import Participant, participant_root
 from hthor.tasks import Suite
 from hthor.types import HUMAN, RobotSeat, TaskSpec, TrialSpec
 
-OUTCOMES = (
-    "task",
-    "met",
-    "ticks",
-    "sent",
-    "shown",
-    "confirmed",
-    "declined",
-    "picked",
-    "messages",
-    "adopted",
-    "trust",
-)
-
 CODE_ROOT = "sessions"
+
+_FIRST = ("sent", "shown", "confirmed", "declined", "picked")
+OUTCOMES = ("task", "met", "ticks", *_FIRST, "messages", "adopted", "trust")
 """What is kept of a trial, in order; see `hthor.calibration.simulation.trial_table.Table`."""
 
-Row = tuple[int, ...]
+OutcomeRow = tuple[int, ...]
 
 
 class SessionSpec(Struct, frozen=True, kw_only=True):
-    """A session to be played.
+    """A session to be run.
 
     Attributes:
-        key: its name, a hash of all that decides its course.
+        key: its name, a hash of everything that decides its course.
         seed: of the study whose participant number ``participant`` the person is.
         point: of the prior's unit cube: the population that the person comes from.
         condition: 0 none, 1 frontier, 2 oracle. tasks: numbers in the suite, in the order of the trials.
@@ -62,69 +52,69 @@ class SessionSpec(Struct, frozen=True, kw_only=True):
 
 
 class SessionOutcome(Struct, frozen=True, kw_only=True):
-    """A session that was played: a row of `OUTCOMES` for each trial. One without a key tells of a single trial."""
+    """A session that was run: a row of `OUTCOMES` for each trial. One without a key reports a single trial."""
 
     key: str = ""
-    rows: tuple[Row, ...]
+    rows: tuple[OutcomeRow, ...]
     met: bool = False
     faults: tuple[str, ...] = ()
 
 
-def player(suite: Suite, seats: tuple[tuple[RobotSeat, ...], ...]) -> Callable[[SessionSpec], Iterator[TrialOutcome]]:
-    """What a worker does with each sitting: tell of each trial, and in the end of the session.
+def make_session_runner(
+    suite: Suite, robots: tuple[tuple[RobotSeat, ...], ...]
+) -> Callable[[SessionSpec], Iterator[TrialOutcome]]:
+    """A function that runs sessions in a worker: it reports each trial, and at the end the session.
 
-    Called in the worker; keeps worlds for later sittings.
+    Called in the worker; keeps worlds for later sessions.
 
     Args:
-        seats: the robots of each condition.
+        robots: the robots of each condition.
     """
-    stage = TrialRunner(Sources(houses=str(suite.houses.folder or "")))
+    runner = TrialRunner(Sources(houses=str(suite.houses.folder or "")))
 
-    def perform(sitting: SessionSpec) -> Iterator[TrialOutcome]:
+    def run(spec: SessionSpec) -> Iterator[TrialOutcome]:
         rows = []
-        for row in sit(sitting, suite, seats[sitting.condition], stage):
+        for row in run_session(spec, suite, robots[spec.condition], runner):
             rows.append(row)
-            yield _outcome(SessionOutcome(rows=(row,)))
-        yield _outcome(SessionOutcome(key=sitting.key, rows=tuple(rows)))
+            yield _message(SessionOutcome(rows=(row,)))
+        yield _message(SessionOutcome(key=spec.key, rows=tuple(rows)))
 
-    return perform
-
-
-def _outcome(session: Any) -> TrialOutcome:
-    """What workers send; they only encode it, so it need not be a trial's record."""
-    return TrialOutcome(record=session)
+    return run
 
 
-def sit(sitting: SessionSpec, suite: Suite, seats: tuple[RobotSeat, ...], stage: TrialRunner) -> Iterator[Row]:
-    """Play a session from its first trial to its last; a row of `OUTCOMES` for each."""
-    chances = participant_root(sitting.seed, sitting.participant)
-    traits = random_effects.add_random_effects(parameter_registry.parameters_at(sitting.point), chances)
-    human = Model(Participant(seed=sitting.seed, number=sitting.participant, traits=traits))
-    minds = {seat.seat: plugins.load("agent", seat.agent.name)() for seat in seats}
-    for index, number in enumerate(sitting.tasks):
-        trial = _trial(sitting, suite.tasks[number], seats, index)
-        log = run_episode(trial, stage.world(trial), human, minds)
+def _message(outcome: Any) -> TrialOutcome:
+    """A worker's message; it is only encoded, so it need not hold a trial's record."""
+    return TrialOutcome(record=outcome)
+
+
+def run_session(
+    spec: SessionSpec, suite: Suite, robots: tuple[RobotSeat, ...], runner: TrialRunner
+) -> Iterator[OutcomeRow]:
+    """Run a session from its first trial to its last; a row of `OUTCOMES` for each."""
+    trials = [_trial(spec, suite.tasks[number], robots, index) for index, number in enumerate(spec.tasks)]
+    logs = run_trials(trials, parameter_registry.parameters_at(spec.point), runner)
+    for number, trial, log in zip(spec.tasks, trials, logs, strict=True):
         if log.faults:
             raise HthorError(f"the {log.faults[0].seat} failed in {trial.task.id}: {log.faults[0].detail.strip()}")
-        yield _row(number, trial, log)
+        yield outcome_row(number, trial, log)
 
 
-def _trial(sitting: SessionSpec, task: TaskSpec, seats: tuple[RobotSeat, ...], index: int) -> TrialSpec:
-    return TrialSpec(
-        task=task,
-        robots=seats,
-        human="proxy",
-        human_sha256="",
-        participant=sitting.participant,
-        index=index,
-        seed=sitting.seed,
-        suite_sha256="",
-        rules_sha256="",
-        code_sha256="",
-    )
+def run_trials(trials: Sequence[TrialSpec], population: Parameters, runner: TrialRunner) -> Iterator[EpisodeLog]:
+    """Run the trials of one session with a person drawn from the population; the log of each."""
+    seed, participant = trials[0].seed, trials[0].participant
+    traits = random_effects.add_random_effects(population, participant_root(seed, participant))
+    human = Model(Participant(seed=seed, number=participant, traits=traits))
+    agents = {seat.seat: plugins.load("agent", seat.agent.name)() for seat in trials[0].robots}
+    for trial in trials:
+        yield run_episode(trial, runner.world(trial), human, agents)
 
 
-def _row(number: int, trial: TrialSpec, log: EpisodeLog) -> Row:
+def outcome_row(number: int, trial: TrialSpec, log: EpisodeLog) -> OutcomeRow:
+    """What is kept of a trial, in the order of `OUTCOMES`.
+
+    Args:
+        number: of the task in the suite.
+    """
     first: dict[str, int] = {}
     messages, target = 0, trial.task.goal.target
     for event in log.events:
@@ -133,5 +123,20 @@ def _row(number: int, trial: TrialSpec, log: EpisodeLog) -> Row:
         if kind != "picked" or (event.seat == HUMAN and event.data.get("object") == target):
             first.setdefault(kind, event.tick)
     ticks = log.ticks if log.met else round(trial.task.time_limit / rules.TICK_S)
-    known = [first.get(kind, -1) for kind in ("sent", "shown", "confirmed", "declined", "picked")]
-    return (number, int(log.met), ticks, *known, messages, int("confirmed" in first), log.trust or 0)
+    ticks_of_first = [first.get(kind, -1) for kind in _FIRST]
+    return (number, int(log.met), ticks, *ticks_of_first, messages, int("confirmed" in first), log.trust or 0)
+
+
+def _trial(spec: SessionSpec, task: TaskSpec, robots: tuple[RobotSeat, ...], index: int) -> TrialSpec:
+    return TrialSpec(
+        task=task,
+        robots=robots,
+        human="proxy",
+        human_sha256="",
+        participant=spec.participant,
+        index=index,
+        seed=spec.seed,
+        suite_sha256="",
+        rules_sha256="",
+        code_sha256="",
+    )

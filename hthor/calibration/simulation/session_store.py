@@ -1,54 +1,49 @@
-"""Sessions that were played, kept as they come: an append-only file with one writer.
+"""The store of simulated sessions: an append-only file with one writer.
 
-A killed command loses at most what its workers had in hand. The file's order depends on the workers' haste; who reads
-it goes by the sessions' keys.
+A killed command loses at most what its workers were running. The order of the lines depends on the workers' speed;
+readers go by the sessions' keys.
 """
 
 from __future__ import annotations
 
 import os
-import zlib
 from collections.abc import Iterator
 from pathlib import Path
 from types import TracebackType
 
 import msgspec
 
-from hthor import jsonio
+from hthor import documents, jsonio
 from hthor.calibration.simulation.session_simulation import SessionOutcome
-from hthor.calibration.simulation.trial_identity import Identity
-from hthor.documents import Unreadable, reading_errors
-from hthor.documents import read as read_document
+from hthor.calibration.simulation.trial_identity import TrialIdentity
 from hthor.errors import RunError
-from hthor.eval.records import trial_log
+from hthor.eval.records import trial_log, trial_record
 
 FILE, IDENTITY = "sessions.jsonl", "identity.json"
 _decoder = msgspec.json.Decoder(SessionOutcome)
-_TAIL = b',"check":"%08x"}\n'
-_TAIL_LENGTH = len(_TAIL % 0)
-_NAMED = 6
+_SHOWN = 6
 
 
 class SessionStore:
-    """The one writer of a folder of sessions. Use as a context manager.
+    """The one writer of a folder of sessions; ``sessions`` has them by key. Use as a context manager.
 
     Args:
         folder: made when absent.
-        identity: what the trials hang on; the folder keeps to the one that it began with.
+        identity: what the trials depend on; the folder keeps to the one that it began with.
 
     Raises:
         RunLocked: when another process is writing there.
-        RunError: when the folder holds sessions of another world or person, or a damaged line.
+        RunError: when the folder holds sessions of another world or human model, or a damaged line.
     """
 
-    def __init__(self, folder: Path, identity: Identity) -> None:
+    def __init__(self, folder: Path, identity: TrialIdentity) -> None:
         self.path = folder / FILE
         folder.mkdir(parents=True, exist_ok=True)
         self._lock = trial_log.lock(folder)
         try:
-            _examine(folder, identity)
-            self.torn = trial_log.cut_torn_lines(self.path)
-            self.held = {sat.key: sat for sat in read(self.path)}
+            _check_identity(folder, identity)
+            self.cut_bytes = trial_log.cut_torn_lines(self.path)
+            self.sessions = {outcome.key: outcome for outcome in read_outcomes(self.path)}
         except BaseException:
             os.close(self._lock)
             raise
@@ -65,15 +60,15 @@ class SessionStore:
         os.close(self._lock)
 
     def append(self, line: bytes) -> SessionOutcome:
-        """Keep a session, given as its line, unless it is there; a line without a key is only read."""
-        sat = _decoder.decode(line)
-        if sat.key and sat.key not in self.held:
+        """Store a session, given as its line, unless it is there; a line without a key is only decoded."""
+        outcome = _decoder.decode(line)
+        if outcome.key and outcome.key not in self.sessions:
             self._file.write(line)
-            self.held[sat.key] = sat
-        return sat
+            self.sessions[outcome.key] = outcome
+        return outcome
 
 
-def read(path: Path) -> Iterator[SessionOutcome]:
+def read_outcomes(path: Path) -> Iterator[SessionOutcome]:
     """Every session of a file.
 
     Raises:
@@ -83,31 +78,29 @@ def read(path: Path) -> Iterator[SessionOutcome]:
         return
     with path.open("rb") as file:
         for number, line in enumerate(file, 1):
-            body, tail = line[:-_TAIL_LENGTH], line[-_TAIL_LENGTH:]
             try:
-                if tail != _TAIL % zlib.crc32(body):
-                    raise Unreadable("check", "is not the line's checksum")
-                with reading_errors():
-                    session = _decoder.decode(line)
-            except Unreadable as error:
+                with documents.reading_errors():
+                    outcome = _decoder.decode(line)
+                trial_record.verify_checksum(line)
+            except trial_record.Damaged as error:
                 raise RunError(
                     f"{path}, line {number}: {error}. The file was changed after it was written. Delete that line to "
-                    "have its session played again by the same command."
+                    "have its session simulated again by the same command."
                 ) from None
-            yield session
+            yield outcome
 
 
-def _examine(folder: Path, identity: Identity) -> None:
-    """See that what lies in the folder is of the same world and people, and note whose it is when it is new."""
+def _check_identity(folder: Path, identity: TrialIdentity) -> None:
+    """Refuse a folder with sessions of another world or human model; note the identity of a new one."""
     path, sessions = folder / IDENTITY, folder / FILE
     if not path.exists() or not sessions.exists() or not sessions.stat().st_size:
         jsonio.write(path, jsonio.pretty(identity))
         return
     hint = "the file was changed after it was written; delete the folder"
-    there = read_document(path, Identity, RunError, hint=hint)
-    if changed := there.differences(identity):
-        more = f" and {len(changed) - _NAMED} more" if len(changed) > _NAMED else ""
+    stored = documents.read(path, TrialIdentity, RunError, hint=hint)
+    if changed := stored.differences(identity):
+        more = f" and {len(changed) - _SHOWN} more" if len(changed) > _SHOWN else ""
         raise RunError(
-            f"{folder} holds sessions of another world or person: {', '.join(changed[:_NAMED])}{more} changed since "
+            f"{folder} holds sessions of another world or person: {', '.join(changed[:_SHOWN])}{more} changed since "
             "they were simulated. Choose another folder with --out, or delete this one."
         )

@@ -1,4 +1,4 @@
-"""Sessions simulated in the real world, by several workers, resumed where an earlier command ended."""
+"""Sessions simulated by several worker processes, resumed where an earlier command ended."""
 
 from __future__ import annotations
 
@@ -15,8 +15,9 @@ from hthor import jsonio, seeds
 from hthor.calibration.simulation import design_points, session_simulation, trial_identity, trial_table
 from hthor.calibration.simulation.session_simulation import OUTCOMES, SessionOutcome, SessionSpec
 from hthor.calibration.simulation.session_store import SessionStore
-from hthor.calibration.simulation.trial_identity import Identity
-from hthor.calibration.simulation.trial_table import AGENTS, CONDITIONS, Table
+from hthor.calibration.simulation.trial_identity import TrialIdentity
+from hthor.calibration.simulation.trial_table import AGENTS, Table
+from hthor.calibration.targets import CONDITIONS
 from hthor.errors import RunError
 from hthor.eval.config import robot_team, sessions
 from hthor.eval.runner.collector import InternalFailure
@@ -28,127 +29,120 @@ from hthor.humans.population import parameter_registry
 from hthor.tasks import Suite
 from hthor.types import RobotSeat
 
-"""The robots' body. Its speed is the system setting that the published study does not tell."""
-
 _MET = OUTCOMES.index("met")
 
 
-class Plan(Struct, frozen=True, kw_only=True):
-    """Sessions of a suite: whose, and where their people come from.
+class SessionBatch(Struct, frozen=True, kw_only=True):
+    """Sessions of a suite and the populations that their people come from.
 
-    ``sittings`` are (study, session, row of ``points``, sitting), in the table's order.
+    ``sessions`` are (study, number of the session, row of ``points``, session), in the table's order.
     """
 
     suite: Suite
-    identity: Identity
+    identity: TrialIdentity
     points: np.ndarray
-    sittings: tuple[tuple[int, int, int, SessionSpec], ...]
+    sessions: tuple[tuple[int, int, int, SessionSpec], ...]
 
 
-def training(suite: Suite, seed: int, sessions: int, folder: Path, jobs: int, watch: Watcher) -> Table:
-    """Sessions of people from all over the prior, one person from each point.
-
-    The first sessions are the same for every number of them. The rest as `at` has it.
-    """
-    where = design_points.spread(sessions, len(parameter_registry.free_parameter_names()), seed, "training")
-    return at(where, suite, seed, folder, jobs, watch, "training")
-
-
-def at(where: np.ndarray, suite: Suite, seed: int, folder: Path, jobs: int, watch: Watcher, name: str) -> Table:
+def simulate_sessions(
+    points: np.ndarray, suite: Suite, seed: int, folder: Path, jobs: int, watch: Watcher, name: str
+) -> Table:
     """A session of one person from each point, the conditions in turn.
 
     Args:
-        where: (S, P) points of the prior's unit cube.
-        folder: where played sessions are kept; a later call with more of them plays only what is missing.
+        points: (S, P) points of the prior's unit cube.
+        folder: where sessions are stored; a later call with more points simulates only what is missing.
         name: of these sessions; their people and chances are their own.
 
     Raises:
-        RunError: when the folder holds sessions of another world or person.
+        RunError: when the folder holds sessions of another world or human model.
         Interrupted: on Ctrl-C or SIGTERM.
     """
-    spots = design_points.tidy(where)
-    known, own = trial_identity.trials_identity(suite), seeds.derive(seed, "calibration", name)
-    dealt = tuple(
-        (-1, number, number, place(suite, known, own, number, row, turn(number)))
-        for number, row in enumerate(spots.tolist())
+    points = design_points.round_points(points)
+    identity, own_seed = trial_identity.trials_identity(suite), seeds.derive(seed, "calibration", name)
+    specs = tuple(
+        (-1, number, number, make_session_spec(suite, identity, own_seed, number, point, assign_condition(number)))
+        for number, point in enumerate(points.tolist())
     )
-    plan = Plan(suite=suite, identity=known, points=spots, sittings=dealt)
-    return tabulate(plan, perform(plan, folder, jobs, watch))
+    batch = SessionBatch(suite=suite, identity=identity, points=points, sessions=specs)
+    return make_table(batch, run_missing(batch, folder, jobs, watch))
 
 
-def turn(number: int) -> int:
-    """The condition of a training session: each in turn, and in every third round of hands another first."""
+def assign_condition(number: int) -> int:
+    """The condition of a training session: each in turn, starting one later every three sessions.
+
+    People of three consecutive numbers share all tasks between them, so every condition meets every third of them.
+    """
     return (number + number // 3) % len(CONDITIONS)
 
 
-def place(
-    suite: Suite, known: Identity, seed: int, participant: int, point: Sequence[float], condition: int
+def make_session_spec(
+    suite: Suite, identity: TrialIdentity, seed: int, participant: int, point: Sequence[float], condition: int
 ) -> SessionSpec:
     """The session of a participant of the study with this seed, drawn from the population at a point."""
     tasks = tuple(sessions.assign_tasks(suite.tasks, seed, participant))
-    what = [known.sha256, seed, participant, list(point), condition, tasks]
-    key = jsonio.sha256(what)[:16]
+    key = jsonio.sha256([identity.sha256, seed, participant, list(point), condition, tasks])[:16]
     return SessionSpec(
         key=key, seed=seed, participant=participant, point=tuple(point), condition=condition, tasks=tasks
     )
 
 
-def perform(plan: Plan, folder: Path, jobs: int, watch: Watcher) -> Mapping[str, SessionOutcome]:
-    """Play what a plan still lacks; every session by its key."""
-    wanted = [one for *_, one in plan.sittings]
-    with SessionStore(folder, plan.identity) as ledger:
-        left = [one for one in wanted if one.key not in ledger.held]
-        total, lacking = (sum(len(one.tasks) for one in some) for some in (wanted, left))
-        watch.begin(total, total - lacking)
-        if ledger.torn:
-            watch.note(f"cut {ledger.torn} bytes of a session that was being written when the last command ended")
+def run_missing(batch: SessionBatch, folder: Path, jobs: int, watch: Watcher) -> Mapping[str, SessionOutcome]:
+    """Run the sessions of a batch that the folder lacks; every session by its key."""
+    wanted = [spec for *_, spec in batch.sessions]
+    with SessionStore(folder, batch.identity) as store:
+        left = [spec for spec in wanted if spec.key not in store.sessions]
+        total, missing = (sum(len(spec.tasks) for spec in specs) for specs in (wanted, left))
+        watch.begin(total, total - missing)
+        if store.cut_bytes:
+            watch.note(f"cut {store.cut_bytes} bytes of a session that was being written when the last command ended")
         if left:
-            _play(plan.suite, left, ledger, jobs, watch)
-        missing = [one.key for one in wanted if one.key not in ledger.held]
-        if missing:
-            raise RunError(f"{folder}: {len(missing)} sessions were not played. Repeat the command.")
-        return {one.key: ledger.held[one.key] for one in wanted}
+            _run(batch.suite, left, store, jobs, watch)
+        lost = [spec.key for spec in wanted if spec.key not in store.sessions]
+        if lost:
+            raise RunError(f"{folder}: {len(lost)} sessions were not simulated. Repeat the command.")
+        return {spec.key: store.sessions[spec.key] for spec in wanted}
 
 
-def tabulate(plan: Plan, sats: Mapping[str, SessionOutcome], **more: Any) -> Table:
-    """The table of a plan's sessions.
+def make_table(batch: SessionBatch, outcomes: Mapping[str, SessionOutcome], **more: Any) -> Table:
+    """The table of a batch's sessions.
 
     Args:
-        more: columns instead of the ones that a session outside any study has.
+        more: columns that replace those of a session outside any study.
     """
     rows = [
-        (study, number, point, one.condition, one.participant, index, *row)
-        for study, number, point, one in plan.sittings
-        for index, row in enumerate(sats[one.key].rows)
+        (study, number, point, spec.condition, spec.participant, index, *row)
+        for study, number, point, spec in batch.sessions
+        for index, row in enumerate(outcomes[spec.key].rows)
     ]
     names = ("study", "session", "point", "condition", "participant", "index", *OUTCOMES)
     columns: dict[str, Any] = dict(zip(names, np.array(rows, dtype=np.int64).T, strict=True))
     columns |= {"valid": np.ones(len(rows), bool), "counted": columns["condition"] > 0, **more}
-    return trial_table.build(parameter_registry.free_parameter_names(), plan.points, columns)
+    return trial_table.build_table(parameter_registry.free_parameter_names(), batch.points, columns)
 
 
-def robots() -> tuple[tuple[RobotSeat, ...], ...]:
+def robots_by_condition() -> tuple[tuple[RobotSeat, ...], ...]:
     """The robots of each condition."""
     return tuple(robot_team.form_team([trial_identity.ROBOT], [agent]).seats for agent in AGENTS)
 
 
-def _play(suite: Suite, left: Sequence[SessionSpec], ledger: SessionStore, jobs: int, watch: Watcher) -> None:
-    make: Any = functools.partial(
-        session_simulation.player, suite, robots()
-    )  # what it plays and gives is ours to choose
-    some: Any = left
-    with stoppable() as stop, closing(run_all_sessions(some, make, jobs=jobs)) as stream:
+def _run(suite: Suite, left: Sequence[SessionSpec], store: SessionStore, jobs: int, watch: Watcher) -> None:
+    # The runner's types are those of evaluations; it hands sessions and outcomes through as they are.
+    make: Any = functools.partial(session_simulation.make_session_runner, suite, robots_by_condition())
+    specs: Any = left
+    with stoppable() as stop, closing(run_all_sessions(specs, make, jobs=jobs)) as stream:
         try:
-            for news in stream:
-                if isinstance(news, TrialDone):
-                    sat = ledger.append(news.line)
-                    if not sat.key:
-                        watch.played(bool(sat.rows[0][_MET]), False)
+            for message in stream:
+                if isinstance(message, TrialDone):
+                    outcome = store.append(message.line)
+                    if not outcome.key:
+                        watch.played(bool(outcome.rows[0][_MET]), False)
                 watch.beat()
                 if stop.is_set():
-                    raise Interrupted(f"interrupted after {len(ledger.held)} sessions; the same command resumes.")
+                    raise Interrupted(f"interrupted after {len(store.sessions)} sessions; the same command resumes.")
         except SessionLost as failure:
             if failure.detail:
-                jsonio.write(ledger.path.with_name("error.txt"), failure.detail.encode())
-                raise InternalFailure(f"{failure}. The traceback is in {ledger.path.with_name('error.txt')}.") from None
+                path = store.path.with_name("error.txt")
+                jsonio.write(path, failure.detail.encode())
+                raise InternalFailure(f"{failure}. The traceback is in {path}.") from None
             raise

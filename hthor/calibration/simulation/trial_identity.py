@@ -16,7 +16,7 @@ _T_STAR = "T_STAR"
 _NOT_COURSE = ("t_star", "difficulty", "split")
 
 
-class Identity(Struct, frozen=True, kw_only=True):
+class TrialIdentity(Struct, frozen=True, kw_only=True):
     """Hashes of all that decides the course of trials of a suite: ``parts`` by the name of what they are of."""
 
     parts: dict[str, str]
@@ -26,18 +26,18 @@ class Identity(Struct, frozen=True, kw_only=True):
         """Hash of them all."""
         return jsonio.sha256(self.parts)
 
-    def differences(self, other: Identity) -> list[str]:
+    def differences(self, other: TrialIdentity) -> list[str]:
         """Names of what is not the same in both."""
         names = sorted({*self.parts, *other.parts})
         return [name for name in names if self.parts.get(name) != other.parts.get(name)]
 
 
-def trials_identity(suite: Suite) -> Identity:
+def trials_identity(suite: Suite) -> TrialIdentity:
     """What trials of this suite hang on, in this version of everything."""
     numbers = {name: value for name, value in rules.as_dict().items() if not name.startswith(_T_STAR)}
     priors = [(one.name, one.prior, one.effect, one.scale) for one in PARAMETERS]
     versions = {name: version for name, version in installation.versions().items() if name != "hthor"}
-    return Identity(
+    return TrialIdentity(
         parts={
             f"suite {suite.name}": jsonio.sha256([_course(task) for task in suite.tasks]),
             "rules": jsonio.sha256(numbers),

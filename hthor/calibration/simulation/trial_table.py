@@ -1,7 +1,7 @@
-"""A table of simulated trials: what became of each, and whose it was.
+"""A table of trials: the outcome of each, and whose it was.
 
-Everything that statistics are computed from is here, as numpy arrays with one entry a trial. T* is not among them: it
-is looked up from the suite, so that a table outlives a change of T*.
+Everything that statistics are computed from is here, as numpy arrays with one entry per trial. T* is not among them: it
+is looked up in the suite, so that a table stays valid when T* changes.
 """
 
 from __future__ import annotations
@@ -16,7 +16,6 @@ import numpy as np
 from msgspec import Struct
 
 from hthor import jsonio, rules
-from hthor.calibration.targets import CONDITIONS
 from hthor.errors import RunError
 from hthor.eval.metrics.definitions import success
 from hthor.tasks import Suite
@@ -24,7 +23,7 @@ from hthor.tasks import Suite
 Array = np.ndarray
 
 AGENTS = ("silent", "frontier", "oracle")
-"""Whose robot helps in each of `CONDITIONS`, the paper's, in the order of their numbers."""
+"""The agent in each of the published conditions, in the order of their numbers."""
 
 _TYPES: dict[str, str] = {
     "study": "<i4",
@@ -47,25 +46,9 @@ _TYPES: dict[str, str] = {
     "valid": "|b1",
     "counted": "|b1",
 }
-TRIAL = tuple(_TYPES)
-"""Names of the columns that have an entry a trial."""
+COLUMNS = tuple(_TYPES)
+"""Names of the columns that have an entry per trial."""
 _EPOCH = (1980, 1, 1, 0, 0, 0)
-
-
-__all__ = [
-    "AGENTS",
-    "CONDITIONS",
-    "TRIAL",
-    "Table",
-    "build",
-    "encode",
-    "join",
-    "load",
-    "seconds",
-    "store",
-    "t_star",
-    "twsr",
-]
 
 
 class Table(Struct, frozen=True, kw_only=True, eq=False):
@@ -77,11 +60,11 @@ class Table(Struct, frozen=True, kw_only=True, eq=False):
         study: number of the simulated study, -1 outside any. session: number of the session, from 0 in each study.
         point: row of ``points``. condition: 0 none, 1 frontier, 2 oracle. participant: the person's number.
         index: the trial's place in its session, from 0. task: number in the suite.
-        met: whether the goal was met. ticks: length [ticks of 0.1 s], the limit's after a failure.
-        sent, shown, confirmed, declined: tick of the first message to be so, -1 when none was.
+        met: whether the goal was met. ticks: length [ticks of 0.1 s], the time limit after a failure.
+        sent, shown, confirmed, declined: tick at which this first happened to a message, -1 when it never did.
         picked: tick at which the target was first in the person's hand, -1 when it never was.
-        messages: how many were sent. adopted: whether one was confirmed. trust: 1 to 7, 0 where none was asked for.
-        valid: whether the trial counts in a study's success rate. counted: and whether in its adoption.
+        messages: how many were sent. adopted: whether one was accepted. trust: 1 to 7, 0 where none was rated.
+        valid: whether the trial counts in a study's success rate. counted: whether in its adoption rate.
     """
 
     names: tuple[str, ...]
@@ -111,55 +94,56 @@ class Table(Struct, frozen=True, kw_only=True, eq=False):
 
     def take(self, rows: Array) -> Table:
         """The trials of a mask or of row numbers; all points are kept."""
-        return Table(names=self.names, points=self.points, **{name: getattr(self, name)[rows] for name in TRIAL})
+        return Table(names=self.names, points=self.points, **{name: getattr(self, name)[rows] for name in COLUMNS})
 
     def unit(self, rows: Array | None = None) -> Array:
         """(N, P) point of each trial, or of those of ``rows``."""
-        found: Array = self.points[self.point if rows is None else self.point[rows]]
-        return found
+        points: Array = self.points[self.point if rows is None else self.point[rows]]
+        return points
 
 
-def build(names: Sequence[str], points: Array, columns: dict[str, Any]) -> Table:
+def build_table(names: Sequence[str], points: Array, columns: dict[str, Any]) -> Table:
     """A table of columns that numpy can read, each of length N."""
     typed = {name: np.asarray(columns[name]).astype(kind) for name, kind in _TYPES.items()}
     return Table(names=tuple(names), points=np.asarray(points, dtype="<f8").reshape(-1, len(names)), **typed)
 
 
-def join(tables: Sequence[Table]) -> Table:
-    """One table of several, whose points are numbered on; studies and sessions keep their numbers."""
+def join_tables(tables: Sequence[Table]) -> Table:
+    """One table of several; points are renumbered, studies and sessions keep their numbers."""
     shifts = np.cumsum([0, *(len(table.points) for table in tables)])
-    columns = {name: np.concatenate([getattr(table, name) for table in tables]) for name in TRIAL}
+    columns = {name: np.concatenate([getattr(table, name) for table in tables]) for name in COLUMNS}
     columns["point"] = np.concatenate([table.point + shift for table, shift in zip(tables, shifts, strict=False)])
-    return build(tables[0].names, np.concatenate([table.points for table in tables]), columns)
+    return build_table(tables[0].names, np.concatenate([table.points for table in tables]), columns)
 
 
-def seconds(table: Table) -> Array:
+def time_spent_s(table: Table) -> Array:
     """(N,) float64, time spent [s]: the time limit where the goal was not met."""
-    spent: Array = table.ticks * rules.TICK_S
-    return spent
+    seconds: Array = table.ticks * rules.TICK_S
+    return seconds
 
 
-def t_star(suite: Suite) -> Array:
+def suite_t_star(suite: Suite) -> Array:
     """(tasks,) float64, T* [s] by a task's number in the suite."""
     return np.array([task.t_star for task in suite.tasks])
 
 
-def twsr(table: Table, least: Array) -> Array:
+def twsr(table: Table, t_star: Array) -> Array:
     """(N,) float64, success weighted by time: T* / max(T*, T), 0 after a failure.
 
     Args:
-        least: T* [s] by task, as `t_star` gives it.
+        t_star: T* [s] by task, see `suite_t_star`.
     """
-    return success.time_weighted(table.met, least[table.task], seconds(table))
+    return success.time_weighted(table.met, t_star[table.task], time_spent_s(table))
 
 
-def store(path: Path, table: Table) -> None:
+def save_table(path: Path, table: Table) -> None:
     """Write a table as NPZ; equal tables give equal bytes."""
-    jsonio.write(path, encode({"names": np.array(table.names), "points": table.points, **_columns(table)}))
+    columns = {name: getattr(table, name) for name in COLUMNS}
+    jsonio.write(path, encode_npz({"names": np.array(table.names), "points": table.points, **columns}))
 
 
-def encode(arrays: dict[str, Array]) -> bytes:
-    """Arrays as an NPZ file's bytes, without the hour that numpy would write into it."""
+def encode_npz(arrays: dict[str, Array]) -> bytes:
+    """Arrays as an NPZ file's bytes, without the time of writing that numpy would put into it."""
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w") as archive:
         for name, array in arrays.items():
@@ -170,21 +154,17 @@ def encode(arrays: dict[str, Array]) -> bytes:
     return out.getvalue()
 
 
-def load(path: Path) -> Table:
+def load_table(path: Path) -> Table:
     """The table in a file.
 
     Raises:
         RunError: when there is none, or it is not whole.
     """
     try:
-        with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as held:
-            columns = {name: held[name] for name in TRIAL}
-            return build([str(name) for name in held["names"]], held["points"], columns)
+        with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as arrays:
+            columns = {name: arrays[name] for name in COLUMNS}
+            return build_table([str(name) for name in arrays["names"]], arrays["points"], columns)
     except (OSError, EOFError, KeyError, ValueError, zipfile.BadZipFile) as error:
         raise RunError(
-            f"{path}: no table of trials: {error}. Delete it and repeat the command that wrote it."
+            f"{path}: not a table of trials: {error}. Delete it and repeat the command that wrote it."
         ) from None
-
-
-def _columns(table: Table) -> dict[str, Array]:
-    return {name: getattr(table, name) for name in TRIAL}

@@ -35,7 +35,7 @@ class Count(Struct, frozen=True, kw_only=True):
         return self.k / self.n
 
 
-class Verbal(Struct, frozen=True, kw_only=True):
+class VerbalFinding(Struct, frozen=True, kw_only=True):
     """Something that was said in words; ``fitted`` whether the fit may use it or it is only checked."""
 
     name: str
@@ -74,7 +74,7 @@ class Targets(Struct, frozen=True, kw_only=True):
     adoption: dict[str, Count]
     ratio: dict[str, float]
     published: dict[str, float]
-    verbal: tuple[Verbal, ...] = ()
+    verbal: tuple[VerbalFinding, ...] = ()
     left_out: str = ""
 
     @property
@@ -105,22 +105,22 @@ class Targets(Struct, frozen=True, kw_only=True):
         )
 
 
-def names() -> tuple[str, ...]:
+def target_names() -> tuple[str, ...]:
     """Targets that come with hthor."""
     return tuple(sorted(path.stem for path in _FOLDER.glob("*.json")))
 
 
-def load(name_or_path: str | Path) -> Targets:
+def load_targets(name_or_path: str | Path) -> Targets:
     """Targets by name, or from a file of the same form.
 
     Raises:
         UnknownName: when no targets have that name.
         HthorError: when the file cannot be read or contradicts itself; names file and field.
     """
-    path = _FOLDER / f"{name_or_path}.json" if str(name_or_path) in names() else Path(name_or_path)
+    path = _FOLDER / f"{name_or_path}.json" if str(name_or_path) in target_names() else Path(name_or_path)
     if path.suffix != ".json" and not path.exists():
         hint = "A path to a file (.json) works too, and so do the logs of sessions (trials.jsonl, or a run's folder)."
-        raise UnknownName("targets", str(name_or_path), names(), hint)
+        raise UnknownName("targets", str(name_or_path), target_names(), hint)
     found = documents.read(path, _Strict, HthorError, hint=f"see {_FOLDER / 'paper.json'}")
     _check(path, found)
     return Targets(**{name: getattr(found, name) for name in Targets.__struct_fields__})

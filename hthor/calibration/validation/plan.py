@@ -1,4 +1,4 @@
-"""Whom a validation plays, and where; plays nobody itself."""
+"""The runs of a validation: which people, on which suite, in which folder."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ from hthor.humans.population.resolve import PROXY
 
 SUITE = "paper"
 QUICK = 12
-"""Participants in each condition of a quick run, at most: two study groups, enough to see that all works."""
+"""Participants in each condition of a quick run, at most: two study groups, enough to see that everything works."""
 RIVALS = human_populations.EXTREMES
 _RIVAL_MOST, _KIND_MOST = 30, 20
-"""Participants in each condition of a simple model, and of each kind of people, at most."""
+"""The most participants in each condition for a simple model, and for each kind of people."""
 
 
 class ValidationOptions(Struct, frozen=True, kw_only=True):
@@ -35,8 +35,8 @@ class ValidationOptions(Struct, frozen=True, kw_only=True):
     Attributes:
         name: as `hthor.humans.population.resolve.resolve_humans` reads it.
         calibration: folder of the calibration that these people come from; None for what ships with them.
-        suites: other suites to rank the robots on. kinds: whether every kind of people is played too.
-        quick: few people and no simple models; what is played is then not judged.
+        suites: other suites to rank the robots on. kinds: whether every kind of people is run too.
+        quick: few people and no simple models; the results are then not judged.
     """
 
     name: str = PROXY
@@ -55,8 +55,8 @@ class ValidationOptions(Struct, frozen=True, kw_only=True):
         return min(QUICK, self.participants) if self.quick else self.participants
 
 
-class Round(Struct, frozen=True, kw_only=True):
-    """People who play a suite in all conditions: ``word`` as `resolve.resolve_humans` reads it, and what for."""
+class ValidationRun(Struct, frozen=True, kw_only=True):
+    """People who do a suite in all conditions, and why; ``word`` as `resolve.resolve_humans` reads it."""
 
     word: str
     suite: str
@@ -64,8 +64,8 @@ class Round(Struct, frozen=True, kw_only=True):
     role: Literal["judged", "rival", "kind", "suite"]
 
 
-def rounds(options: ValidationOptions) -> tuple[Round, ...]:
-    """All that is played, in order.
+def planned_runs(options: ValidationOptions) -> tuple[ValidationRun, ...]:
+    """All runs, in order.
 
     Raises:
         UnknownName: when there are no such people, or no such suite.
@@ -74,37 +74,37 @@ def rounds(options: ValidationOptions) -> tuple[Round, ...]:
     count = options.count
     if count < PEOPLE:
         raise HthorError(f"--participants {count} is too few: a group of the published study has {PEOPLE}.")
-    found = resolve.resolve_humans(options.name)
+    humans = resolve.resolve_humans(options.name)
     for name in options.suites:
         tasks.load_suite(name)
-    rivals = () if options.quick else tuple(name for name in RIVALS if name != found.name)
-    kin = kinds.names() if options.kinds else ()
+    simple = () if options.quick else tuple(name for name in RIVALS if name != humans.name)
+    kinds_run = kinds.names() if options.kinds else ()
     return (
-        Round(word=found.word, suite=SUITE, participants=count, role="judged"),
-        *(Round(word=one, suite=SUITE, participants=min(count, _RIVAL_MOST), role="rival") for one in rivals),
-        *(Round(word=one, suite=SUITE, participants=min(count, _KIND_MOST), role="kind") for one in kin),
-        *(Round(word=found.word, suite=one, participants=count, role="suite") for one in options.suites),
+        ValidationRun(word=humans.word, suite=SUITE, participants=count, role="judged"),
+        *(ValidationRun(word=one, suite=SUITE, participants=min(count, _RIVAL_MOST), role="rival") for one in simple),
+        *(ValidationRun(word=one, suite=SUITE, participants=min(count, _KIND_MOST), role="kind") for one in kinds_run),
+        *(ValidationRun(word=humans.word, suite=one, participants=count, role="suite") for one in options.suites),
     )
 
 
-def folder(options: ValidationOptions) -> Path:
-    """Where the report goes."""
+def report_folder(options: ValidationOptions) -> Path:
+    """The folder of the report."""
     if options.out:
         return options.out
-    found, suite = resolve.resolve_humans(options.name), tasks.load_suite(SUITE)
+    humans, suite = resolve.resolve_humans(options.name), tasks.load_suite(SUITE)
     what = [
-        found.sha256,
+        humans.sha256,
         suite.sha256,
         options.seed,
         options.count,
         rules.sha256(),
-        code_identity.code_sha256(found.model, (task.kind for task in suite.tasks)),
+        code_identity.code_sha256(humans.model, (task.kind for task in suite.tasks)),
     ]
-    return RUNS / f"validation-{found.name}-{jsonio.sha256(what)[:10]}"
+    return RUNS / f"validation-{humans.name}-{jsonio.sha256(what)[:10]}"
 
 
-def asked(options: ValidationOptions, one: Round) -> run_options.RunOptions:
-    """A round as an evaluation, in a folder of its own."""
+def run_options_for(options: ValidationOptions, one: ValidationRun) -> run_options.RunOptions:
+    """The options of `hthor eval` for a run, in a folder of its own."""
     suite = tasks.load_suite(one.suite)
     name = f"{resolve.resolve_humans(one.word).name}-{Path(suite.name).name}-{one.participants}"
     return run_options.RunOptions(
@@ -114,18 +114,18 @@ def asked(options: ValidationOptions, one: Round) -> run_options.RunOptions:
         seed=options.seed,
         participants=one.participants,
         jobs=options.jobs or len(os.sched_getaffinity(0)),
-        out=folder(options) / "runs" / name,
+        out=report_folder(options) / "runs" / name,
     )
 
 
-def preview(options: ValidationOptions) -> Iterator[tuple[Round, RunForecast]]:
-    """Each run that would be played, how far it is, and how long it takes, found out without playing or writing.
+def preview_runs(options: ValidationOptions) -> Iterator[tuple[ValidationRun, RunForecast]]:
+    """Each run, how far it is and how long it would take, without running or writing anything.
 
     Raises:
         HthorError: as `rounds`.
     """
-    for one in rounds(options):
-        evaluation, runs = asked(options, one), list[RunForecast]()
+    for one in planned_runs(options):
+        evaluation, runs = run_options_for(options, one), list[RunForecast]()
 
         def note(
             wanted: ResolvedRuns, evaluation: run_options.RunOptions = evaluation, runs: list[RunForecast] = runs

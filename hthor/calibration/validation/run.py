@@ -1,6 +1,6 @@
-"""`hthor humans validate` as one function: plays people on the published study's tasks and sets them against it.
+"""`hthor humans validate` as one function: runs people on the published study's tasks and compares them with it.
 
-Any people will do: a population, a kind of people, a human model in a file. Parses and prints nothing.
+Any people can be validated: a population, a kind of people, a human model in a file.
 """
 
 from __future__ import annotations
@@ -11,15 +11,15 @@ from pathlib import Path
 from msgspec import Struct
 
 from hthor import code_identity, installation, jsonio, plugins, rules, tasks
-from hthor.calibration import targets
-from hthor.calibration.pipeline import evidence
-from hthor.calibration.pipeline.evidence import Evidence
+from hthor.calibration import evidence, targets
+from hthor.calibration.evidence import Evidence
 from hthor.calibration.simulation import trial_table as tables
-from hthor.calibration.simulation.trial_table import AGENTS, CONDITIONS, Table
+from hthor.calibration.simulation.trial_table import AGENTS, Table
+from hthor.calibration.targets import CONDITIONS
 from hthor.calibration.validation import plan
-from hthor.calibration.validation.plan import SUITE, Round, ValidationOptions
+from hthor.calibration.validation.plan import SUITE, ValidationOptions, ValidationRun
 from hthor.calibration.validation.report import build, measures, page, trial_tables
-from hthor.calibration.validation.report.findings import Findings, Played, Setting, Subject
+from hthor.calibration.validation.report.findings import Findings, ModelFigures, ModelUnderTest, Setting
 from hthor.eval.config.sessions import participants_needed
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner import experiment
@@ -30,86 +30,86 @@ from hthor.tasks import Suite
 
 TARGETS = "paper"
 JUDGED = 18
-"""Participants in each condition from which on there are enough different groups for a verdict."""
+"""Participants in each condition that give enough different groups for a verdict."""
 OTHERS = "The evidence at hand is of another population than these people's."
 _SHIPPED = Path(__file__).parent / "evidence"
 
 
-class Outcome(Struct, frozen=True, kw_only=True):
-    """What was found, and the folder with `validation.html` and `validation.json`."""
+class ValidationResult(Struct, frozen=True, kw_only=True):
+    """The findings, and the folder with `validation.html` and `validation.json`."""
 
     findings: Findings
     folder: Path
 
 
-Watch = Callable[[str], Watcher]
+WatcherFactory = Callable[[str], Watcher]
 
 
-def run_validation(options: ValidationOptions, watcher: Watch) -> Outcome:
-    """Play what is missing, work out everything, and write the report.
+def run_validation(options: ValidationOptions, watcher: WatcherFactory) -> ValidationResult:
+    """Run what is missing, compute the findings, and write the report.
 
     Args:
-        watcher: makes who follows the run of this name.
+        watcher: makes the progress display of a run, from its title.
 
     Raises:
         UnknownName: when there are no such people, or no such suite.
         HthorError: when there are too few participants for a study group.
         RunError: when a run's folder holds another run, or the calibration's folder no evidence.
     """
-    planned = plan.rounds(options)
+    planned = plan.planned_runs(options)
     found, suite = resolve.resolve_humans(options.name), tasks.load_suite(SUITE)
     known, missing = _evidence(found, options.calibration)
-    folder = plan.folder(options)
-    stage = _Stage(options, watcher)
-    own = stage.play(planned[0])
-    made = build.Materials(
+    folder = plan.report_folder(options)
+    runs = _ConditionRuns(options, watcher)
+    own = runs.trials(planned[0])
+    made = build.PlayedTrials(
         trials=own,
-        least=tables.t_star(suite),
-        hands=participants_needed(len(suite.tasks)),
-        rivals={one.word: stage.play(one) for one in planned if one.role == "rival"},
+        t_star=tables.suite_t_star(suite),
+        round_size=participants_needed(len(suite.tasks)),
+        rivals={one.word: runs.trials(one) for one in planned if one.role == "rival"},
     )
-    findings = build.findings(
-        _subject(found, stage.notes),
+    findings = build.make_findings(
+        _subject(found, runs.notes),
         _setting(found, suite, options, len(own)),
-        targets.load(TARGETS),
+        targets.load_targets(TARGETS),
         made,
         evidence=known,
         evidence_missing=missing,
-        kinds=[_played(one.word, stage, one) for one in planned if one.role == "kind"],
-        suites=[_played(tasks.load_suite(one.suite).name, stage, one) for one in planned if one.role == "suite"],
+        kinds=[_figures_of(one.word, runs, one) for one in planned if one.role == "kind"],
+        suites=[_figures_of(tasks.load_suite(one.suite).name, runs, one) for one in planned if one.role == "suite"],
     )
     jsonio.write(folder / "validation.json", jsonio.pretty(findings))
     jsonio.write(folder / "validation.html", page.render(findings).encode())
-    return Outcome(findings=findings, folder=folder)
+    return ValidationResult(findings=findings, folder=folder)
 
 
-class _Stage:
-    """Plays people in all three conditions, each run in a folder of its own."""
+class _ConditionRuns:
+    """Runs people in all three conditions, each run in a folder of its own."""
 
-    def __init__(self, options: ValidationOptions, watcher: Watch) -> None:
+    def __init__(self, options: ValidationOptions, watcher: WatcherFactory) -> None:
         self._options, self._watcher = options, watcher
         self.notes: tuple[str, ...] = ()
-        """What is known to be unlike the people's calibration, of those that were played first."""
+        """How the first people's runs differ from what their population was calibrated for."""
 
-    def play(self, one: Round) -> Table:
-        """The trials of some people on a suite, in every condition."""
+    def trials(self, one: ValidationRun) -> Table:
+        """The trials of these people on their suite, in every condition."""
         name = resolve.resolve_humans(one.word).name
-        runs: dict[str, Sequence[TrialRecord]] = {}
+        records: dict[str, Sequence[TrialRecord]] = {}
         for done in experiment.run_experiment(
-            plan.asked(self._options, one), lambda title: self._watcher(f"{name} people, {title}")
+            plan.run_options_for(self._options, one), lambda title: self._watcher(f"{name} people, {title}")
         ):
             condition = CONDITIONS[AGENTS.index(plugins.file_stem("agent", done.config.name))]
-            runs[condition] = done.folder.records()
+            records[condition] = done.folder.records()
             self.notes = self.notes or done.config.humans.notes
-        return trial_tables.table(runs, tasks.load_suite(one.suite))
+        return trial_tables.records_table(records, tasks.load_suite(one.suite))
 
 
-def _played(name: str, stage: _Stage, one: Round) -> Played:
-    return measures.played(name, stage.play(one), tables.t_star(tasks.load_suite(one.suite)))
+def _figures_of(name: str, runs: _ConditionRuns, one: ValidationRun) -> ModelFigures:
+    return measures.model_figures(name, runs.trials(one), tables.suite_t_star(tasks.load_suite(one.suite)))
 
 
-def _subject(found: ParticipantSource, notes: Sequence[str]) -> Subject:
-    return Subject(
+def _subject(found: ParticipantSource, notes: Sequence[str]) -> ModelUnderTest:
+    return ModelUnderTest(
         name=found.name,
         model=Path(found.model).name,
         sha256=found.sha256,
@@ -135,15 +135,15 @@ def _setting(found: ParticipantSource, suite: Suite, options: ValidationOptions,
 
 
 def _evidence(found: ParticipantSource, folder: Path | None) -> tuple[Evidence | None, str]:
-    """What the calibration of these people found out; otherwise a sentence that says why there is nothing."""
+    """The evidence of these people's calibration; without one, a sentence that says why."""
     if folder is not None:
-        known = evidence.load(folder)
+        known = evidence.load_evidence(folder)
     elif found.model != PROXY:
         return None, "This human model was not calibrated, so nothing is known of a fit."
     elif found.kind is not None:
         return None, "This kind of people is made out of a population by hand and was not calibrated itself."
     elif (file := _file_of(found)) is not None:
-        known = evidence.load(file)
+        known = evidence.load_evidence(file)
     elif not found.population.validity.targets_sha256:
         return None, "This population was fitted to no data: it is the literature's."
     else:
@@ -154,7 +154,7 @@ def _evidence(found: ParticipantSource, folder: Path | None) -> tuple[Evidence |
 
 
 def _file_of(found: ParticipantSource) -> Path | None:
-    """The evidence that lies beside a population's file, or ships with a population of ours."""
+    """The evidence in the folder of a population's file, or shipped with one of our populations."""
     beside = Path(found.word).parent / evidence.FILE
     if found.word.endswith((".npz", ".json")) and beside.is_file():
         return beside

@@ -65,9 +65,9 @@ def calibrate(
             return
         from_logs.run(targets, prior, out, json)
         return
-    from hthor.calibration.pipeline import run
+    from hthor.calibration.pipeline import config, run
 
-    options = run.CalibrationOptions(
+    options = config.CalibrationOptions(
         targets=targets,
         suite=suite,
         out=out,
@@ -79,7 +79,7 @@ def calibrate(
         until=until,
     )
     if dry_run:
-        brief = run.resolve_options(options)
+        brief = config.resolve_options(options)
         sizes = {name: getattr(brief.sizes, name) for name in brief.sizes.__struct_fields__}
         _foretell(
             {
@@ -95,22 +95,20 @@ def calibrate(
         )
         return
     talk = output.console(talk=True)
-    from hthor.calibration.pipeline import stage_progress
+    from hthor.calibration.pipeline import terminal
 
-    teller = stage_progress.SilentProgress() if quiet else stage_progress.PrintedProgress(talk, live=output.live())
-    found = run.run_calibration(options, teller)
+    reporter = terminal.SilentProgress() if quiet else terminal.PrintedProgress(talk, live=output.live())
+    found = run.run_calibration(options, reporter)
     if found is None:
         if json:
-            output.put_json({"folder": str(run.resolve_options(options).folder), "until": until})
+            output.put_json({"folder": str(config.resolve_options(options).folder), "until": until})
         return
     if json:
         output.put_json(found)
     else:
-        from hthor.calibration.pipeline import terminal
-
-        for part in terminal.parts(found):
+        for part in terminal.result_tables(found):
             output.console().print(part)
-        folder = run.resolve_options(options).folder
+        folder = config.resolve_options(options).folder
         talk.print(f"files: {folder}/population.json, population.npz, evidence.json, result.json", soft_wrap=True)
     if not found.passed:
         raise typer.Exit(1)
@@ -132,4 +130,4 @@ def _is_log(target: str) -> bool:
     """Whether a target is a run's folder or its log, not published results."""
     from hthor.calibration import targets
 
-    return target not in targets.names() and (Path(target).is_dir() or target.endswith(".jsonl"))
+    return target not in targets.target_names() and (Path(target).is_dir() or target.endswith(".jsonl"))

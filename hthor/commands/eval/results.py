@@ -48,7 +48,7 @@ def show_run(console: Console, one: FinishedRun) -> None:
         return
     output.say(f"files: {folder}/run.json, trials.jsonl, result.json{more}", console)
     run = shlex.quote(str(folder))
-    unranked = overrides.of(config)
+    unranked = overrides.overridden_settings(config)
     if unranked:
         why = ", ".join(f"{name.replace('_', '-')} is {value}" for name, value in unranked.items())
         output.say(f"not for the leaderboard: {why}", console)

@@ -92,15 +92,15 @@ def validate(
         return
     done = validation.run_validation(options, watcher)
     paper = talk if json else output.console()
-    paper.print(terminal.figures(done.findings))
-    paper.print(terminal.gates(done.findings))
+    paper.print(terminal.figures_table(done.findings))
+    paper.print(terminal.gates_table(done.findings))
     if json:
         output.put_json(done.findings)
     for note in done.findings.subject.notes:
         output.say(f"note: {note}", talk)
     words = f"report: {done.folder}/validation.html, validation.json"
     output.say(words, talk)
-    failed = criteria.failed(done.findings.gates)
+    failed = criteria.failed_gates(done.findings.gates)
     if failed:
         listed = ", ".join(gate.name for gate in failed)
         output.say(f"not cleared: {listed}.", talk)
@@ -111,11 +111,11 @@ def _foretell(options: ValidationOptions, json: bool) -> None:
     from hthor.calibration.validation import plan
     from hthor.commands.eval import dry_run
 
-    found = list(plan.preview(options))
+    found = list(plan.preview_runs(options))
     trials, played = (sum(getattr(run, name) for _, run in found) for name in ("trials", "played"))
     times = [run.seconds for _, run in found]
     seconds = None if None in times else round(sum(filter(None, times)), 1)
-    folder = str(plan.folder(options))
+    folder = str(plan.report_folder(options))
     if json:
         runs = [{"people": one.word, "suite": one.suite, "role": one.role, "run": run} for one, run in found]
         output.put_json({"folder": folder, "trials": trials, "played": played, "seconds": seconds, "runs": runs})

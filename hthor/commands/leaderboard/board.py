@@ -36,8 +36,8 @@ def check(
 
     found = []
     for place in folders:
-        with submission.unpacked(place) as folder:
-            found += list(submission.problems(folder))
+        with submission.submission_folder(place) as folder:
+            found += list(submission.submission_problems(folder))
     _tell(found, json, f"{len(folders)} submission{'' if len(folders) == 1 else 's'} in order")
 
 
@@ -55,11 +55,11 @@ def unpack(
     from hthor.leaderboard.submission import archive as archives
     from hthor.leaderboard.submission import submission
 
-    if not archives.is_one(archive):
+    if not archives.is_archive(archive):
         raise HthorError(f"{archive} is not an archive; expected a file that ends in {', '.join(archives.SUFFIXES)}.")
     folder = out or Path(archives.stem(archive))
     archives.unpack(archive, folder, most_bytes=submission.MAX_BYTES, most_files=submission.MAX_FILES)
-    files.refuse(submission.problems(folder))
+    files.raise_problems(submission.submission_problems(folder))
     output.put_files([folder], json)
 
 
@@ -81,11 +81,11 @@ def add(
     from hthor.leaderboard.submission import submission as submissions
 
     if submission is None:
-        added = enter.add(run, board)
+        added = enter.add_runs(run, board)
     else:
-        with submissions.unpacked(submission) as folder:
-            added = enter.add(run, board, submissions.read(folder))
-    publish.build(board)
+        with submissions.submission_folder(submission) as folder:
+            added = enter.add_runs(run, board, submissions.read_submission(folder))
+    publish.build_board(board)
     if json:
         output.put_json({"entries": [str(path) for _, path in added]})
         return
@@ -111,9 +111,9 @@ def validate(
     from hthor.leaderboard.entries import files
 
     wanted = paths or files.entry_paths(board)
-    for path in canonical_form.fix(wanted) if fix else ():
+    for path in canonical_form.fix_forms(wanted) if fix else ():
         sys.stderr.write(f"{path}: written in canonical form\n")
-    found = board_check.problems(board, paths or (), submissions=submissions)
+    found = board_check.check_board(board, paths or (), submissions=submissions)
     _tell(found, json, f"{len(wanted)} entr{'y' if len(wanted) == 1 else 'ies'} in order")
 
 
@@ -129,7 +129,7 @@ def build(
     if check:
         _tell(publish.differences(board), json, f"{board} agrees with its entries")
         return
-    written = publish.build(board)
+    written = publish.build_board(board)
     if json:
         output.put_json({"files": [str(path) for path in written]})
         return
@@ -144,7 +144,7 @@ def rescore(board: Board = BOARD, json: Json = False) -> None:
     from hthor.leaderboard import rescore as rescoring
 
     changed = rescoring.rescore(board)
-    publish.build(board)
+    publish.build_board(board)
     if json:
         output.put_json({"entries": [str(path) for path in changed]})
         return
@@ -172,10 +172,10 @@ def open_(
 
     made = commitment.load_commitment(season) if season is not None else None
     written = [board / admission.NAME]
-    files.write(written[0], admission.opened(board, made))
+    files.write_document(written[0], admission.extended_admission(board, made))
     if made is not None:
         written.append(board / files.SUITES / f"{made.name}.json")
-        files.write(written[1], made)
+        files.write_document(written[1], made)
     output.put_files(written, json)
 
 

@@ -81,12 +81,12 @@ def verify(
         by=by,
         date=date,
     )
-    held, found = verifying.verify(entry, where, request)
+    held, found = verifying.verify_entry(entry, where, request)
     if out is not None:
-        files.write(out, found)
+        files.write_document(out, found)
     if write:
-        verification.keep(where, held, found)
-        publish.build(where)
+        verification.write_verification(where, held, found)
+        publish.build_board(where)
     if json:
         output.put_json(found)
     else:
@@ -104,23 +104,23 @@ def record(
     from hthor.leaderboard import publish
     from hthor.leaderboard.entries import files, verification
 
-    found = verification.read(outcome)
-    held = files.read(verification.place(board, found))
-    written = verification.keep(board, held, found)
-    publish.build(board)
+    found = verification.read_verification(outcome)
+    held = files.read_entry(verification.entry_path(board, found))
+    written = verification.write_verification(board, held, found)
+    publish.build_board(board)
     output.put_files(written, json)
 
 
 def _tell_verification(found: Verification) -> None:
     """Print one line per verdict."""
-    from hthor.leaderboard.entries.verification import ENOUGH
+    from hthor.leaderboard.entries.verification import MIN_DETECTION
 
     for what, one in (("agent", found.trials), ("control", found.control)):
         if one is not None:
             verdict = "stands" if one.passed else "REFUTED"
             power = f"Three false outcomes in sixty would have been caught with {100 * one.caught:.0f} %"
             sys.stdout.write(f"{what}: {one.tier}: {verdict}: {one.why} {power}.\n")
-            if one.passed and one.caught < ENOUGH:
+            if one.passed and one.caught < MIN_DETECTION:
                 sys.stdout.write(f"{what}: that is too little for a rank; draw more trials with --sample\n")
     if found.fresh is not None:
         sys.stdout.write(f"fresh tasks: {'FELL' if found.fell else 'no fall'}: {found.fresh.why}.\n")

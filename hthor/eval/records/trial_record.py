@@ -84,17 +84,26 @@ def checksum(line: bytes) -> int:
     return int(line[-_CHECK_LENGTH:][10:18], 16)
 
 
+def verify_checksum(line: bytes) -> None:
+    """Compare a line with the checksum that it carries.
+
+    Raises:
+        Damaged: when they do not agree.
+    """
+    body, check = line[:-_CHECK_LENGTH], line[-_CHECK_LENGTH:]
+    if check != _CHECK % zlib.crc32(body):
+        raise Damaged("check", f"{check[10:18].decode('ascii', 'replace')} is not the line's checksum")
+
+
 def decode(line: bytes) -> TrialRecord:
     """The record of a whole line.
 
     Raises:
         Damaged: names the field that is not as it was written.
     """
-    body, check = line[:-_CHECK_LENGTH], line[-_CHECK_LENGTH:]
     with documents.reading_errors():
         record = _decoder.decode(line)
-    if check != _CHECK % zlib.crc32(body):
-        raise Damaged("check", f"{check[10:18].decode('ascii', 'replace')} is not the line's checksum")
+    verify_checksum(line)
     if record.key != key(record.spec):
         raise Damaged("key", f"'{record.key}' is not the key of the trial in 'spec', '{key(record.spec)}'")
     event_data.check_events(record.events)

@@ -1,4 +1,4 @@
-"""Columns of small whole numbers as text: a yes or no in a bit, a number in few bytes."""
+"""Columns of small whole numbers as text: booleans as bits, numbers in a few bytes each."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ _DIGITS = "0123456789abcdefghijklmnopqrstuvwxyz"
 LABELS_MAX = len(_DIGITS)
 
 
-def bits(values: np.ndarray) -> str:
-    """A column of yes and no, eight to a byte, the first in the highest bit; base64."""
+def pack_bits(values: np.ndarray) -> str:
+    """A column of booleans, eight to a byte, the first in the highest bit; base64."""
     return _text(np.packbits(values.astype(bool)).tobytes())
 
 
-def unbits(text: str, count: int) -> np.ndarray:
+def unpack_bits(text: str, count: int) -> np.ndarray:
     """The column that `bits` made, (count,) bool.
 
     Raises:
@@ -28,7 +28,7 @@ def unbits(text: str, count: int) -> np.ndarray:
     return held[:count].astype(bool)
 
 
-def numbers(values: np.ndarray, size: int) -> str:
+def pack_numbers(values: np.ndarray, size: int) -> str:
     """A column of whole numbers, ``size`` bytes each, the lowest first; base64.
 
     Raises:
@@ -40,7 +40,7 @@ def numbers(values: np.ndarray, size: int) -> str:
     return _text(whole.astype("<u8")[:, None].view(np.uint8).reshape(-1, 8)[:, :size].tobytes())
 
 
-def unnumbers(text: str, count: int, size: int) -> np.ndarray:
+def unpack_numbers(text: str, count: int, size: int) -> np.ndarray:
     """The column that `numbers` made, (count,) int64.
 
     Raises:
@@ -51,12 +51,12 @@ def unnumbers(text: str, count: int, size: int) -> np.ndarray:
     return whole
 
 
-def pieces(parts: list[bytes]) -> str:
+def pack_pieces(parts: list[bytes]) -> str:
     """Pieces of equal length, one after the other; base64."""
     return _text(b"".join(parts))
 
 
-def unpieces(text: str, count: int, size: int) -> list[bytes]:
+def unpack_pieces(text: str, count: int, size: int) -> list[bytes]:
     """The pieces that `pieces` joined.
 
     Raises:
@@ -66,12 +66,12 @@ def unpieces(text: str, count: int, size: int) -> list[bytes]:
     return [held[start : start + size] for start in range(0, len(held), size)]
 
 
-def digits(values: list[int]) -> str:
+def pack_labels(values: list[int]) -> str:
     """A column of numbers below `LABELS_MAX`, a character each."""
     return "".join(_DIGITS[value] for value in values)
 
 
-def undigits(text: str, count: int, most: int) -> np.ndarray:
+def unpack_labels(text: str, count: int, most: int) -> np.ndarray:
     """The column that `digits` made, (count,) int64.
 
     Raises:

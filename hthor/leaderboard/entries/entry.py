@@ -1,4 +1,4 @@
-"""What an entry holds; works nothing out. Its schema is made from these records, see `hthor.leaderboard.schema`."""
+"""The record of an entry. Its schema is made from these records, see `hthor.leaderboard.schema`."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ Columns = Annotated[str, Meta(pattern="^[0-9a-z]*$")]
 
 
 class Agent(Struct, frozen=True, kw_only=True):
-    """Who it is, in its authors' words. Only the name is asked for.
+    """The agent, described by its authors. Only the name is required.
 
-    ``team`` is who hands it in; without one its authors are the team. ``deterministic`` says that it repeats itself.
+    ``team`` submits it; without one its authors are the team. ``deterministic``: it repeats its actions exactly.
     """
 
     name: Word
@@ -46,10 +46,10 @@ class Agent(Struct, frozen=True, kw_only=True):
 
 
 class Harness(Struct, frozen=True, kw_only=True):
-    """What played: hthor's version, the last commit that changed it, and whether it had changes beyond that commit.
+    """The hthor that ran: its version, the last commit that changed it, and whether it had uncommitted changes.
 
-    Nothing in an entry bears this out: it is a claim until an official run made the entry. ``commit`` is empty where
-    hthor did not lie in a repository.
+    Nothing in an entry proves this: it is a claim unless an official run made the entry. ``commit`` is empty where
+    hthor was not in a repository.
     """
 
     version: Version
@@ -58,7 +58,7 @@ class Harness(Struct, frozen=True, kw_only=True):
 
 
 class Hashes(Struct, frozen=True, kw_only=True):
-    """Of the configuration, of all lines of the log, and the Merkle root of what `Trials` holds."""
+    """Hashes of the configuration and of all lines of the log, and the Merkle root of the rows of `Trials`."""
 
     run: Sha256
     trials: Sha256
@@ -66,16 +66,16 @@ class Hashes(Struct, frozen=True, kw_only=True):
 
 
 class Labels(Struct, frozen=True, kw_only=True):
-    """A property of each trial: the values that there are, and each trial's as a character, 0 for the first."""
+    """A property of each trial: its possible values, and each trial's value as a character, 0 for the first."""
 
     names: tuple[Label, ...]
     of: Columns
 
 
 class Trials(Struct, frozen=True, kw_only=True):
-    """What became of each trial, in the order of people and their trials, in columns as `packing` makes them.
+    """The outcome of each trial, in the order of people and their trials, in columns as `column_packing` makes them.
 
-    Bits: ``met`` the goal was met, ``adopted`` a message was confirmed, ``faulty`` an agent failed. Numbers: ``twsr``
+    Bits: ``met`` the goal was met, ``adopted`` a message was accepted, ``faulty`` an agent failed. Numbers: ``twsr``
     in millionths (3 bytes), ``time`` in tenths of a second (2 bytes), ``trust`` (1 byte, 0 for none). Of the
     robots' messages: how many were ``sent`` (2 bytes), ``accepted`` by the person, and ``useful``, which is accepted,
     true and new to them (1 byte each, 255 for as many or more). ``leaves`` are the first 8 bytes of the SHA-256 of each
@@ -98,16 +98,14 @@ class Trials(Struct, frozen=True, kw_only=True):
 
 
 class Group(Struct, frozen=True, kw_only=True):
-    """The trials that have a property in common."""
+    """Scores of the trials that have a property in common."""
 
     sr: Estimate
     twsr: Estimate
 
 
 class Metrics(Struct, frozen=True, kw_only=True):
-    """What follows from `Trials`, as `hthor.eval.metrics.trial_metrics` defines it; everything else of a run is in its
-    own result.
-    """
+    """The metrics that follow from `Trials`; see `hthor.eval.metrics`."""
 
     sr: Estimate
     twsr: Estimate
@@ -118,10 +116,10 @@ class Metrics(Struct, frozen=True, kw_only=True):
 
 
 class Counts(Struct, frozen=True, kw_only=True):
-    """How many trials there were, with the goal met, and with an agent that failed; and messages of robots.
+    """Numbers of trials, of trials with the goal met, of robots' messages, and of trials with an agent that failed.
 
-    ``faults_by_kind`` counts faults by what they were, ``replays`` the sessions that began again: both are claims, for
-    nothing in an entry bears them out.
+    ``faults_by_kind`` counts faults by kind, ``replays`` the sessions that were restarted: both are claims, which
+    nothing in an entry proves.
     """
 
     trials: Count
@@ -135,21 +133,20 @@ class Counts(Struct, frozen=True, kw_only=True):
 class Entry(Struct, frozen=True, kw_only=True):
     """A whole run on the board. ``id`` is its file's name without the ending.
 
-    What came of playing trials again is the keeper's to say, in files of their own:
-    `hthor.leaderboard.entries.verification`.
+    The results of replaying its trials are in files of their own, see `hthor.leaderboard.entries.verification`.
 
     Attributes:
-        reference: whether it is one of hthor's own agents, which are there to be measured against and have no rank.
+        reference: whether it is one of hthor's own agents, which others are compared with and which have no rank.
         submission: the folder under submissions/ that the agent came from, empty for none.
-        files: everything that was handed in with it.
-        agents: what its agents consist of, with what they opened only in play; none for hthor's own.
+        files: everything that was submitted with it.
+        agents: the files of its agents, with those that they opened while running; none for hthor's own.
         run: the run's configuration, as its run.json.
         mode: whether the world waited for the agent (lockstep) or its thinking took time (realtime).
-        overrides: settings that depart from the benchmark's; there are none in an entry that is taken.
-        platforms: where it was played; empty where that was not noted. isolation: what held the agent. Both are claims
-            until an official run made the entry.
+        overrides: settings other than the benchmark's; empty in a valid entry.
+        platforms: where it ran; empty where that was not noted. isolation: how the agent was isolated. Both are claims
+            unless an official run made the entry.
         splits: by property and value, such as "difficulty" and "hard".
-        uplift: over no robot, the same people at the same tasks; None where there is no robot.
+        uplift: over the same people at the same tasks without a robot; None where there is no robot.
     """
 
     schema: Literal["hthor.entry/6"] = SCHEMA
@@ -174,7 +171,7 @@ class Entry(Struct, frozen=True, kw_only=True):
 
     @property
     def digest(self) -> str:
-        """Hash of all that was handed in; numbers that follow from it are left out, as later statistics may differ."""
+        """Hash of everything that was submitted, without the numbers that follow from it: statistics may change."""
         held = {name: getattr(self, name) for name in self.__struct_fields__ if name not in _FOLLOW}
         return jsonio.sha256({**held, "control": self.uplift.control if self.uplift else ""})
 
@@ -185,7 +182,7 @@ class Entry(Struct, frozen=True, kw_only=True):
 
     @property
     def team(self) -> str:
-        """Who handed it in, as ranks count them: the team, without one the authors, without those the agent's name."""
+        """Who submitted it, for ranks: the team, else the authors, else the agent's name."""
         about = self.agent
         return about.team or ", ".join(sorted(about.authors)) or about.name
 

@@ -1,4 +1,4 @@
-"""An entry's numbers out of what it carries of each trial, without its log; reads no files."""
+"""Computes an entry's numbers from the outcomes of its trials."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ MEASURED = ("sr", "twsr", "adoption", "usefulness", "time_s", "trust")
 _MILLION = 1_000_000
 
 
-def values(held: Outcomes, metric: str, *, alone: bool) -> np.ndarray:
+def metric_values(held: Outcomes, metric: str, *, alone: bool) -> np.ndarray:
     """A metric's value in each trial (N,), none (0,) where it has no meaning without a robot.
 
     Usefulness has one only in trials with a message that was accepted: (M,), see `asked`.
     """
     if alone and metric in ("adoption", "usefulness", "trust"):
         return np.zeros(0)
-    some = asked(held)
+    some = accepted_trials(held)
     columns = {
         "sr": held.met.astype(np.float64),
         "twsr": held.twsr / _MILLION,
@@ -42,49 +42,51 @@ def values(held: Outcomes, metric: str, *, alone: bool) -> np.ndarray:
     return found
 
 
-def asked(held: Outcomes) -> np.ndarray:
+def accepted_trials(held: Outcomes) -> np.ndarray:
     """The trials in which a message was accepted, as places."""
     return np.flatnonzero(held.accepted > 0)
 
 
-def people(count: int, participants: int) -> list[int]:
+def trial_participants(count: int, participants: int) -> list[int]:
     """Whose each trial is, where every task is done once."""
     sizes = [sessions.count_trials(count, [person]) for person in range(participants)]
     return [person for person, size in enumerate(sizes) for _ in range(size)]
 
 
-def scores(held: Outcomes, whose: Sequence[int], *, alone: bool) -> dict[str, Estimate]:
+def entry_scores(held: Outcomes, participants: Sequence[int], *, alone: bool) -> dict[str, Estimate]:
     """Means and intervals of all that is `MEASURED`."""
-    owners = {"usefulness": [whose[place] for place in asked(held).tolist()]}
+    owners = {"usefulness": [participants[place] for place in accepted_trials(held).tolist()]}
     return {
-        metric: _estimate(values(held, metric, alone=alone), owners.get(metric, whose), metric, held.time_limit_s)
+        metric: _estimate(
+            metric_values(held, metric, alone=alone), owners.get(metric, participants), metric, held.time_limit_s
+        )
         for metric in MEASURED
     }
 
 
-def splits(held: Outcomes, whose: Sequence[int]) -> dict[str, dict[str, Group]]:
+def split_scores(held: Outcomes, participants: Sequence[int]) -> dict[str, dict[str, Group]]:
     """The same of success, for the trials that have a property in common."""
     found: dict[str, dict[str, Group]] = {}
     for name, (names, codes) in held.labels.items():
         found[name] = {}
         for code, value in enumerate(names):
             where = np.flatnonzero(codes == code)
-            mine = [whose[place] for place in where.tolist()]
-            rows = {metric: values(held, metric, alone=False)[where] for metric in ("sr", "twsr")}
+            mine = [participants[place] for place in where.tolist()]
+            rows = {metric: metric_values(held, metric, alone=False)[where] for metric in ("sr", "twsr")}
             found[name][value] = Group(**{metric: _estimate(row, mine, metric) for metric, row in rows.items()})
     return found
 
 
-def uplift(entry: Entry, held: Outcomes, control: Entry, without: Outcomes) -> Uplift:
+def entry_uplift(entry: Entry, held: Outcomes, control: Entry, without: Outcomes) -> Uplift:
     """What the robots add to people who do the same tasks without one."""
-    whose = np.array(people(entry.trials.count, entry.run.participants), dtype=np.int64)
+    participants = np.array(trial_participants(entry.trials.count, entry.run.participants), dtype=np.int64)
     tasks = np.arange(entry.trials.count, dtype=np.int64)
     found = {
         metric: paired_difference.difference_of_values(
-            values(without, metric, alone=True),
-            values(held, metric, alone=False),
+            metric_values(without, metric, alone=True),
+            metric_values(held, metric, alone=False),
             tasks,
-            whose,
+            participants,
             registry.get(metric),
             limit_s=held.time_limit_s,
         )
@@ -93,7 +95,7 @@ def uplift(entry: Entry, held: Outcomes, control: Entry, without: Outcomes) -> U
     return Uplift(control=control.hashes.run, sr=found["sr"], twsr=found["twsr"], time_s=found["time_s"])
 
 
-def _estimate(some: np.ndarray, whose: Sequence[int], metric: str, limit_s: float | None = None) -> Estimate:
+def _estimate(some: np.ndarray, participants: Sequence[int], metric: str, limit_s: float | None = None) -> Estimate:
     row = some.tolist()
     tasks = [str(place) for place in range(len(row))]
-    return intervals.estimate(row, tasks, whose[: len(row)], within=registry.get(metric).range(limit_s))
+    return intervals.estimate(row, tasks, participants[: len(row)], within=registry.get(metric).range(limit_s))

@@ -1,4 +1,4 @@
-"""The board's files: where they lie, how they are read and written, and what is wrong with them; judges no numbers."""
+"""The board's files: where they are, and how they are read and written."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ _T = TypeVar("_T")
 
 
 class BoardError(HthorError):
-    """Files of the leaderboard that cannot be taken."""
+    """Files of the leaderboard that are not accepted."""
 
 
 class Problem(Struct, frozen=True, kw_only=True):
-    """What is wrong: in which file, at which field ($ for the whole), and what was expected there."""
+    """What is wrong: the file, the field ($ for the whole file), and what was expected there."""
 
     file: str
     field: str
@@ -36,8 +36,8 @@ class Problem(Struct, frozen=True, kw_only=True):
         return f"{self.file}: {self.field}: {self.problem}"
 
 
-def refuse(found: Iterable[Problem]) -> None:
-    """Do nothing when there are no problems.
+def raise_problems(found: Iterable[Problem]) -> None:
+    """Raise the problems as one error; do nothing when there are none.
 
     Raises:
         BoardError: names them all.
@@ -52,24 +52,24 @@ def entry_paths(board: Path) -> list[Path]:
     return sorted((board / ENTRIES).glob("*.json"))
 
 
-def seen(board: Path) -> Path:
+def check_folder(board: Path) -> Path:
     """The board's folder.
 
     Raises:
-        BoardError: when there is none: a board that is looked for in the wrong place is not in order.
+        BoardError: when there is none, so that a mistyped path does not pass as an empty board.
     """
     if not board.is_dir():
-        raise BoardError(f"{board} is no folder. Name the board with --board; 'hthor leaderboard add' begins one.")
+        raise BoardError(f"{board} is not a folder. Name the board with --board; 'hthor leaderboard add' creates one.")
     return board
 
 
-def read(path: Path) -> Entry:
+def read_entry(path: Path) -> Entry:
     """An entry from its file.
 
     Raises:
         BoardError: when it cannot be read, or a column of its trials cannot, naming the field.
     """
-    entry = form(path)
+    entry = read_form(path)
     try:
         trial_outcomes.unpack(entry.trials)
     except trial_outcomes.Unreadable as error:
@@ -77,7 +77,7 @@ def read(path: Path) -> Entry:
     return entry
 
 
-def form(path: Path) -> Entry:
+def read_form(path: Path) -> Entry:
     """An entry from its file; the columns of its trials may hold anything.
 
     Raises:
@@ -86,7 +86,7 @@ def form(path: Path) -> Entry:
     return documents.read(path, Entry, BoardError)
 
 
-def parse(data: bytes, shown: str, sort: type[_T]) -> _T:
+def parse_document(data: bytes, shown: str, sort: type[_T]) -> _T:
     """A document of this sort.
 
     Raises:
@@ -95,12 +95,12 @@ def parse(data: bytes, shown: str, sort: type[_T]) -> _T:
     return documents.parse(data, sort, BoardError, shown=shown)
 
 
-def write(path: Path, document: object) -> None:
+def write_document(path: Path, document: object) -> None:
     """Write a document in canonical form: sorted keys, two spaces, a newline at the end."""
     jsonio.write(path, jsonio.pretty(document))
 
 
-def commitments(board: Path) -> dict[str, Commitment]:
-    """The commitments to official suites that lie with the board, by the hash of the suite."""
+def read_commitments(board: Path) -> dict[str, Commitment]:
+    """The board's commitments to official suites, by the hash of the suite."""
     held = [commitment.load_commitment(path) for path in sorted((board / SUITES).glob("*.json"))]
     return {one.suite_sha256: one for one in held}

@@ -1,6 +1,6 @@
-"""What must hold in an entry beyond its schema: every number follows from what it carries; reads no files.
+"""Rules that an entry must satisfy beyond its schema: every number follows from the outcomes of its trials.
 
-Each law gives its problems as pairs of a field and what is wrong there, so that all of them can be listed.
+Each rule yields its problems as pairs of a field and what is wrong there, so that all of them can be listed.
 """
 
 from __future__ import annotations
@@ -20,17 +20,17 @@ from hthor.eval.statistics.intervals import Estimate
 from hthor.guest import File
 from hthor.leaderboard.entries import entry_metrics, overrides
 from hthor.leaderboard.entries.entry import Entry
-from hthor.leaderboard.entries.trial_outcomes import Outcomes, labels
+from hthor.leaderboard.entries.trial_outcomes import Outcomes, task_labels
 from hthor.types import TaskSpec
 
-Found = Iterator[tuple[str, str]]
+Problems = Iterator[tuple[str, str]]
 _NEAR = 2e-6
 """Numbers have six decimals; the last may differ from machine to machine."""
 _MILLION = 1_000_000
 
 
-def hashes(entry: Entry, held: Outcomes) -> Found:
-    """The hashes are those of what they are of."""
+def check_hashes(entry: Entry, held: Outcomes) -> Problems:
+    """The hashes agree with the contents."""
     if (now := entry.run.sha256) != entry.hashes.run:
         yield "hashes.run", f"is {entry.hashes.run[:10]}, but the hash of 'run' is {now[:10]}"
     if not entry.id.endswith(f"-{entry.hashes.run[:10]}"):
@@ -39,8 +39,8 @@ def hashes(entry: Entry, held: Outcomes) -> Found:
         yield "hashes.merkle", f"is {entry.hashes.merkle[:10]}, but the root of what 'trials' holds is {now[:10]}"
 
 
-def sizes(entry: Entry, held: Outcomes) -> Found:
-    """The run is whole, with every task once, and what failed is counted."""
+def check_sizes(entry: Entry, held: Outcomes) -> Problems:
+    """The run is whole, with every task once, and the counts agree with the trials."""
     trials, counts = entry.trials.count, entry.counts
     for field, value in (
         ("run.trials", entry.run.trials),
@@ -65,11 +65,11 @@ def sizes(entry: Entry, held: Outcomes) -> Found:
         yield "counts.faults_by_kind", f"adds up to {sum(counts.faults_by_kind.values())}, less than {counts.faults}"
 
 
-def outcomes(entry: Entry, held: Outcomes, tasks: Sequence[TaskSpec] = ()) -> Found:
-    """What became of a trial can have become of it: no time-weighted success without success, and so on.
+def check_outcomes(entry: Entry, held: Outcomes, tasks: Sequence[TaskSpec] = ()) -> Problems:
+    """The outcomes of a trial are consistent: no time-weighted success without success, and so on.
 
     Args:
-        tasks: of each trial, where the suite is at hand; then time, T* and what sort of task it is are compared too.
+        tasks: of each trial, where the suite is known; then time, T* and labels are checked too.
     """
     for field, wrong, problem in (
         ("trials.twsr", ~held.met & (held.twsr > 0), "not met, but time-weighted success above 0"),
@@ -86,17 +86,17 @@ def outcomes(entry: Entry, held: Outcomes, tasks: Sequence[TaskSpec] = ()) -> Fo
         yield from _of_tasks(held, tasks)
 
 
-def _of_tasks(held: Outcomes, tasks: Sequence[TaskSpec]) -> Found:
+def _of_tasks(held: Outcomes, tasks: Sequence[TaskSpec]) -> Problems:
     """Times, time-weighted success and labels against the tasks themselves."""
     limits = np.array([round(task.time_limit / rules.TICK_S) for task in tasks])
     yield from _first("trials.time", held.time > limits, "longer than the time limit")
     yield from _first("trials.time", ~held.met & (held.time != limits), "not met, but not until the time limit")
     good = np.array([task.t_star for task in tasks])
     spent = np.round(held.time * rules.TICK_S, DIGITS)
-    worth = np.round(_MILLION * np.round(success.time_weighted(held.met, good, spent), DIGITS))
-    off = held.met & (np.abs(held.twsr - worth) > 1)
+    twsr = np.round(_MILLION * np.round(success.time_weighted(held.met, good, spent), DIGITS))
+    off = held.met & (np.abs(held.twsr - twsr) > 1)
     yield from _first("trials.twsr", off, "not what T* and the time spent give")
-    for name, (names, codes) in labels(tasks).items():
+    for name, (names, codes) in task_labels(tasks).items():
         there_names, there = held.labels.get(name, ((), np.zeros(0, dtype=np.int64)))
         said = np.array([*there_names, ""])[there] if len(there) == len(codes) else np.full(len(codes), "")
         yield from _first(
@@ -104,16 +104,16 @@ def _of_tasks(held: Outcomes, tasks: Sequence[TaskSpec]) -> Found:
         )
 
 
-def _first(field: str, wrong: np.ndarray, problem: str) -> Found:
-    """The first trial of which something wrong is so, and how many there are."""
+def _first(field: str, wrong: np.ndarray, problem: str) -> Problems:
+    """The first trial with the problem, and how many there are."""
     places = np.flatnonzero(wrong)
     if len(places):
         yield field, f"{problem}: in {len(places)} trials, the first is trial {int(places[0])}"
 
 
-def settings(entry: Entry) -> Found:
-    """Nothing departs from the benchmark's settings, and references are hthor's own."""
-    for name, value in overrides.of(entry.run).items():
+def check_settings(entry: Entry) -> Problems:
+    """All settings are the benchmark's, and references are hthor's own agents."""
+    for name, value in overrides.overridden_settings(entry.run).items():
         yield "run", f"{name} is {value}, and such runs are not ranked"
     ours = all(robot.agent.source.startswith("hthor.agents.") for robot in entry.run.robots)
     if entry.reference != ours:
@@ -122,21 +122,21 @@ def settings(entry: Entry) -> Found:
         yield "isolation", "is absent, but a submitted agent is always held at some level"
 
 
-def consists(entry: Entry) -> Found:
-    """Agents consist of what the run began with, and of nothing that was not handed in."""
-    for place, (known, told) in enumerate(zip(entry.run.agents, entry.agents, strict=False)):
-        if not set(known.files) <= set(told.files) or known.sha256 != told.sha256:
+def check_agents(entry: Entry) -> Problems:
+    """Agents consist of the files that the run began with, and of nothing that was not submitted."""
+    for place, (known, listed) in enumerate(zip(entry.run.agents, entry.agents, strict=False)):
+        if not set(known.files) <= set(listed.files) or known.sha256 != listed.sha256:
             yield f"agents[{place}]", f"lacks files of run.agents[{place}], or has others"
     if len(entry.agents) != len(entry.run.agents):
         yield "agents", f"has {len(entry.agents)} agents, but 'run' has {len(entry.run.agents)}"
     if entry.submission:
         for place, one in enumerate(entry.agents):
-            for words in strangers(one.files, entry.files):
+            for words in foreign_files(one.files, entry.files):
                 yield f"agents[{place}].files", f"is not what 'files' says was handed in: {words}"
 
 
-def strangers(files: Sequence[File], handed_in: Sequence[File]) -> list[str]:
-    """Files of an agent that were not handed in, or not as they are, in words."""
+def foreign_files(files: Sequence[File], handed_in: Sequence[File]) -> list[str]:
+    """Files of an agent that were not submitted, or differ from the submitted ones, in words."""
     there = {file.path: file.sha256 for file in handed_in}
     return [
         f"{file.path} is not there" if file.path not in there else f"{file.path} is another file"
@@ -145,23 +145,23 @@ def strangers(files: Sequence[File], handed_in: Sequence[File]) -> list[str]:
     ]
 
 
-def numbers(entry: Entry, held: Outcomes) -> Found:
-    """Means lie in their intervals, and what can be worked out from the trials comes out the same."""
-    for field, one in estimates(entry):
+def check_metrics(entry: Entry, held: Outcomes) -> Problems:
+    """Means lie in their intervals, and metrics recomputed from the trials are the same."""
+    for field, one in entry_estimates(entry):
         if one.mean is not None and one.ci95 is not None and not one.ci95[0] <= one.mean <= one.ci95[1]:
             yield field, f"the mean {one.mean} is not inside the interval {one.ci95[0]} to {one.ci95[1]}"
         if one.n > entry.trials.count:
             yield f"{field}.n", f"is {one.n}, more than the {entry.trials.count} trials"
     if entry.run.participants != participants_needed(entry.trials.count):
-        return  # whose trials these are is not known
-    whose = entry_metrics.people(entry.trials.count, entry.run.participants)
-    for metric, fresh in entry_metrics.scores(held, whose, alone=entry.alone).items():
-        yield from unlike(f"metrics.{metric}", getattr(entry.metrics, metric), fresh)
-    yield from unlike("splits", entry.splits, entry_metrics.splits(held, whose))
+        return  # the person of each trial is not known
+    participants = entry_metrics.trial_participants(entry.trials.count, entry.run.participants)
+    for metric, fresh in entry_metrics.entry_scores(held, participants, alone=entry.alone).items():
+        yield from differences(f"metrics.{metric}", getattr(entry.metrics, metric), fresh)
+    yield from differences("splits", entry.splits, entry_metrics.split_scores(held, participants))
 
 
-def uplift(entry: Entry, held: Outcomes, control: Entry | None, without: Outcomes | None) -> Found:
-    """The uplift is over people without a robot on the same tasks, and comes out the same."""
+def check_uplift(entry: Entry, held: Outcomes, control: Entry | None, without: Outcomes | None) -> Problems:
+    """The uplift is over people without a robot at the same tasks, and is the same when recomputed."""
     if entry.alone or entry.uplift is None:
         if entry.alone != (entry.uplift is None):
             yield "uplift", "is absent" if entry.uplift is None else "is there, but there is no robot"
@@ -171,21 +171,21 @@ def uplift(entry: Entry, held: Outcomes, control: Entry | None, without: Outcome
         yield "uplift.control", f"is {named}, and no entry without a robot on the same suite and people has that run"
         return
     if control.trials.count == entry.trials.count:
-        yield from unlike("uplift", entry.uplift, entry_metrics.uplift(entry, held, control, without))
+        yield from differences("uplift", entry.uplift, entry_metrics.entry_uplift(entry, held, control, without))
 
 
-def estimates(entry: Entry) -> Iterator[tuple[str, Estimate]]:
-    """Every estimate of an entry and the field it stands in."""
+def entry_estimates(entry: Entry) -> Iterator[tuple[str, Estimate]]:
+    """Every estimate of an entry, with its field."""
     for name in entry.metrics.__struct_fields__:
         yield f"metrics.{name}", getattr(entry.metrics, name)
 
 
-def unlike(field: str, there: Any, here: Any) -> Found:
+def differences(field: str, there: Any, here: Any) -> Problems:
     """Where two documents differ by more than a last decimal."""
     yield from _unlike(field, msgspec.to_builtins(there), msgspec.to_builtins(here))
 
 
-def _unlike(field: str, there: Any, here: Any) -> Found:
+def _unlike(field: str, there: Any, here: Any) -> Problems:
     if isinstance(there, dict) and isinstance(here, dict):
         for name in sorted({*there, *here}):
             if name in there and name in here:

@@ -1,4 +1,4 @@
-"""What became of each trial, as columns: out of records, into an entry, and back."""
+"""The outcomes of trials as columns: from records, into an entry, and back."""
 
 from __future__ import annotations
 
@@ -6,32 +6,34 @@ import hashlib
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
-import msgspec
 import numpy as np
 from msgspec import UNSET, Struct
 
 from hthor import rules
+from hthor.eval.config import sessions
 from hthor.eval.metrics import trial_metrics
 from hthor.eval.metrics.metric import mean_limit
 from hthor.eval.records.trial_record import TrialRecord
-from hthor.leaderboard.entries import column_packing, merkle
-from hthor.leaderboard.entries.entry import Labels, Trials
+from hthor.leaderboard.entries import column_packing
+from hthor.leaderboard.entries.entry import Entry, Labels, Trials
+from hthor.tasks import Suite
 from hthor.types import TaskSpec
 
 LEAF = 8
-"""Bytes of a record's hash that are kept: nobody finds another record with the same ones and other outcomes."""
+"""Bytes of a record's hash that are kept; too many to find another record with the same bytes and other outcomes."""
 PROPERTIES = ("difficulty", "kind", "split")
-"""What of a task its trials are sorted by."""
+"""Properties of a task by which its trials are grouped."""
 UNKNOWN = "unknown"
 _ORDER = ("easy", "medium", "hard", "seen", "new")
 _MILLION = 1_000_000
 _SIZES = {"twsr": 3, "time": 2, "trust": 1, "sent": 2, "accepted": 1, "useful": 1}
 """Bytes of a number in each column."""
+_LEAF, _NODE = b"\x00", b"\x01"  # so that no inner node can pass for a row
 _MESSAGES = ("sent", "accepted", "useful")
 
 
 class Unreadable(ValueError):
-    """A column that does not hold what it should. ``field`` is its name."""
+    """A column with wrong contents. ``field`` is its name."""
 
     def __init__(self, field: str, problem: str) -> None:
         self.field = field
@@ -60,7 +62,7 @@ class Outcomes(Struct, frozen=True, kw_only=True):
 
     @property
     def rows(self) -> list[bytes]:
-        """What there is of each trial, a few bytes: outcome first, then the hash of its record."""
+        """A row of bytes for each trial: the outcome first, then the hash of its record."""
         flags = self.met * 1 + self.adopted * 2 + self.faulty * 4
         numbers = ((flags, 1), *((getattr(self, name), size) for name, size in _SIZES.items()))
         plain = [[int(value).to_bytes(size, "little") for value in column] for column, size in numbers]
@@ -69,23 +71,16 @@ class Outcomes(Struct, frozen=True, kw_only=True):
     @property
     def merkle(self) -> str:
         """The root of all rows."""
-        return merkle.root(self.rows)
+        return merkle_root(self.rows)
 
 
-def narrowed(held: Outcomes, places: Sequence[int]) -> Outcomes:
-    """The columns of some trials only, without their labels."""
-    where = np.asarray(places, dtype=np.int64)
-    columns = {name: getattr(held, name)[where] for name in ("met", "adopted", "faulty", *_SIZES)}
-    return msgspec.structs.replace(held, **columns, leaves=[held.leaves[place] for place in places], labels={})
-
-
-def outcome(row: bytes) -> bytes:
-    """The part of a row that says what became of the trial."""
+def outcome_bytes(row: bytes) -> bytes:
+    """The part of a row that holds the trial's outcome."""
     return row[:-LEAF]
 
 
-def of(records: Sequence[TrialRecord], leaves: Iterable[bytes]) -> Outcomes:
-    """The columns of records, whose lines have these hashes."""
+def make_outcomes(records: Sequence[TrialRecord], leaves: Iterable[bytes]) -> Outcomes:
+    """The columns of records, with the hashes of their lines."""
     values = {
         metric: np.nan_to_num(trial_metrics.column((one.metrics for one in records), metric))
         for metric in ("sr", "adoption", "twsr", "time_s", "trust", *_MESSAGES)
@@ -99,18 +94,24 @@ def of(records: Sequence[TrialRecord], leaves: Iterable[bytes]) -> Outcomes:
         trust=values["trust"].astype(np.int64),
         **{name: _counted(values[name].astype(np.int64), name) for name in _MESSAGES},
         leaves=list(leaves),
-        labels=labels([one.spec.task for one in records]),
+        labels=task_labels([one.spec.task for one in records]),
         time_limit_s=mean_limit([one.spec.task.time_limit for one in records]) if records else None,
     )
 
 
-def labels(tasks: Sequence[TaskSpec]) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
-    """What sort of task each is, as `Outcomes` has it."""
+def task_labels(tasks: Sequence[TaskSpec]) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
+    """The labels of these tasks, as in `Outcomes`."""
     return {name: _labels([getattr(task, name) or UNKNOWN for task in tasks]) for name in PROPERTIES}
 
 
-def leaf(line: bytes) -> bytes:
-    """What is kept of the hash of a record's line."""
+def tasks_of_trials(suite: Suite, entry: Entry) -> list[TaskSpec]:
+    """The task of each trial, in the order in which an entry holds its trials."""
+    hands = sessions.assign_many(suite.tasks, entry.run.seed, range(entry.run.participants))
+    return [suite.tasks[number] for hand in hands for number in hand]
+
+
+def leaf_hash(line: bytes) -> bytes:
+    """The bytes that are kept of the hash of a record's line."""
     return hashlib.sha256(line).digest()[:LEAF]
 
 
@@ -118,13 +119,13 @@ def pack(held: Outcomes) -> Trials:
     """The columns as an entry has them."""
     return Trials(
         count=len(held.met),
-        met=column_packing.bits(held.met),
-        adopted=column_packing.bits(held.adopted),
-        faulty=column_packing.bits(held.faulty),
-        **{name: column_packing.numbers(getattr(held, name), size) for name, size in _SIZES.items()},
-        leaves=column_packing.pieces(held.leaves),
+        met=column_packing.pack_bits(held.met),
+        adopted=column_packing.pack_bits(held.adopted),
+        faulty=column_packing.pack_bits(held.faulty),
+        **{name: column_packing.pack_numbers(getattr(held, name), size) for name, size in _SIZES.items()},
+        leaves=column_packing.pack_pieces(held.leaves),
         labels={
-            name: Labels(names=names, of=column_packing.digits(codes.tolist()))
+            name: Labels(names=names, of=column_packing.pack_labels(codes.tolist()))
             for name, (names, codes) in held.labels.items()
         },
         time_limit_s=UNSET if held.time_limit_s is None else held.time_limit_s,
@@ -135,14 +136,15 @@ def unpack(trials: Trials) -> Outcomes:
     """The columns of an entry.
 
     Raises:
-        Unreadable: when one of them does not hold what it should.
+        Unreadable: when one of them has wrong contents.
     """
     count = trials.count
     bits = {
-        name: _read(name, column_packing.unbits, getattr(trials, name), count) for name in ("met", "adopted", "faulty")
+        name: _read(name, column_packing.unpack_bits, getattr(trials, name), count)
+        for name in ("met", "adopted", "faulty")
     }
     numbers = {
-        name: _read(name, column_packing.unnumbers, getattr(trials, name), count, n) for name, n in _SIZES.items()
+        name: _read(name, column_packing.unpack_numbers, getattr(trials, name), count, n) for name, n in _SIZES.items()
     }
     for name, most in (("twsr", _MILLION), ("trust", rules.TRUST_MAX)):
         if int(numbers[name].max()) > most:
@@ -150,9 +152,9 @@ def unpack(trials: Trials) -> Outcomes:
     return Outcomes(
         **bits,
         **numbers,
-        leaves=_read("leaves", column_packing.unpieces, trials.leaves, count, LEAF),
+        leaves=_read("leaves", column_packing.unpack_pieces, trials.leaves, count, LEAF),
         labels={
-            name: (one.names, _read(f"labels.{name}.of", column_packing.undigits, one.of, count, len(one.names)))
+            name: (one.names, _read(f"labels.{name}.of", column_packing.unpack_labels, one.of, count, len(one.names)))
             for name, one in trials.labels.items()
         },
         time_limit_s=trials.time_limit_s or None,
@@ -183,3 +185,19 @@ def _whole(values: np.ndarray) -> np.ndarray:
 def _labels(values: Sequence[str]) -> tuple[tuple[str, ...], np.ndarray]:
     names = sorted(set(values), key=lambda name: (_ORDER.index(name) if name in _ORDER else len(_ORDER), name))
     return tuple(names), np.array([names.index(value) for value in values], dtype=np.int64)
+
+
+def merkle_root(rows: Sequence[bytes]) -> str:
+    """The root of the rows' Merkle tree, 64 hexadecimal digits; a row without a partner moves up as it is.
+
+    No row can be changed, moved or removed without changing the root.
+    """
+    level = [hashlib.sha256(_LEAF + row).digest() for row in rows]
+    if not level:
+        return hashlib.sha256().hexdigest()
+    while len(level) > 1:
+        pairs = [
+            hashlib.sha256(_NODE + one + other).digest() for one, other in zip(level[::2], level[1::2], strict=False)
+        ]
+        level = pairs + level[2 * len(pairs) :]
+    return level[0].hex()

@@ -1,7 +1,7 @@
-"""What the keeper of a board writes: verifications of entries, and refutations; plays and judges nothing.
+"""Files that the keeper of a board writes: verifications and refutations of entries.
 
-Both lie beside the entries in files of their own, which no submission may touch. An entry says nothing of its own
-verification, so nobody can bring one along, and cutting something out of an entry brings no refuted run back.
+They are separate from the entries, and no submission may touch them. An entry does not contain its own verification, so
+nobody can submit one, and removing something from an entry does not bring a refuted run back.
 """
 
 from __future__ import annotations
@@ -17,22 +17,22 @@ from hthor.leaderboard.entries.entry import Count, Entry, Sha256, Text, Word
 
 VERIFICATIONS: Final = "verifications"
 REFUTATIONS: Final = "refutations"
-ENOUGH: Final = 0.95
-"""The least probability with which three false outcomes in sixty would have been caught, for an entry to be ranked."""
+MIN_DETECTION: Final = 0.95
+"""The least probability of catching three false outcomes in sixty, for an entry to be ranked."""
 Tier = Literal["V1", "V2", "V3"]
 _T = TypeVar("_T")
 Share = Annotated[float, Meta(ge=0.0, le=1.0)]
 
 
 class Replayed(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Trials that were played again.
+    """Trials that were replayed.
 
     Attributes:
         tier: V1 byte for byte on the same platform, V2 by outcomes on another, V3 statistical.
-        passed: whether they bear the entry out.
+        passed: whether they confirm the entry.
         drawn: trials of the sample. compared: these, and those before them in the same sessions. equal: of the
-            compared, those with the same outcome; same_bytes: the same record.
-        caught: the probability that the same draw had refuted an entry of which one outcome in twenty is false.
+            compared, those with the same outcome; same_bytes: with the same record.
+        caught: the probability that such a draw refutes an entry in which one outcome in twenty is false.
         why: the verdict in words.
     """
 
@@ -47,14 +47,14 @@ class Replayed(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Fresh(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What the agent achieved at tasks that were drawn after it was handed in, by the recipe of the entry's suite.
+    """The agent's results at tasks that were drawn after it was submitted, by the recipe of the entry's suite.
 
     Attributes:
         suite: hash of the fresh tasks. n: how many.
-        sr, twsr: what came out. claimed_sr, claimed_twsr: the entry's means.
-        fell: whether they are lower than chance explains, at the level of 1 %.
-        detectable: the fall of success that so many tasks would have shown in four of five cases, by simulation; None
-            where none would have shown.
+        sr, twsr: the results. claimed_sr, claimed_twsr: the entry's means.
+        fell: whether the results are lower than chance explains, at the level of 1 %.
+        detectable: the drop of success that so many tasks detect with a power of 80 %, by simulation; None where they
+            detect none.
         why: the verdict in words.
     """
 
@@ -70,13 +70,13 @@ class Fresh(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Verification(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What came of an entry when it was verified, in ``verifications/ID.json``.
+    """The result of verifying an entry, in ``verifications/ID.json``.
 
     Attributes:
-        id: the entry's. entry: hash of all that it held then.
+        id: the entry's. entry: hash of its contents at that time.
         draw: the public word that everything was drawn with.
-        trials: of the agent; control: of the people without a robot whom it is measured against, None where it is they.
-        fresh: of tasks that nobody had seen, None when none were played.
+        trials: of the agent. control: of the people without a robot, None where the entry is the control itself.
+        fresh: results at unseen tasks, None when none were run.
         official: whether the official workflow made the entry, so that isolation, platform and commit are no claims.
         platform: hash of the verifier's. by, date: as the verifier gave them.
     """
@@ -95,17 +95,17 @@ class Verification(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
 
     @property
     def refuted(self) -> bool:
-        """Whether what the entry says is not so, of the agent or of its control."""
+        """Whether the entry's claims are false, about the agent or its control."""
         return not all(one.passed for one in self._played)
 
     @property
     def fell(self) -> bool:
-        """Whether the agent did worse at tasks that it cannot have known."""
+        """Whether the agent did worse at tasks that it cannot have known before."""
         return self.fresh is not None and self.fresh.fell
 
     @property
     def caught(self) -> float:
-        """How surely a forged entry would have been caught, at the weaker end."""
+        """The probability that a forged entry would have been caught: the smaller of agent and control."""
         return min(one.caught for one in self._played)
 
     @property
@@ -114,7 +114,7 @@ class Verification(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
 
 
 class Refutation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A run that was refuted, in ``refutations/MERKLE.json``; it stands whatever becomes of the entry's file.
+    """A run that was refuted, in ``refutations/MERKLE.json``; it remains when the entry's file is removed.
 
     ``merkle`` and ``run`` are as in `Hashes`, ``code`` are the hashes of the agents, ``entry`` that of the whole entry.
     """
@@ -131,10 +131,10 @@ class Refutation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     by: Text = ""
     date: Text = ""
 
-    def strikes(self, entry: Entry, verified: Verification | None) -> bool:
-        """Whether it is of this entry: of the same outcomes under any name, or of the same run until that is verified.
+    def applies_to(self, entry: Entry, verified: Verification | None) -> bool:
+        """Whether it applies to this entry: the same outcomes under any name, or the same run until that is verified.
 
-        The agent's true results can be handed in later, and stand when they were verified; the false ones never do.
+        The agent's true results can be submitted later and stand once they are verified; the false ones never do.
         """
         if self.merkle == entry.hashes.merkle:
             return True
@@ -142,83 +142,83 @@ class Refutation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         return self.run == entry.hashes.run and not sound
 
 
-class Kept(Struct, frozen=True, kw_only=True):
-    """All that a board's keeper wrote: verifications by the entry's id, and refutations."""
+class KeeperRecords(Struct, frozen=True, kw_only=True):
+    """Everything that a board's keeper wrote: verifications by the entry's id, and refutations."""
 
     verifications: dict[str, Verification]
     refutations: tuple[Refutation, ...]
 
-    def of(self, entry: Entry) -> Verification | None:
-        """The verification of exactly this entry; one of an earlier file of the same name is none."""
+    def verification_of(self, entry: Entry) -> Verification | None:
+        """The verification of exactly this entry, not of an earlier file of the same name."""
         found = self.verifications.get(entry.id)
         return found if found is not None and found.entry == entry.digest else None
 
-    def struck(self, entry: Entry) -> Refutation | None:
-        """The refutation that an entry falls under."""
-        verified = self.of(entry)
-        return next((one for one in self.refutations if one.strikes(entry, verified)), None)
+    def refutation_of(self, entry: Entry) -> Refutation | None:
+        """The refutation that applies to an entry."""
+        verified = self.verification_of(entry)
+        return next((one for one in self.refutations if one.applies_to(entry, verified)), None)
 
 
-NOTHING = Kept(verifications={}, refutations=())
+NO_RECORDS = KeeperRecords(verifications={}, refutations=())
 
 
-def load(board: Path) -> Kept:
-    """All that the keeper of a board wrote.
+def load_records(board: Path) -> KeeperRecords:
+    """Everything that the keeper of a board wrote.
 
     Raises:
-        BoardError: when a file cannot be read, or is not called after what it is of.
+        BoardError: when a file cannot be read, or its name does not agree with its contents.
     """
     verified = [_read(path, Verification, "id") for path in sorted((board / VERIFICATIONS).glob("*.json"))]
     refuted = [_read(path, Refutation, "merkle") for path in sorted((board / REFUTATIONS).glob("*.json"))]
-    return Kept(verifications={one.id: one for one in verified}, refutations=tuple(refuted))
+    return KeeperRecords(verifications={one.id: one for one in verified}, refutations=tuple(refuted))
 
 
-def read(path: Path) -> Verification:
+def read_verification(path: Path) -> Verification:
     """A verification from its file.
 
     Raises:
         BoardError: when it cannot be read.
     """
-    return files.parse(path.read_bytes(), str(path), Verification)
+    return files.parse_document(path.read_bytes(), str(path), Verification)
 
 
-def place(board: Path, found: Verification) -> Path:
-    """The file of the entry that a verification is of.
+def entry_path(board: Path, found: Verification) -> Path:
+    """The file of the entry that a verification belongs to.
 
     Raises:
         BoardError: when the board has none.
     """
     path = board / files.ENTRIES / f"{found.id}.json"
     if path not in files.entry_paths(board):
-        raise files.BoardError(f"{path}: there is no such entry, which this verification is of.")
+        raise files.BoardError(f"{path}: there is no such entry, but this verification belongs to it.")
     return path
 
 
-def keep(board: Path, entry: Entry, found: Verification) -> list[Path]:
-    """Write a verification, and a refutation of what it does not bear out: of the entry or of its control; the files.
+def write_verification(board: Path, entry: Entry, found: Verification) -> list[Path]:
+    """Write a verification, and a refutation where the entry or its control failed it; return the paths.
 
     Raises:
-        BoardError: when it is not of this entry as it is.
+        BoardError: when it does not belong to this entry as it is now.
     """
     if found.id != entry.id or found.entry != entry.digest:
         there = f"{found.id} with the hash {found.entry[:10]}"
         raise files.BoardError(f"{entry.id}: this verification is of {there}; the entry's is {entry.digest[:10]}.")
     written = [board / VERIFICATIONS / f"{entry.id}.json"]
-    files.write(written[0], found)
-    for one, played in ((entry, found.trials), (control_of(board, entry), found.control)):
+    files.write_document(written[0], found)
+    for one, played in ((entry, found.trials), (find_control(board, entry), found.control)):
         if one is not None and played is not None and not played.passed:
             struck = _refutation(one, found, played.why)
             written.append(board / REFUTATIONS / f"{struck.merkle}.json")
-            files.write(written[-1], struck)
+            files.write_document(written[-1], struck)
     return written
 
 
-def control_of(board: Path, entry: Entry) -> Entry | None:
-    """The entry on the board that the uplift of this one is over; None where there is none."""
+def find_control(board: Path, entry: Entry) -> Entry | None:
+    """The entry on the board that is the control of this one; None where there is none."""
     if entry.uplift is None:
         return None
-    beside = (files.read(path) for path in files.entry_paths(board))
-    return next((one for one in beside if one.alone and one.hashes.run == entry.uplift.control), None)
+    others = (files.read_entry(path) for path in files.entry_paths(board))
+    return next((one for one in others if one.alone and one.hashes.run == entry.uplift.control), None)
 
 
 def _refutation(entry: Entry, found: Verification, why: str) -> Refutation:
@@ -237,7 +237,7 @@ def _refutation(entry: Entry, found: Verification, why: str) -> Refutation:
 
 
 def _read(path: Path, sort: type[_T], name: str) -> _T:
-    found = files.parse(path.read_bytes(), str(path), sort)
+    found = files.parse_document(path.read_bytes(), str(path), sort)
     if (called := getattr(found, name)) != path.stem:
         raise files.BoardError(f"{path}: {name}: is '{called}', but must be the file's name, '{path.stem}'")
     return found

@@ -1,4 +1,4 @@
-"""What stands in the cells of the page's tables, in words."""
+"""The cells of the page's tables."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from msgspec import Struct
 from hthor.eval.metrics.metric import NUMBER, SHARE, Unit
 from hthor.eval.results.paired_difference import Difference
 from hthor.eval.statistics.intervals import Estimate
-from hthor.leaderboard.entries.verification import ENOUGH, Replayed
+from hthor.leaderboard.entries.verification import MIN_DETECTION, Replayed
 from hthor.leaderboard.ranking.board import Row, Section, Standing
 from hthor.report.html.markup import Markup, Piece, join, link, tag
 from hthor.report.terminal.result_tables import format_detectable
@@ -25,7 +25,7 @@ class Cell(Struct, frozen=True):
 
 
 def rank(one: Row, metric: str = "sr") -> Cell:
-    """The place, with the places that are not excluded and how the entry was verified; or why there is none."""
+    """The rank, the ranks that are not excluded and the tier of verification; or why there is no rank."""
     if one.ranks is None:
         return Cell(_soft("ref." if one.reference else NOTHING, "" if one.reference else one.unranked), _LAST)
     found: Standing = getattr(one.ranks, metric)
@@ -36,8 +36,8 @@ def rank(one: Row, metric: str = "sr") -> Cell:
     )
 
 
-def who(one: Row) -> Cell:
-    """The agent's name, and under it who made it and what it is told beyond its senses."""
+def agent(one: Row) -> Cell:
+    """The agent's name, and below it its authors and its privileges."""
     about = one.agent
     name = link(about.url, one.name)
     parts = [one.team if one.team != one.name else "", about.licence]
@@ -67,7 +67,7 @@ def amount(one: Estimate, digits: int = 1) -> Cell:
 
 
 def gain(one: Difference | None, unit: Unit = SHARE) -> Cell:
-    """How much more than without a robot, with the interval."""
+    """The difference to no robot, with its interval."""
     if one is None:
         return Cell(NOTHING, -_LAST)
     low, high = (f"{unit.scale * end:+z.1f}" for end in one.ci95 or (one.difference, one.difference))
@@ -76,7 +76,7 @@ def gain(one: Difference | None, unit: Unit = SHARE) -> Cell:
 
 
 def fresh(one: Row) -> Cell:
-    """Success at tasks that were drawn after the agent was handed in, and whether it fell."""
+    """Success at tasks that were drawn after the agent was submitted, and whether it dropped."""
     found = one.verification.fresh if one.verification else None
     if found is None:
         return Cell(_soft("not yet"), -1.0)
@@ -89,19 +89,19 @@ def fresh(one: Row) -> Cell:
 
 
 def checked(one: Row) -> Cell:
-    """How the entry was verified, and how surely a forged one would have been caught."""
+    """How the entry was verified, and the probability that a forged one would have been caught."""
     found = one.verification
     if found is None:
         return Cell(_soft("not yet"), 0.0)
     weakest = min((part for part in (found.trials, found.control) if part is not None), key=lambda part: part.caught)
     power = f"catches {100 * weakest.caught:.0f} %"
-    told = "; ".join(_told(part) for part in (found.trials, found.control) if part is not None)
-    mood = "good" if weakest.caught >= ENOUGH else "quiet"
-    return Cell(join([tag("b", found.trials.tier, class_=mood, title=told), _small(power)]), weakest.caught)
+    shown = "; ".join(_told(part) for part in (found.trials, found.control) if part is not None)
+    mood = "good" if weakest.caught >= MIN_DETECTION else "quiet"
+    return Cell(join([tag("b", found.trials.tier, class_=mood, title=shown), _small(power)]), weakest.caught)
 
 
-def held(one: Row) -> Cell:
-    """How the agent was held: our own are not, and of others it is a claim until the official workflow made the run."""
+def isolation(one: Row) -> Cell:
+    """How the agent was isolated: ours are not; for others it is a claim unless the official workflow made the run."""
     if not one.isolation:
         return Cell(_soft("built in"))
     level = float(one.isolation[1:]) if one.isolation[1:].isdigit() else 0.0
@@ -109,7 +109,7 @@ def held(one: Row) -> Cell:
 
 
 def faults(one: Row) -> Cell:
-    """Trials in which the agent failed, and sessions that began again."""
+    """Trials in which the agent failed, and sessions that were restarted."""
     if not one.replays:
         return Cell(str(one.faults), float(one.faults))
     again = f"{one.replays} replayed" if one.official else f"{one.replays} replayed, claimed"
@@ -117,7 +117,7 @@ def faults(one: Row) -> Cell:
 
 
 def ties(section: Section) -> str:
-    """Which agents cannot be told apart, as a sentence; empty for none."""
+    """Which agents cannot be shown apart, as a sentence; empty for none."""
     names = {row.id: row.name for row in section.rows}
     pairs = [
         f"{row.name} and {names[id]}"
@@ -143,8 +143,8 @@ def _small(text: str) -> Markup:
 
 def _interval(ends: str, one: Estimate | Difference, unit: Unit) -> Markup:
     """The interval; pointing at it tells how many trials it is of, and what they could have seen."""
-    told = f"n {one.n}, could have seen {format_detectable(one.mde80, unit)}"
-    return tag("small", ends, class_="soft", title=told)
+    shown = f"n {one.n}, could have seen {format_detectable(one.mde80, unit)}"
+    return tag("small", ends, class_="soft", title=shown)
 
 
 def _minus(text: str) -> str:

@@ -25,14 +25,14 @@ class Scale(Struct, frozen=True, kw_only=True):
         return round(_EDGE + (_WIDE - 2 * _EDGE) * min(max(part, 0.0), 1.0), 1)
 
 
-def scale(some: Iterable[Estimate]) -> Scale:
+def common_scale(some: Iterable[Estimate]) -> Scale:
     """The tens around all intervals."""
     ends = [end for one in some for end in (one.ci95 or ())] or [0.0, 1.0]
     low, high = 10 * math.floor(10 * min(ends)), 10 * math.ceil(10 * max(ends))
     return Scale(low=max(0, low), high=min(100, max(high, low + 10)))
 
 
-def axis(on: Scale) -> Markup:
+def draw_axis(on: Scale) -> Markup:
     """The head of a column of marks: its ends in numbers."""
     look: dict[str, str | int] = {"y": 11, "font_size": 10, "fill": "var(--soft)"}
     ends = (
@@ -42,7 +42,7 @@ def axis(on: Scale) -> Markup:
     return _drawing("scale", *ends)
 
 
-def mark(one: Estimate, on: Scale, colour: str) -> Markup:
+def draw_interval(one: Estimate, on: Scale, colour: str) -> Markup:
     """A dot for the mean, a line for the interval, thin lines at each tenth."""
     if one.mean is None:
         return NOTHING

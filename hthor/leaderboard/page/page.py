@@ -1,4 +1,4 @@
-"""The leaderboard as one page that needs nothing else: no network, and a script that only sorts; computes nothing."""
+"""The leaderboard as one page that needs nothing else: no network, and a script that only sorts."""
 
 from __future__ import annotations
 
@@ -34,41 +34,41 @@ code{overflow-wrap:anywhere}
 """
 _COLOURS = {"no robot": "none", "frontier": "frontier", "oracle": "oracle"}
 _LEAD = (
-    "How much a robot's mind helps a person at household tasks: every agent meets the same simulated people at the "
-    "same tasks on the same days, and is measured against the same people without a robot."
+    "How much a robot's agent helps a person at household tasks: every agent meets the same simulated people at the "
+    "same tasks, and is compared with the same people without a robot."
 )
-_RANKED = "Ranked: tasks that no agent can have known when it was handed in."
+_RANKED = "Ranked: tasks that no agent can have known when it was submitted."
 _DEVELOPMENT = (
-    "Development, unranked: these tasks are public. An agent can have been tuned on them or have learned them by "
-    "heart, so nobody has a rank here. The column 'fresh tasks' is what the same agent achieved at tasks that were "
-    "drawn by the same recipe after it had been handed in."
+    "Development, unranked: these tasks are public. An agent can have been tuned on them or have memorised "
+    "them, so there are no ranks here. The column 'fresh tasks' has the same agent's success at tasks that were drawn "
+    "by the same recipe after it had been submitted."
 )
 _NONE = "There is no ranked entry yet. 'How to get a ranked entry' below says what it takes."
-_UNFITTED = "The people are not calibrated for this suite: compare agents, and take no score for a forecast."
+_UNFITTED = "The people are not calibrated for this suite: compare agents, but do not take a score as a prediction."
 _HOW = (
     "A rank is one more than the number of agents that are significantly better in success (paired trial by trial, "
-    "over tasks and people, adjusted by Holm for all pairs); under it stand the ranks that are not excluded at 95 %, "
-    "and how the entry was verified. With =, an agent cannot be told from at least one other. One agent counts once, "
-    "under however many names or by however many hands it was handed in. References (ref.) are hthor's own agents; "
-    "they are there to be measured against and have no rank.",
+    "over tasks and people, adjusted by Holm for all pairs); below it are the ranks that are not excluded at 95 %, "
+    "and how the entry was verified. With =, an agent cannot be distinguished from at least one other. An agent that "
+    "was submitted under several names or by several teams counts once. References (ref.) are hthor's own agents; "
+    "others are compared with them, and they have no rank.",
     "Intervals are 95 %, for new tasks and new people of the same population. Points are percentage points over the "
     "same people at the same tasks without a robot. Point at an interval for n, the number of trials, and the "
-    "smallest difference that these could have seen in four of five cases; leaderboard.json has both.",
-    "Adoption is the share of trials in which a message was confirmed. People can be talked into that: read it with "
-    "the next column, the share of the confirmed messages that were true and new to the person, and with the points "
+    "smallest difference that they detect with a power of 80 %; leaderboard.json has both.",
+    "Adoption is the share of trials in which a message was accepted. People can be talked into that: read it with "
+    "the next column, the share of the accepted messages that were true and new to the person, and with the points "
     "over no robot. Nothing is ranked by adoption.",
-    "Verified says what came of playing trials of the agent and of its control again, drawn after the entry was "
-    "handed in: V1 byte for byte on the same platform, V2 by outcomes on another, V3 statistically; and how surely an"
-    " entry would have been caught in which three of sixty outcomes are false. Below 95 % there is no rank.",
-    "What nothing in an entry bears out is marked as claimed: how the agent was held, how often sessions began again,"
-    " and which version of hthor played, unless the official workflow made the entry.",
+    "Verified: trials of the agent and of its control, drawn after the entry was submitted, were replayed and "
+    "compared: V1 byte for byte on the same platform, V2 by outcomes on another, V3 statistically; with the "
+    "probability that an entry with three false outcomes in sixty would have been caught. Below 95 % there is no rank.",
+    "What nothing in an entry proves is marked as claimed: how the agent was isolated, how often sessions were "
+    "restarted, and which version of hthor ran, unless the official workflow made the entry.",
 )
 _TO_RANK = (
-    "Hand in a folder submissions/NAME as a pull request; leaderboard/README.md says what belongs in it.",
+    "Submit a folder submissions/NAME as a pull request; leaderboard/README.md describes its contents.",
     "When it is merged, a maintainer starts the official evaluation on the season's secret suite, which nobody has "
-    "seen.",
+    "seen before.",
     "The entry, verified, is proposed by a bot, and stands in the season's section with a rank. An entry on a public "
-    "suite, from whomever, stands in a development section and has none.",
+    "suite stands in a development section and has no rank.",
 )
 _HEAD: tuple[tuple[str, int], ...] = (
     ("rank", 1),
@@ -133,13 +133,13 @@ def _section(number: int, one: Section) -> Markup:
         _ranking(one),
         tag("p", said, class_="soft") if said else m.NOTHING,
         tables.fold("By difficulty and kind of task", _splits(one)),
-        tables.fold("What was played", _origins(one)),
+        tables.fold("What was run", _origins(one)),
     )
 
 
 def _ranking(one: Section) -> Markup:
-    on = interval_marks.scale(row.sr for row in one.rows)
-    head: list[tuple[Piece, int]] = [(title or interval_marks.axis(on), way) for title, way in _HEAD]
+    on = interval_marks.common_scale(row.sr for row in one.rows)
+    head: list[tuple[Piece, int]] = [(title or interval_marks.draw_axis(on), way) for title, way in _HEAD]
     lines = [("ref" if row.reference else "", _cells(row, on)) for row in one.rows]
     return tables.table(head, lines, words=(0, 1, 3, 12, 13))
 
@@ -148,9 +148,9 @@ def _cells(row: Row, on: interval_marks.Scale) -> list[Cell]:
     colour = _COLOURS.get(row.name, "ink") if row.reference else "ink"
     return [
         cells.rank(row),
-        cells.who(row),
+        cells.agent(row),
         cells.share(row.sr),
-        Cell(interval_marks.mark(row.sr, on, colour)),
+        Cell(interval_marks.draw_interval(row.sr, on, colour)),
         cells.fresh(row),
         cells.share(row.twsr),
         cells.gain(row.uplift.sr if row.uplift else None),
@@ -159,7 +159,7 @@ def _cells(row: Row, on: interval_marks.Scale) -> list[Cell]:
         cells.share(row.usefulness),
         cells.amount(row.trust),
         cells.faults(row),
-        cells.held(row),
+        cells.isolation(row),
         cells.checked(row),
     ]
 

@@ -1,7 +1,7 @@
-"""What a board takes, and what it ranks: lists of people, seeds and suites that its keeper wrote; judges no numbers.
+"""What a board accepts and what it ranks: lists of people, seeds and suites that its keeper wrote.
 
-Without such lists anybody could open a section of their own: with a seed that suits an agent, with people who are
-called like ours, on tasks that were picked. A board without the file takes what `own` lists.
+Without such lists anybody could open a section of their own: with a seed that suits an agent, with people of the same
+name as ours, on hand-picked tasks. A board without the file accepts what `own` lists.
 """
 
 from __future__ import annotations
@@ -28,17 +28,17 @@ _SCHEMA: Final = "hthor.admission/1"
 Standing = Literal["ranked", "development"]
 
 
-class Named(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Something that is taken: its name, for people who read the list, and the hash that decides."""
+class Admitted(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """Something that is accepted: its name, for readers of the list, and the hash that decides."""
 
     name: Word
     sha256: Sha256
 
 
-class Listed(Named, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A suite that is taken.
+class AdmittedSuite(Admitted, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A suite that is accepted.
 
-    ``standing`` is "ranked" for tasks that no agent can have known when it was handed in, and "development" for public
+    ``standing`` is "ranked" for tasks that no agent can have known when it was submitted, and "development" for public
     ones, whose entries stand on the board without a rank.
     """
 
@@ -46,45 +46,45 @@ class Listed(Named, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Admission(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The lists. A run is taken when its people, its seed and its suite are all on them."""
+    """The lists. A run is accepted when its people, its seed and its suite are all on them."""
 
     schema: Literal["hthor.admission/1"] = _SCHEMA
-    people: tuple[Named, ...]
+    people: tuple[Admitted, ...]
     seeds: tuple[Annotated[int, Meta(ge=0)], ...]
-    suites: tuple[Listed, ...]
+    suites: tuple[AdmittedSuite, ...]
 
     def standing(self, entry: Entry) -> Standing | None:
-        """What the suite of an entry is for; None when it is not on the list."""
+        """The standing of an entry's suite; None when it is not on the list."""
         return next((one.standing for one in self.suites if one.sha256 == entry.run.suite.sha256), None)
 
 
 @functools.cache
-def own() -> Admission:
-    """What every board takes: the people of the benchmark, seed 0, and hthor's own suites, which are public."""
+def default_admission() -> Admission:
+    """What every board accepts: the people of the benchmark, seed 0, and hthor's own suites, which are public."""
     suites = (library.read_suite(name) for name in tasks.suite_names())
     return Admission(
-        people=(Named(name=resolve.PROXY, sha256=resolve.resolve_humans(resolve.PROXY).sha256),),
+        people=(Admitted(name=resolve.PROXY, sha256=resolve.resolve_humans(resolve.PROXY).sha256),),
         seeds=(0,),
-        suites=tuple(Listed(name=one.name, sha256=one.sha256, standing=DEVELOPMENT) for one in suites),
+        suites=tuple(AdmittedSuite(name=one.name, sha256=one.sha256, standing=DEVELOPMENT) for one in suites),
     )
 
 
-def load(board: Path) -> Admission:
+def load_admission(board: Path) -> Admission:
     """The lists of a board.
 
     Raises:
         BoardError: when the file cannot be read, naming the field.
     """
     path = board / NAME
-    return files.parse(path.read_bytes(), str(path), Admission) if path.is_file() else own()
+    return files.parse_document(path.read_bytes(), str(path), Admission) if path.is_file() else default_admission()
 
 
-def opened(board: Path, season: Commitment | None = None) -> Admission:
+def extended_admission(board: Path, season: Commitment | None = None) -> Admission:
     """A board's lists with what this version of hthor brings, and with an official suite that is to be ranked."""
-    there, here = load(board), own()
+    there, here = load_admission(board), default_admission()
     suites = {one.sha256: one for one in (*here.suites, *there.suites)}
     if season is not None:
-        suites[season.suite_sha256] = Listed(name=season.name, sha256=season.suite_sha256, standing=RANKED)
+        suites[season.suite_sha256] = AdmittedSuite(name=season.name, sha256=season.suite_sha256, standing=RANKED)
     return msgspec.structs.replace(
         there,
         people=tuple(dict.fromkeys((*there.people, *here.people))),
@@ -93,8 +93,8 @@ def opened(board: Path, season: Commitment | None = None) -> Admission:
     )
 
 
-def problems(entry: Entry, taken: Admission) -> Iterator[tuple[str, str]]:
-    """Why an entry is not taken: fields, and what is wrong there."""
+def admission_problems(entry: Entry, taken: Admission) -> Iterator[tuple[str, str]]:
+    """Why an entry is not accepted: fields, and what is wrong there."""
     run, how = entry.run, f"see {NAME}, which the board's keeper writes"
     if run.humans.sha256 not in {one.sha256 for one in taken.people}:
         names = ", ".join(dict.fromkeys(one.name for one in taken.people))

@@ -1,4 +1,4 @@
-"""What the list holds: entries in sections of those that can be compared, with their ranks; works nothing out."""
+"""What the list holds: entries in sections of those that can be compared, with their ranks."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ SCHEMA: Final = "hthor.leaderboard/6"
 class Standing(Struct, frozen=True, kw_only=True):
     """A place among the agents of a section: 1 is the best.
 
-    ``interval`` holds the ranks that are not excluded at 95 %; ``ties`` the ids of the agents that cannot be told apart
-    from this one.
+    ``interval`` holds the ranks that are not excluded at 95 %; ``ties`` the ids of the agents that cannot be
+    distinguished from this one.
     """
 
     rank: int
@@ -43,7 +43,7 @@ class Gain(Struct, frozen=True, kw_only=True):
 
 
 class Checked(Struct, frozen=True, kw_only=True):
-    """What came of playing the entry again: as in its `Verification`, which lies beside it."""
+    """The result of replaying the entry, from its `Verification`."""
 
     trials: Replayed
     control: Replayed | None
@@ -57,9 +57,9 @@ class Row(Struct, frozen=True, kw_only=True):
     Attributes:
         ranks: None where there is none; ``unranked`` says why.
         same_as: the id of the entry that is counted in this one's place, as both are one agent; empty for none.
-        faults: trials in which the agent failed. replays: sessions that began again, as the run claims.
-        isolation: what held the agent, empty for one that is built in. It, and ``harness``, are claims unless the
-            verification says that the official workflow made the entry.
+        faults: trials in which the agent failed. replays: sessions that were restarted, as the run claims.
+        isolation: how the agent was isolated, empty for one that is built in. It and ``harness`` are claims unless the
+            official workflow made the entry.
     """
 
     id: str

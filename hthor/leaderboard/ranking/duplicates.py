@@ -1,7 +1,7 @@
-"""Which entries are one agent: ranks count each once, however often and under however many names it was handed in.
+"""Which entries are one agent: ranks count each once.
 
-Two entries are of the same agent when a team handed both in under one name, as versions of it; when their code is the
-same, whoever handed it in; or when they did nearly the same, trial by trial.
+Two entries are of the same agent when a team submitted both under one name, as versions of it; when their code is the
+same, whoever submitted it; or when they did nearly the same, trial by trial.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ NEAR_S = 1.0
 """How far two times may be from each other [s]."""
 
 
-def families(entries: Sequence[Entry], held: Sequence[Outcomes]) -> list[list[int]]:
-    """Entries that are one agent, as groups of their places; everything that hangs together is in one group."""
+def group_duplicates(entries: Sequence[Entry], held: Sequence[Outcomes]) -> list[list[int]]:
+    """Entries that are one agent, as groups of their places; linked entries are in one group."""
     home = list(range(len(entries)))
 
     def root(place: int) -> int:
@@ -33,7 +33,7 @@ def families(entries: Sequence[Entry], held: Sequence[Outcomes]) -> list[list[in
 
     for one in range(len(entries)):
         for other in range(one):
-            if _is_one(entries[one], entries[other]) or alike(held[one], held[other]) >= ALIKE:
+            if _is_one(entries[one], entries[other]) or similarity(held[one], held[other]) >= ALIKE:
                 home[root(one)] = root(other)
     groups: dict[int, list[int]] = {}
     for place in range(len(entries)):
@@ -41,10 +41,10 @@ def families(entries: Sequence[Entry], held: Sequence[Outcomes]) -> list[list[in
     return list(groups.values())
 
 
-def counted(entries: Sequence[Entry], held: Sequence[Outcomes]) -> dict[str, str]:
+def representatives(entries: Sequence[Entry], held: Sequence[Outcomes]) -> dict[str, str]:
     """For each entry by its id, the one that is counted in its place: of a group the best, of equals the first."""
     found: dict[str, str] = {}
-    for group in families(entries, held):
+    for group in group_duplicates(entries, held):
         best = min(
             group, key=lambda place: (-int(held[place].met.sum()), -int(held[place].twsr.sum()), entries[place].id)
         )
@@ -52,11 +52,7 @@ def counted(entries: Sequence[Entry], held: Sequence[Outcomes]) -> dict[str, str
     return found
 
 
-def _worse(one: Outcomes) -> tuple[int, int]:
-    return -int(one.met.sum()), -int(one.twsr.sum())
-
-
-def alike(one: Outcomes, other: Outcomes) -> float:
+def similarity(one: Outcomes, other: Outcomes) -> float:
     """The share of trials in which both did the same: success as much as time, to within `NEAR_S`."""
     if len(one.met) != len(other.met):
         return 0.0

@@ -1,4 +1,4 @@
-"""The list out of the entries: sections, ranks, rows; the same entries give the same bytes. Reads no files."""
+"""Makes the list from the entries: sections, ranks, rows; the same entries give the same bytes."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from hthor.eval.comparison import ranking
 from hthor.leaderboard.entries import entry_metrics, trial_outcomes, verification
 from hthor.leaderboard.entries.entry import Entry
-from hthor.leaderboard.entries.verification import ENOUGH, Kept
+from hthor.leaderboard.entries.verification import MIN_DETECTION, KeeperRecords
 from hthor.leaderboard.ranking import admission, duplicates
 from hthor.leaderboard.ranking.admission import Admission
 from hthor.leaderboard.ranking.board import Board, Checked, Gain, Ranks, Row, Section, Standing, Struck
@@ -18,35 +18,39 @@ _NO_ROBOT = "no robot"
 Key = tuple[str, str, str, str, int, str, str, str]
 
 
-def key(entry: Entry) -> Key:
+def comparison_key(entry: Entry) -> Key:
     """What entries must have in common to be compared."""
     run = entry.run
     people = (run.humans.name, run.humans.sha256, run.seed)
     return (run.suite.name, run.suite.sha256, *people, entry.mode, run.code_sha256, run.rules_sha256)
 
 
-def board(entries: Sequence[Entry], kept: Kept = verification.NOTHING, taken: Admission | None = None) -> Board:
+def make_board(
+    entries: Sequence[Entry], kept: KeeperRecords = verification.NO_RECORDS, taken: Admission | None = None
+) -> Board:
     """The list.
 
     Args:
         kept: what the board's keeper wrote; an entry that was refuted does not stand. taken: which suites are ranked;
             without it none is.
     """
-    struck = {entry.id: found for entry in entries if (found := kept.struck(entry)) is not None}
+    struck = {entry.id: found for entry in entries if (found := kept.refutation_of(entry)) is not None}
     standing = [entry for entry in entries if entry.id not in struck]
-    keys = sorted({key(entry) for entry in standing}, key=lambda one: (_stands(one, taken) != admission.RANKED, one))
-    groups = ([entry for entry in standing if key(entry) == one] for one in keys)
+    keys = sorted(
+        {comparison_key(entry) for entry in standing}, key=lambda one: (_stands(one, taken) != admission.RANKED, one)
+    )
+    groups = ([entry for entry in standing if comparison_key(entry) == one] for one in keys)
     return Board(
-        sections=tuple(_section(group, kept, _stands(key(group[0]), taken)) for group in groups),
+        sections=tuple(_section(group, kept, _stands(comparison_key(group[0]), taken)) for group in groups),
         refuted=tuple(
-            Struck(id=entry.id, name=name(entry), why=struck[entry.id].why)
+            Struck(id=entry.id, name=display_name(entry), why=struck[entry.id].why)
             for entry in sorted(entries, key=lambda one: one.id)
             if entry.id in struck
         ),
     )
 
 
-def name(entry: Entry) -> str:
+def display_name(entry: Entry) -> str:
     """What to call an entry's agent."""
     return _NO_ROBOT if entry.reference and entry.alone else entry.agent.name
 
@@ -56,11 +60,11 @@ def _stands(one: Key, taken: Admission | None) -> admission.Standing:
     return suites.get(one[1], "development")
 
 
-def _section(entries: Sequence[Entry], kept: Kept, standing: admission.Standing) -> Section:
+def _section(entries: Sequence[Entry], kept: KeeperRecords, standing: admission.Standing) -> Section:
     controls = {entry.hashes.run for entry in entries if entry.alone}
     reasons = {entry.id: _unranked(entry, kept, standing, controls) for entry in entries}
     can = sorted((entry for entry in entries if not reasons[entry.id]), key=lambda one: one.id)
-    same = duplicates.counted(can, [trial_outcomes.unpack(entry.trials) for entry in can])
+    same = duplicates.representatives(can, [trial_outcomes.unpack(entry.trials) for entry in can])
     ranks = _ranks([entry for entry in can if same[entry.id] == entry.id])
     rows = [_row(entry, ranks, reasons[entry.id], same.get(entry.id, entry.id), kept, controls) for entry in entries]
     run = entries[0].run
@@ -80,9 +84,9 @@ def _section(entries: Sequence[Entry], kept: Kept, standing: admission.Standing)
     )
 
 
-def _unranked(entry: Entry, kept: Kept, standing: admission.Standing, controls: set[str]) -> str:
+def _unranked(entry: Entry, kept: KeeperRecords, standing: admission.Standing, controls: set[str]) -> str:
     """Why an entry has no rank; empty for one that can have one."""
-    found = kept.of(entry)
+    found = kept.verification_of(entry)
     if entry.reference:
         return "reference"
     if found is not None and found.refuted:
@@ -95,7 +99,7 @@ def _unranked(entry: Entry, kept: Kept, standing: admission.Standing, controls: 
         return "no control"
     if found.fell:
         return "fell on fresh tasks"
-    return "" if found.caught >= ENOUGH else "too few draws"
+    return "" if found.caught >= MIN_DETECTION else "too few draws"
 
 
 def _ranks(entries: Sequence[Entry]) -> dict[str, Ranks]:
@@ -103,25 +107,29 @@ def _ranks(entries: Sequence[Entry]) -> dict[str, Ranks]:
     if not entries:
         return {}
     held = [trial_outcomes.unpack(entry.trials) for entry in entries]
-    whose = np.array(entry_metrics.people(entries[0].trials.count, entries[0].run.participants), dtype=np.int64)
-    tasks = np.arange(len(whose), dtype=np.int64)
+    participants = np.array(
+        entry_metrics.trial_participants(entries[0].trials.count, entries[0].run.participants), dtype=np.int64
+    )
+    tasks = np.arange(len(participants), dtype=np.int64)
     ids = [entry.id for entry in entries]
     by_metric = {}
     for metric in ("sr", "twsr"):
-        rows = np.stack([entry_metrics.values(one, metric, alone=False) for one in held])
+        rows = np.stack([entry_metrics.metric_values(one, metric, alone=False) for one in held])
         by_metric[metric] = [
             Standing(rank=one.rank, interval=one.interval, ties=tuple(ids[other] for other in one.ties))
-            for one in ranking.rank_agents(rows, tasks, whose)
+            for one in ranking.rank_agents(rows, tasks, participants)
         ]
     return {id: Ranks(sr=by_metric["sr"][place], twsr=by_metric["twsr"][place]) for place, id in enumerate(ids)}
 
 
-def _row(entry: Entry, ranks: Mapping[str, Ranks], unranked: str, counted: str, kept: Kept, controls: set[str]) -> Row:
+def _row(
+    entry: Entry, ranks: Mapping[str, Ranks], unranked: str, counted: str, kept: KeeperRecords, controls: set[str]
+) -> Row:
     seats = entry.run.seats
     gain = entry.uplift if entry.uplift is not None and entry.uplift.control in controls else None
     return Row(
         id=entry.id,
-        name=name(entry),
+        name=display_name(entry),
         agent=entry.agent,
         team=entry.team,
         bodies=tuple(seat.robot for seat in seats),
@@ -142,8 +150,8 @@ def _row(entry: Entry, ranks: Mapping[str, Ranks], unranked: str, counted: str, 
     )
 
 
-def _checked(entry: Entry, kept: Kept) -> Checked | None:
-    found = kept.of(entry)
+def _checked(entry: Entry, kept: KeeperRecords) -> Checked | None:
+    found = kept.verification_of(entry)
     if found is None:
         return None
     return Checked(trials=found.trials, control=found.control, fresh=found.fresh, official=found.official)

@@ -1,1 +1,1 @@
-"""What is handed in: an agent's folder, unpacked and checked."""
+"""Submitted agents: their folders, unpacked and checked."""

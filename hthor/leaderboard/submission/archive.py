@@ -1,4 +1,4 @@
-"""Unpacks a .zip or .tar.gz that somebody hands in: plain files within a folder, of bounded number and size."""
+"""Unpacks a .zip or .tar.gz that is submitted: plain files within a folder, of bounded number and size."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class _Member(Struct, frozen=True):
     open: Callable[[], IO[bytes] | None]
 
 
-def is_one(path: Path) -> bool:
+def is_archive(path: Path) -> bool:
     """Whether a path is that of an archive, by its name."""
     return path.name.endswith(SUFFIXES) and path.is_file()
 

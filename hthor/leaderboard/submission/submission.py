@@ -1,4 +1,4 @@
-"""A submission as it is handed in: a folder with one agent, its files, and what its authors say; runs nothing of it."""
+"""A submission: a folder with one agent, its files, and its authors' description. Nothing of it is run here."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ from hthor.errors import HthorError
 from hthor.guest import File
 from hthor.guest.agent import digests
 from hthor.leaderboard.entries.entry import Agent
-from hthor.leaderboard.entries.files import Problem, parse, refuse
+from hthor.leaderboard.entries.files import Problem, parse_document, raise_problems
 from hthor.leaderboard.submission import archive
 
-ABOUT, MIND = "submission.json", "agent.py"
+ABOUT, AGENT_FILE = "submission.json", "agent.py"
 MAX_BYTES, MAX_FILES = 64 << 20, 500
 """All files of a submission together, and how many there may be."""
 _NAME = re.compile(r"[a-z0-9][a-z0-9_-]{0,39}")
@@ -30,7 +30,7 @@ _LEAST = 'a file with the agent\'s name at least: {"name": "My agent"}'
 
 
 class Submission(Struct, frozen=True, kw_only=True):
-    """A folder of submissions/: its name, the agent's file, who it is, and every file that was handed in."""
+    """A folder of submissions/: its name, the agent's file, who it is, and every submitted file."""
 
     name: str
     path: Path
@@ -43,32 +43,32 @@ class _Said(Agent, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 @contextmanager
-def unpacked(place: Path) -> Iterator[Path]:
+def submission_folder(place: Path) -> Iterator[Path]:
     """A submission's folder, of an archive for as long as it is needed.
 
     Raises:
         BoardError: when it is an archive that cannot be unpacked.
     """
-    if not archive.is_one(place):
+    if not archive.is_archive(place):
         yield place
         return
     with tempfile.TemporaryDirectory(prefix="hthor-submission-") as folder:
         yield archive.unpack(place, Path(folder) / archive.stem(place), most_bytes=MAX_BYTES, most_files=MAX_FILES)
 
 
-def read(folder: Path) -> Submission:
+def read_submission(folder: Path) -> Submission:
     """The submission in a folder.
 
     Raises:
-        BoardError: when it is not one; names all that is wrong, not only the first.
+        BoardError: when it is not one; lists everything that is wrong.
     """
-    refuse(problems(folder))
-    said = parse((folder / ABOUT).read_bytes(), str(folder / ABOUT), _Said)
+    raise_problems(submission_problems(folder))
+    said = parse_document((folder / ABOUT).read_bytes(), str(folder / ABOUT), _Said)
     about = Agent(**msgspec.structs.asdict(said))
-    return Submission(name=folder.resolve().name, path=folder / MIND, agent=about, files=listed(folder))
+    return Submission(name=folder.resolve().name, path=folder / AGENT_FILE, agent=about, files=list_files(folder))
 
 
-def listed(folder: Path) -> tuple[File, ...]:
+def list_files(folder: Path) -> tuple[File, ...]:
     """Every file in a folder with its hash, sorted: the same however and in whatever order they were packed."""
     found = []
     for path in folder.rglob("*"):
@@ -78,8 +78,8 @@ def listed(folder: Path) -> tuple[File, ...]:
     return tuple(sorted(found))
 
 
-def problems(folder: Path) -> Iterator[Problem]:
-    """What keeps a folder from being a submission, without running anything of it."""
+def submission_problems(folder: Path) -> Iterator[Problem]:
+    """Everything that is wrong with a folder as a submission, without running anything of it."""
     shown = str(folder)
     if folder.is_symlink() or not folder.is_dir():
         rule = "is not a folder, and no .zip or .tar.gz of one; a submission is a folder, submissions/NAME"
@@ -93,7 +93,7 @@ def problems(folder: Path) -> Iterator[Problem]:
     for path in held:
         yield from _file(path, path.relative_to(folder).as_posix())
     yield from _alike(folder, held)
-    for needed, what in ((MIND, "a file with a class Agent, see docs/agents.md"), (ABOUT, _LEAST)):
+    for needed, what in ((AGENT_FILE, "a file with a class Agent, see docs/agents.md"), (ABOUT, _LEAST)):
         if not (folder / needed).is_file():
             yield Problem(file=str(folder / needed), field="$", problem=f"is missing: {what}")
     sizes = [path.stat().st_size for path in held if path.is_file() and not path.is_symlink()]
@@ -104,7 +104,7 @@ def problems(folder: Path) -> Iterator[Problem]:
     about = folder / ABOUT
     if about.is_file() and not about.is_symlink():
         try:
-            parse(about.read_bytes(), str(about), _Said)
+            parse_document(about.read_bytes(), str(about), _Said)
         except HthorError as error:
             file, field, problem = str(error).split(": ", 2)
             yield Problem(file=file, field=field, problem=problem)
@@ -115,13 +115,13 @@ def _file(path: Path, name: str) -> Iterator[Problem]:
         return Problem(file=str(path), field="$", problem=problem)
 
     if path.is_symlink():
-        yield wrong("is a link; hand in the file itself")
+        yield wrong("is a link; submit the file itself")
         return
     if not _PATH.fullmatch(name) or len(name) > _PATH_MAX:
         rule = f"letters, digits, _ + - and ., no leading ., eight folders deep and {_PATH_MAX} characters at most"
         yield wrong(f"is not taken: a name has {rule}")
     elif path.name == "__pycache__" or path.suffix in _COMPILED:
-        yield wrong("is not taken: compiled files are not run; hand in the sources")
+        yield wrong("is not taken: compiled files are not run; submit the sources")
     elif not path.is_dir() and not path.is_file():
         yield wrong("is neither a file nor a folder")
     elif path.is_file() and path.suffix in _TEXT:

@@ -1,1 +1,1 @@
-"""Entries played again, compared, and tried on fresh tasks."""
+"""Verification: entries replayed and compared, and their agents run on fresh tasks."""

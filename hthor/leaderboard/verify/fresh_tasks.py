@@ -1,4 +1,4 @@
-"""Playing an entry's agent at tasks that were drawn after it was handed in, by the recipe of the entry's suite.
+"""Runs an entry's agent on tasks that were drawn after it was submitted, by the recipe of the entry's suite.
 
 The people are those of the entry: the same population, drawn with the same seed.
 """
@@ -34,12 +34,12 @@ from hthor.tasks.suites.secret_salt import Salt
 from hthor.types import TaskSpec
 
 TASKS = 200
-"""Fresh tasks: what fall of success they show, the verification says."""
+"""Fresh tasks by default; the verification says which drop of success they detect."""
 _HOUSE_TASKS = 10
 """Tasks in each fresh house of an official suite."""
 
 
-def verify(
+def verify_fresh_tasks(
     entry: Entry,
     board: Path,
     word: str,
@@ -53,7 +53,7 @@ def verify(
     """Draw tasks, have the agent play them, and compare.
 
     Args:
-        word: public chance that came to be after the entry was handed in. count: how many tasks.
+        word: public random text from after the submission. count: how many tasks.
         agent: the agent's file, for one that is not hthor's own. required: the least level that holds it.
         given: arguments and files that it is given.
 
@@ -63,24 +63,26 @@ def verify(
     with tempfile.TemporaryDirectory() as folder:
         _draw(entry, board, word, count, Path(folder), jobs)
         chosen = task_selection.select_tasks(folder, "")
-        crew, who = replay.crew_of(entry, agent, given), resolve.resolve_humans(entry.run.humans.source)
-        clock = {name: value for name, value in replay.dealt(entry).items() if name != "participants"}
-        whole = sessions.make_sessions(chosen.suite, agent=crew, human=who, **clock)
-        sources = replay.make_sources_of(folder, crew, who, required, given)
-        played = replay.perform(entry, whole, functools.partial(make_runner, sources), jobs)
+        team, humans = replay.robot_team_of(entry, agent, given), resolve.resolve_humans(entry.run.humans.source)
+        clock = {name: value for name, value in replay.session_options(entry).items() if name != "participants"}
+        whole = sessions.make_sessions(chosen.suite, agent=team, human=humans, **clock)
+        sources = replay.make_sources_of(folder, team, humans, required, given)
+        played = replay.run_sessions(entry, whole, functools.partial(make_runner, sources), jobs)
     records = sorted((one for one, _ in played), key=lambda one: (one.spec.participant, one.spec.index))
     owners = [one.spec.participant for one in records]
     values = {name: trial_metrics.column((one.metrics for one in records), name) for name in ("sr", "twsr")}
-    return judged(entry, chosen.suite.sha256, values, owners)
+    return judge_fresh_tasks(entry, chosen.suite.sha256, values, owners)
 
 
-def judged(entry: Entry, digest: str, values: dict[str, np.ndarray], owners: Sequence[int]) -> Fresh:
+def judge_fresh_tasks(entry: Entry, digest: str, values: dict[str, np.ndarray], owners: Sequence[int]) -> Fresh:
     """The verdict over success and time-weighted success at fresh tasks of this hash, with the person of each."""
     held = trial_outcomes.unpack(entry.trials)
-    whose = entry_metrics.people(entry.trials.count, entry.run.participants)
-    claimed = {name: entry_metrics.values(held, name, alone=entry.alone) for name in values}
-    falls = {name: performance_drop.of(claimed[name], whose, row, owners) for name, row in values.items()}
-    seen = performance_drop.detectable(claimed["sr"], whose, len(owners))
+    participants = entry_metrics.trial_participants(entry.trials.count, entry.run.participants)
+    claimed = {name: entry_metrics.metric_values(held, name, alone=entry.alone) for name in values}
+    falls = {
+        name: performance_drop.measure_drop(claimed[name], participants, row, owners) for name, row in values.items()
+    }
+    seen = performance_drop.detectable_drop(claimed["sr"], participants, len(owners))
     fell = any(one.seen for one in falls.values())
     told = "; ".join(
         f"{title} of {_percent(claimed[name])} was claimed, {_percent(values[name])} came out (p = {falls[name].p:.2g})"
@@ -107,7 +109,7 @@ def _draw(entry: Entry, board: Path, word: str, count: int, folder: Path, jobs: 
         drawn = fresh_tasks.make_fresh_suite(name, int(lot[:30], 16), count, functools.partial(_possible, jobs=jobs))
         jsonio.write(folder / secret_suites.SUITE, encode_suite(drawn))
         return
-    season = files.commitments(board).get(entry.run.suite.sha256)
+    season = files.read_commitments(board).get(entry.run.suite.sha256)
     if season is None:
         raise BoardError(f"{entry.id}: run.suite.sha256: no recipe of this suite is known for fresh tasks.")
     from hthor.world.validation.house_soundness import check_soundness

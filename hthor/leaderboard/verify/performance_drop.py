@@ -1,6 +1,6 @@
-"""Whether an agent does worse at fresh tasks than its entry claims, and what fall would have been seen; plays nothing.
+"""Whether an agent does worse at fresh tasks than its entry claims, and which drop would have been detected.
 
-The tasks are others, so nothing is paired but the people: the test is Welch's, one-sided, with the variances of
+The tasks differ, so only the people are the same: the test is Welch's, one-sided, with the variances of
 `hthor.eval.statistics.variance_components` for new tasks and new people. It is made for success and for time-
 weighted success, each at half the level, so an honest agent is flagged once in a hundred verifications.
 """
@@ -17,48 +17,48 @@ from hthor.eval.statistics import intervals, variance_components
 
 LEVEL = 0.01
 STEP = 0.01
-"""Falls are tried in steps of one point."""
+"""Drops are tried in steps of one point."""
 _GAMES = 400
 
 
-class Fall(Struct, frozen=True, kw_only=True):
-    """How much lower a share came out, and the probability of that by chance."""
+class Drop(Struct, frozen=True, kw_only=True):
+    """How much lower a share is, and the probability of that by chance."""
 
     gap: float
     p: float
 
     @property
     def seen(self) -> bool:
-        """Whether chance explains it."""
+        """Whether it is significant: chance does not explain it."""
         return self.p < LEVEL / 2.0
 
 
-def of(claimed: np.ndarray, whose: Sequence[int], fresh: np.ndarray, people: Sequence[int]) -> Fall:
+def measure_drop(claimed: np.ndarray, participants: Sequence[int], fresh: np.ndarray, people: Sequence[int]) -> Drop:
     """The fall from the claimed values, (N,), to the fresh ones, (M,), with the person of each."""
-    gap, p = _welch(claimed, np.asarray(whose), fresh[None], np.asarray(people))
-    return Fall(gap=round(float(gap[0]), 6), p=float(f"{float(p[0]):.3g}"))
+    gap, p = _welch(claimed, np.asarray(participants), fresh[None], np.asarray(people))
+    return Drop(gap=round(float(gap[0]), 6), p=float(f"{float(p[0]):.3g}"))
 
 
-def detectable(claimed: np.ndarray, whose: Sequence[int], count: int) -> float | None:
+def detectable_drop(claimed: np.ndarray, participants: Sequence[int], count: int) -> float | None:
     """The smallest fall that so many fresh tasks show in `stats.POWER` of all cases; None where none does.
 
     People are drawn from the entry, each with their trials; of their successes each is lost with the same probability,
     so that the mean falls by as much as is tried.
 
     Args:
-        claimed: success in each trial, (N,). whose: the person of each.
+        claimed: success in each trial, (N,). participants: the person of each.
     """
     mean = float(claimed.mean())
     for steps in range(1, round(mean / STEP) + 1):
-        if power(claimed, whose, count, steps * STEP) >= intervals.POWER:
+        if detection_rate(claimed, participants, count, steps * STEP) >= intervals.POWER:
             return round(steps * STEP, 4)
     return None
 
 
-def power(claimed: np.ndarray, whose: Sequence[int], count: int, fall: float) -> float:
+def detection_rate(claimed: np.ndarray, participants: Sequence[int], count: int, fall: float) -> float:
     """How often so many fresh tasks show a fall of this size."""
     chance = np.random.default_rng(abs(seeds.derive(0, "falling", len(claimed), count, round(fall / STEP * 1000))))
-    owners, mean = np.asarray(whose), float(claimed.mean())
+    owners, mean = np.asarray(participants), float(claimed.mean())
     size = max(1, round(len(claimed) / (int(owners.max()) + 1)))
     people = max(1, count // size)
     firsts = np.flatnonzero(np.r_[True, owners[1:] != owners[:-1]])
@@ -71,12 +71,12 @@ def power(claimed: np.ndarray, whose: Sequence[int], count: int, fall: float) ->
 
 
 def _welch(
-    claimed: np.ndarray, whose: np.ndarray, fresh: np.ndarray, people: np.ndarray
+    claimed: np.ndarray, participants: np.ndarray, fresh: np.ndarray, people: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Gaps of means and one-sided probabilities, for rows of fresh values (R, M)."""
     from scipy import special  # comes with the core: scikit-image needs it
 
-    there = variance_components.two_way_spread(claimed[None], np.arange(len(claimed)), whose)
+    there = variance_components.two_way_spread(claimed[None], np.arange(len(claimed)), participants)
     here = variance_components.two_way_spread(fresh, np.arange(fresh.shape[-1]), people)
     edge = 0.25 / fresh.shape[-1] ** 2  # fresh trials that are all alike are not without chance
     one, two = there.variance, np.maximum(here.variance, edge)

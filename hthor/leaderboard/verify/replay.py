@@ -1,6 +1,6 @@
-"""Playing an entry's trials again, on this machine; judges nothing.
+"""Replays an entry's trials on this machine.
 
-A person remembers earlier trials, so those before a wanted one in the same session are played with it.
+A person remembers earlier trials, so those before a wanted one in the same session are run too.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from hthor.tasks.suites import library
 _SHOWN = 3
 
 
-def play(
+def replay_trials(
     entry: Entry,
     places: Sequence[int],
     *,
@@ -45,7 +45,7 @@ def play(
     require_isolation: str = "",
     given: AgentInputs | None = None,
 ) -> dict[int, tuple[TrialRecord, bytes]]:
-    """The records of the trials at these places, and of those that had to be played with them, with their lines.
+    """The records of the trials at these places, and of those that had to be run before them, with their lines.
 
     Args:
         agent: the agent's file, for one that is not hthor's own. suite: where the suite lies, when it is not either.
@@ -57,20 +57,20 @@ def play(
             not be played, as nothing follows from a part of a draw.
     """
     chosen = task_selection.select_tasks(suite or entry.run.suite.name, "")
-    crew, who = crew_of(entry, agent, given), resolve.resolve_humans(entry.run.humans.source)
+    team, humans = robot_team_of(entry, agent, given), resolve.resolve_humans(entry.run.humans.source)
     job = RunJob(
-        config=_same_config(entry, chosen, crew, who),
-        team=crew,
-        population=who,
+        config=_same_config(entry, chosen, team, humans),
+        team=team,
+        population=humans,
         tasks=chosen,
-        sources=make_sources_of(suite, crew, who, require_isolation, given),
+        sources=make_sources_of(suite, team, humans, require_isolation, given),
     )
     wanted, seats = _cut(job.sessions, places)
-    played = perform(entry, wanted, job.make_runner, jobs)
+    played = run_sessions(entry, wanted, job.make_runner, jobs)
     return {seats[one.spec.participant, one.spec.index]: (one, line) for one, line in played}
 
 
-def perform(
+def run_sessions(
     entry: Entry, wanted: Sequence[Session], make: RunnerFactory, jobs: int | None
 ) -> list[tuple[TrialRecord, bytes]]:
     """The records of these sessions, every trial of them, with their lines.
@@ -98,7 +98,7 @@ def perform(
     return found
 
 
-def crew_of(entry: Entry, agent: str, given: AgentInputs | None = None) -> RobotTeam:
+def robot_team_of(entry: Entry, agent: str, given: AgentInputs | None = None) -> RobotTeam:
     """The robots of an entry, with the submitted agent from its file."""
     minds: list[str] = []
     for robot in entry.run.robots:
@@ -109,25 +109,21 @@ def crew_of(entry: Entry, agent: str, given: AgentInputs | None = None) -> Robot
     bodies = [robot.robot or "scout" for robot in entry.run.robots]  # a mind that wants no robot has no body either
     first = entry.run.robots[0]
     return robot_team.form_team(
-        bodies,
-        minds,
-        first.detector or "own",
-        first.camera or "own",
-        GuestConfig(inputs=given or AgentInputs()),
+        bodies, minds, first.detector or "own", first.camera or "own", GuestConfig(inputs=given or AgentInputs())
     )
 
 
-def _same_config(entry: Entry, chosen: TaskSelection, crew: RobotTeam, who: ParticipantSource) -> RunConfig:
+def _same_config(entry: Entry, chosen: TaskSelection, team: RobotTeam, humans: ParticipantSource) -> RunConfig:
     """The run's configuration here, if it is that of the entry; versions of libraries belong to the platform."""
-    config = run_config.build_config(chosen.suite, crew, human=who, **dealt(entry))
-    there, here = (msgspec.structs.replace(plan, versions={}) for plan in (entry.run, config))
+    config = run_config.build_config(chosen.suite, team, human=humans, **session_options(entry))
+    there, here = (msgspec.structs.replace(one, versions={}) for one in (entry.run, config))
     if there != here:
-        told = "; ".join(run_config.differences(there, here))
-        raise BoardError(f"{entry.id}: this is not what was played: {told} ('there' is the entry).")
+        differences = "; ".join(run_config.differences(there, here))
+        raise BoardError(f"{entry.id}: this is not what was run: {differences} ('there' is the entry).")
     return config
 
 
-def dealt(entry: Entry) -> dict[str, Any]:
+def session_options(entry: Entry) -> dict[str, Any]:
     """How its people were dealt their tasks, and whether thinking took time."""
     clock = {"realtime": True} if entry.mode == REALTIME else {}
     return {"seed": entry.run.seed, "participants": entry.run.participants, **clock}
@@ -149,7 +145,7 @@ def _cut(whole: Sequence[Session], places: Sequence[int]) -> tuple[list[Session]
 
 
 def make_sources_of(
-    suite: str, crew: RobotTeam, who: ParticipantSource, required: str, given: AgentInputs | None = None
+    suite: str, team: RobotTeam, humans: ParticipantSource, required: str, given: AgentInputs | None = None
 ) -> Sources:
     """Where everything is that the entry's run needs.
 
@@ -161,10 +157,10 @@ def make_sources_of(
     code_identity.keep_compiled()
     own = bool(suite) and Path(suite).exists() and bool(library.house_files(suite))
     folder = Path(suite) if Path(suite).is_dir() else Path(suite).parent
-    isolation = run_isolation.resolve_isolation("auto", required, sorted(set(crew.agent_paths.values())))
+    isolation = run_isolation.resolve_isolation("auto", required, sorted(set(team.agent_paths.values())))
     guests = GuestConfig(
         isolation=isolation.level if isolation else "auto",
         hidden=(str(folder.resolve()),) if suite else (),
         inputs=given or AgentInputs(),
     )
-    return make_sources(crew, houses=folder / "houses" if own else None, humans=who.word, guests=guests)
+    return make_sources(team, houses=folder / "houses" if own else None, humans=humans.word, guests=guests)

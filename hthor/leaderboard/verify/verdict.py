@@ -1,8 +1,8 @@
-"""Whether trials that were played again bear an entry out, and on which grounds; plays nothing.
+"""Whether replayed trials confirm an entry, and on which grounds.
 
-On the same platform every byte must be the same (V1). On another, chance in the last bits may turn a trial, but rarely
-and to either side (V2). An agent that does not repeat itself can only be judged on the whole (V3): whether the claimed
-run could be one more run like those that were played.
+On the same platform every byte must be the same (V1). On another, chance in the last bits may change a trial,
+but rarely and in both directions (V2). An agent that does not repeat itself can only be judged as a whole (V3): whether
+the claimed run could be one more run like the replayed one.
 """
 
 from __future__ import annotations
@@ -22,14 +22,14 @@ from hthor.leaderboard.entries.verification import Tier
 ALIKE = 0.99
 """The least share of equal outcomes on another platform."""
 UNEVEN = {"V2": 0.05, "V3": 0.01}
-"""Mismatches that favour the entry so much as chance would do with less than this probability count against it."""
+"""Mismatches count against an entry when chance would favour it as much with less than this probability."""
 FLIPS = 2000
 """Random exchanges of sessions, of which the probability is a share (V3)."""
 _MILLION = 1_000_000
 _SHOWN = 3
 
 
-class Again(Struct, frozen=True, kw_only=True):
+class ReplayedTrials(Struct, frozen=True, kw_only=True):
     """Trials that were played again, by their place in the run: rows as `Outcomes.rows`, ``twsr`` in millionths."""
 
     rows: Mapping[int, bytes]
@@ -38,7 +38,7 @@ class Again(Struct, frozen=True, kw_only=True):
 
 
 class Verdict(Struct, frozen=True, kw_only=True):
-    """Whether the entry stands, what was compared, and why, in words."""
+    """Whether the entry passes, what was compared, and why, in words."""
 
     passed: bool
     compared: int
@@ -47,8 +47,8 @@ class Verdict(Struct, frozen=True, kw_only=True):
     why: str
 
 
-def tier(*, repeats: bool, same_platform: bool) -> Tier:
-    """How the comparison has to be made.
+def choose_tier(*, repeats: bool, same_platform: bool) -> Tier:
+    """How the trials have to be compared.
 
     Args:
         repeats: whether the agent gives the same actions every time. same_platform: whether it was played on one like
@@ -57,40 +57,43 @@ def tier(*, repeats: bool, same_platform: bool) -> Tier:
     return "V3" if not repeats else "V1" if same_platform else "V2"
 
 
-def judge(by: Tier, claimed: Outcomes, again: Again, drawn: Sequence[int], whose: Sequence[int]) -> Verdict:
-    """Compare what an entry says with what came out.
+def judge_trials(
+    by: Tier, claimed: Outcomes, again: ReplayedTrials, drawn: Sequence[int], participants: Sequence[int]
+) -> Verdict:
+    """Compare an entry's claims with replayed trials.
 
     Args:
         drawn: places of the sample; ``again`` has all of them, and may have others that had to be played with them.
-        whose: the person of each trial.
+        participants: the person of each trial.
 
     Raises:
-        ValueError: when a drawn trial is missing: a verdict over a part of a draw would be one over what somebody let
-            be played.
+        ValueError: when a drawn trial is missing: a verdict over a part of a draw could be manipulated.
     """
     if missing := [place for place in drawn if place not in again.rows]:
         raise ValueError(f"{len(missing)} drawn trials were not played, such as trial {missing[0]}")
     rows = claimed.rows
     same = {place for place, row in again.rows.items() if row == rows[place]}
     alike = {
-        place for place, row in again.rows.items() if trial_outcomes.outcome(row) == trial_outcomes.outcome(rows[place])
+        place
+        for place, row in again.rows.items()
+        if trial_outcomes.outcome_bytes(row) == trial_outcomes.outcome_bytes(rows[place])
     }
     if by == "V1":
         passed, why = _bytes(again, same, alike)
     elif by == "V2":
         share = sum(place in alike for place in drawn) / len(drawn)
         gaps = np.array([int(claimed.twsr[place]) - again.twsr[place] for place in drawn])
-        passed, why = by_outcomes(share, gaps, len(drawn))
+        passed, why = judge_outcomes(share, gaps, len(drawn))
     else:
         places = sorted(again.rows)
         met = np.array([int(claimed.met[place]) - int(again.met[place]) for place in places])
         twsr = np.array([int(claimed.twsr[place]) - again.twsr[place] for place in places])
-        passed, why = as_a_whole(met, twsr, np.array([whose[place] for place in places]))
+        passed, why = judge_means(met, twsr, np.array([participants[place] for place in places]))
     return Verdict(passed=passed, compared=len(again.rows), equal=len(alike), same_bytes=len(same), why=why)
 
 
-def _bytes(again: Again, same: set[int], alike: set[int]) -> tuple[bool, str]:
-    """All records are the same, those that were not drawn too."""
+def _bytes(again: ReplayedTrials, same: set[int], alike: set[int]) -> tuple[bool, str]:
+    """All records are the same, including those that were not drawn."""
     other = sorted(set(again.rows) - same)
     if not other:
         return True, f"all {len(again.rows)} records are the same byte for byte"
@@ -102,35 +105,35 @@ def _bytes(again: Again, same: set[int], alike: set[int]) -> tuple[bool, str]:
     )
 
 
-def by_outcomes(share: float, gaps: np.ndarray, count: int) -> tuple[bool, str]:
+def judge_outcomes(share: float, gaps: np.ndarray, count: int) -> tuple[bool, str]:
     """Nearly all outcomes of the sample are the same, and the others do not favour the entry."""
     told = f"{100 * share:.1f} % of {count} drawn outcomes are the same; {100 * ALIKE:.0f} % are asked for"
     if share < ALIKE:
         return False, told
     better, worse = int((gaps > 0).sum()), int((gaps < 0).sum())
-    chance = at_least(better, better + worse)
+    chance = binomial_tail(better, better + worse)
     uneven = f"of {better + worse} that differ {better} favour the entry (p = {chance:.2g})"
     return chance >= UNEVEN["V2"], f"{told}; {uneven}"
 
 
-def as_a_whole(met: np.ndarray, twsr: np.ndarray, whose: np.ndarray) -> tuple[bool, str]:
-    """The claimed run is not so much better than the new one as two runs of one agent hardly ever are.
+def judge_means(met: np.ndarray, twsr: np.ndarray, participants: np.ndarray) -> tuple[bool, str]:
+    """The claimed run is not better than the new one by more than two runs of one agent differ.
 
     Args:
         met, twsr: how much more the entry claims of each trial, (N,), ``twsr`` in millionths.
-        whose: the person of each.
+        participants: the person of each.
     """
     told, passed = [], True
     for name, gaps, unit in (("success", met, 1.0), ("time-weighted success", twsr, 1.0 / _MILLION)):
-        chance = exchanged(gaps, whose)
+        chance = exchange_probability(gaps, participants)
         passed = passed and chance >= UNEVEN["V3"]
         told.append(f"{100 * unit * float(gaps.mean()):+z.1f} points of {name} (p = {chance:.2g})")
     return passed, f"over {len(met)} trials the entry claims {' and '.join(told)} more than came out"
 
 
-def exchanged(gaps: np.ndarray, whose: np.ndarray) -> float:
+def exchange_probability(gaps: np.ndarray, participants: np.ndarray) -> float:
     """The probability of so large a sum of differences if each person's two sessions could as well be exchanged."""
-    sums = np.bincount(whose - whose.min(), weights=gaps.astype(np.float64))
+    sums = np.bincount(participants - participants.min(), weights=gaps.astype(np.float64))
     sums = sums[sums != 0.0]
     if not len(sums):
         return 1.0
@@ -145,6 +148,6 @@ def _signs(count: int) -> np.ndarray:
     return bits.integers(0, 2, (FLIPS, count)) * 2 - 1
 
 
-def at_least(count: int, of: int) -> float:
+def binomial_tail(count: int, of: int) -> float:
     """The probability of so many heads or more in ``of`` throws of a coin."""
     return float(sum(math.comb(of, k) for k in range(count, of + 1)) / 2**of)

@@ -1,7 +1,8 @@
-"""Whether an entry can be believed: drawn after it was handed in, played again, compared, and tried on fresh tasks."""
+"""Verifies an entry: trials drawn after its submission are replayed and compared, and its agent meets fresh tasks."""
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -15,19 +16,19 @@ from hthor.eval.records import platform
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.guest import AgentInputs
 from hthor.leaderboard import board_check
-from hthor.leaderboard.entries import entry_metrics, files, invariants, trial_outcomes, trial_tasks, verification
+from hthor.leaderboard.entries import entry_metrics, files, invariants, trial_outcomes, verification
 from hthor.leaderboard.entries.entry import REALTIME, Entry
 from hthor.leaderboard.entries.files import BoardError, Problem
 from hthor.leaderboard.entries.verification import Replayed, Tier, Verification
-from hthor.leaderboard.verify import detection_power, fresh_tasks, replay, trial_sample, verdict
-from hthor.leaderboard.verify.verdict import Again
+from hthor.leaderboard.verify import detection_power, fresh_tasks, replay, verdict
+from hthor.leaderboard.verify.verdict import ReplayedTrials
 
 SAMPLE = 200
 """Trials that are drawn where outcomes are compared one by one; of an agent that does not repeat itself, all."""
 
 
 class Request(Struct, frozen=True, kw_only=True):
-    """What a verifier says: see `hthor leaderboard verify`.
+    """The options of `hthor leaderboard verify`.
 
     ``sample`` None draws `SAMPLE` trials, or all where the agent does not repeat itself; ``fresh`` 0 plays no fresh
     tasks.
@@ -46,7 +47,7 @@ class Request(Struct, frozen=True, kw_only=True):
     date: str = ""
 
 
-def verify(path: Path, board: Path, request: Request) -> tuple[Entry, Verification]:
+def verify_entry(path: Path, board: Path, request: Request) -> tuple[Entry, Verification]:
     """Play a sample of an entry's trials and of its control's again, and fresh tasks: the entry, and what came of it.
 
     Raises:
@@ -57,18 +58,18 @@ def verify(path: Path, board: Path, request: Request) -> tuple[Entry, Verificati
         raise HthorError("--draw is empty; it takes public chance, such as the hash of a commit made after submission.")
     if not path.is_file():
         raise BoardError(f"{path} is no file; an entry is one, such as leaderboard/entries/NAME.json.")
-    files.refuse(board_check.problems(board, [path]))
-    entry = files.read(path)
+    files.raise_problems(board_check.check_board(board, [path]))
+    entry = files.read_entry(path)
     _noted(entry, request)
     _sorts(path, entry, request)
-    drawn = trial_sample.sample(request.word, entry.digest, entry.trials.count, _size(entry, request))
-    control = verification.control_of(board, entry)
+    drawn = draw_sample(request.word, entry.digest, entry.trials.count, _size(entry, request))
+    control = verification.find_control(board, entry)
     found = Verification(
         id=entry.id,
         entry=entry.digest,
         draw=request.word,
-        trials=replayed(entry, drawn, _again(entry, drawn, request)),
-        control=None if control is None else replayed(control, drawn, _again(control, drawn, request)),
+        trials=judge_replay(entry, drawn, _again(entry, drawn, request)),
+        control=None if control is None else judge_replay(control, drawn, _again(control, drawn, request)),
         official=request.official,
         platform=jsonio.sha256(platform.this_platform()),
         by=request.by,
@@ -76,7 +77,7 @@ def verify(path: Path, board: Path, request: Request) -> tuple[Entry, Verificati
     )
     if found.refuted or not request.fresh:
         return entry, found
-    fresh = fresh_tasks.verify(
+    fresh = fresh_tasks.verify_fresh_tasks(
         entry,
         board,
         request.word,
@@ -89,22 +90,37 @@ def verify(path: Path, board: Path, request: Request) -> tuple[Entry, Verificati
     return entry, msgspec.structs.replace(found, fresh=fresh)
 
 
-def replayed(entry: Entry, drawn: Sequence[int], again: dict[int, tuple[TrialRecord, bytes]]) -> Replayed:
+def draw_sample(word: str, digest: str, count: int, size: int) -> list[int]:
+    """``size`` of the numbers below ``count``, or all of them when there are no more; in order.
+
+    Args:
+        word: public chance that came to be after the entry was handed in, such as a later commit's hash.
+        digest: of the entry, so that the same word draws others for another entry.
+    """
+    key = hashlib.sha256(f"hthor draw\n{word}\n{digest}\n".encode()).digest()
+
+    def lot(number: int) -> bytes:
+        return hashlib.sha256(key + number.to_bytes(8, "little")).digest()
+
+    return sorted(sorted(range(count), key=lot)[:size])
+
+
+def judge_replay(entry: Entry, drawn: Sequence[int], again: dict[int, tuple[TrialRecord, bytes]]) -> Replayed:
     """The verdict over these records, and how surely it would have been another over a forged entry."""
     here = platform.this_platform()
-    by = tier(entry)
+    by = entry_tier(entry)
     places = sorted(again)
-    held = trial_outcomes.of(
-        [again[place][0] for place in places], [trial_outcomes.leaf(again[place][1]) for place in places]
+    held = trial_outcomes.make_outcomes(
+        [again[place][0] for place in places], [trial_outcomes.leaf_hash(again[place][1]) for place in places]
     )
-    new = Again(
+    new = ReplayedTrials(
         rows=dict(zip(places, held.rows, strict=True)),
         met=dict(zip(places, held.met.tolist(), strict=True)),
         twsr=dict(zip(places, held.twsr.tolist(), strict=True)),
     )
-    whose = entry_metrics.people(entry.trials.count, entry.run.participants)
+    participants = entry_metrics.trial_participants(entry.trials.count, entry.run.participants)
     claimed = trial_outcomes.unpack(entry.trials)
-    found = verdict.judge(by, claimed, new, drawn, whose)
+    found = verdict.judge_trials(by, claimed, new, drawn, participants)
     return Replayed(
         tier=by,
         passed=found.passed,
@@ -112,21 +128,21 @@ def replayed(entry: Entry, drawn: Sequence[int], again: dict[int, tuple[TrialRec
         compared=found.compared,
         equal=found.equal,
         same_bytes=found.same_bytes,
-        caught=detection_power.chance(by, claimed, new, drawn, whose),
+        caught=detection_power.detection_probability(by, claimed, new, drawn, participants),
         why=f"{_grounds(by, entry, here)}: {found.why}.",
     )
 
 
-def tier(entry: Entry) -> Tier:
-    """How an entry can be compared with what is played here."""
+def entry_tier(entry: Entry) -> Tier:
+    """How an entry can be compared with trials that are run here."""
     repeats = entry.alone or (entry.agent.deterministic and entry.mode != REALTIME)
-    return verdict.tier(repeats=repeats, same_platform=entry.platforms == (platform.this_platform(),))
+    return verdict.choose_tier(repeats=repeats, same_platform=entry.platforms == (platform.this_platform(),))
 
 
 def _size(entry: Entry, request: Request) -> int:
     if request.sample is not None:
         return request.sample
-    return entry.trials.count if tier(entry) == "V3" else SAMPLE
+    return entry.trials.count if entry_tier(entry) == "V3" else SAMPLE
 
 
 def _noted(entry: Entry, request: Request) -> None:
@@ -142,12 +158,14 @@ def _sorts(path: Path, entry: Entry, request: Request) -> None:
     """What the entry says of its tasks against the suite, which is at hand here even when it is secret."""
     suite = task_selection.select_tasks(request.suite or entry.run.suite.name, "").suite
     if suite.sha256 == entry.run.suite.sha256:
-        laws = invariants.outcomes(entry, trial_outcomes.unpack(entry.trials), trial_tasks.tasks(suite, entry))
-        files.refuse(Problem(file=str(path), field=field, problem=problem) for field, problem in laws)
+        laws = invariants.check_outcomes(
+            entry, trial_outcomes.unpack(entry.trials), trial_outcomes.tasks_of_trials(suite, entry)
+        )
+        files.raise_problems(Problem(file=str(path), field=field, problem=problem) for field, problem in laws)
 
 
 def _again(entry: Entry, drawn: Sequence[int], request: Request) -> dict[int, tuple[TrialRecord, bytes]]:
-    return replay.play(
+    return replay.replay_trials(
         entry,
         drawn,
         agent=request.agent,

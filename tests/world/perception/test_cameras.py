@@ -153,8 +153,8 @@ def test_a_run_knows_its_camera(tmp_path: Path) -> None:
     assert b"camera" not in jsonio.pretty(usual)
     assert msgspec.json.decode(jsonio.pretty(other), type=run_config.RunConfig).seats[0].camera == "thor:64x48"
     assert other.sha256 != usual.sha256
-    assert overrides.of(other) == {"camera": "thor:64x48"}
-    assert overrides.of(usual) == {}
+    assert overrides.overridden_settings(other) == {"camera": "thor:64x48"}
+    assert overrides.overridden_settings(usual) == {}
     assert "--camera thor --camera-size 64x48" in cli_command.resume_command(tmp_path, other)
     assert "--camera" not in cli_command.resume_command(tmp_path, usual)
     assert "--camera-size 64x48" in cli_command.resume_command(tmp_path, plan("own:64x48"))

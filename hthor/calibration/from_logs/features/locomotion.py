@@ -1,4 +1,4 @@
-"""How a person walked and turned in a trial, read off stick and path."""
+"""How a person walked and turned in a trial, from the joystick and the path."""
 
 from __future__ import annotations
 
@@ -26,15 +26,15 @@ _ON_RAD, _STOP_TICKS = math.radians(15.0), round(6.0 / rules.TICK_S)
 
 
 class Walk(Struct, frozen=True, kw_only=True):
-    """What stick and path of a trial say; NaN or nothing where they say too little.
+    """Walking in one trial; NaN or empty where there are too few data.
 
     Attributes:
-        full: speed of the stick pushed all the way [m/s]. fastest: what the body turns at most [rad/s].
-        pace: median speed under way [m/s], neither reading nor following a map.
-        guided: for each walk after a confirmed message, how many times slower than that it was.
+        full: speed at full deflection of the joystick [m/s]. fastest: the greatest turning speed of the body [rad/s].
+        pace: median walking speed [m/s], while neither reading nor following a map.
+        guided: for each walk after an accepted message, the factor by which it was slower than that.
         turns: speed of each turn of more than 45 degrees [rad/s].
         start: when the person first moved or turned [s].
-        under_way: time with the stick pushed [s]. stops: lengths of the stops that interrupted a straight walk [s].
+        under_way: time with the joystick deflected [s]. stops: durations of stops within a straight walk [s].
     """
 
     full: float
@@ -47,9 +47,9 @@ class Walk(Struct, frozen=True, kw_only=True):
     stops: tuple[float, ...]
 
 
-def of(record: TrialRecord) -> Walk | None:
-    """The walk of a trial, None when its log holds no stick."""
-    pushed = stick(record)
+def walk_features(record: TrialRecord) -> Walk | None:
+    """Walking in a trial, None when its log has no joystick data."""
+    pushed = stick_deflection(record)
     if pushed is None:
         return None
     entries = {event.kind: event.data for event in record.journal if event.kind in ("stick", "head")}
@@ -72,8 +72,8 @@ def of(record: TrialRecord) -> Walk | None:
     )
 
 
-def stick(record: TrialRecord) -> Array | None:
-    """(ticks,) deflection in thousandths at each tick; None where the log holds none."""
+def stick_deflection(record: TrialRecord) -> Array | None:
+    """(ticks,) deflection in thousandths at each tick; None where the log has none."""
     runs = next((event.data["runs"] for event in record.journal if event.kind == "stick"), None)
     if runs is None:
         return None
@@ -82,7 +82,7 @@ def stick(record: TrialRecord) -> Array | None:
 
 
 def _reading(record: TrialRecord) -> Array:
-    """(ticks,) bool, whether a message was shown and not yet answered; one left alone counts for a while only."""
+    """(ticks,) bool, whether a message was shown and not yet answered; an ignored one counts for 12 s."""
     mask = np.zeros(record.ticks, dtype=bool)
     for event in record.events:
         if event.kind == "shown":
@@ -96,7 +96,7 @@ def _reading(record: TrialRecord) -> Array:
 
 
 def _guided(record: TrialRecord) -> Array:
-    """(ticks,) bool, whether a message was confirmed and nothing picked since."""
+    """(ticks,) bool, whether a message was accepted and nothing was picked up since."""
     mask, since = np.zeros(record.ticks, dtype=bool), -1
     for event in record.events:
         if event.kind == "confirmed" and since < 0:
@@ -110,7 +110,7 @@ def _guided(record: TrialRecord) -> Array:
 
 
 def _slower(record: TrialRecord, pushed: Array, reading: Array, usual: float) -> tuple[float, ...]:
-    """How many times slower than usual each walk after a confirmed message was, by its commonest deflection."""
+    """The factor by which each walk after an accepted message was slower, by its commonest deflection."""
     found = []
     for event in record.events:
         if event.kind == "confirmed":
@@ -123,7 +123,7 @@ def _slower(record: TrialRecord, pushed: Array, reading: Array, usual: float) ->
 
 
 def _turns(turned: Array) -> tuple[float, ...]:
-    """Speeds of turns to one side, without the pieces in which they began and ended."""
+    """Speeds of turns to one side [rad/s], without their first and last sample."""
     side = np.where(np.abs(turned) > _MOVED_RAD, np.sign(turned), 0.0)
     edges = np.flatnonzero(np.diff(side)) + 1
     found = []
@@ -135,7 +135,7 @@ def _turns(turned: Array) -> tuple[float, ...]:
 
 
 def _start(path: Array, turned: Array, turns: tuple[float, ...]) -> float:
-    """When the person first went or turned [s]; within a sample, as far as its turn tells."""
+    """When the person first moved or turned [s]; within a sample, estimated from how far it had turned."""
     gone = np.hypot(*np.diff(path[:, :2], axis=0).T)
     moved = np.flatnonzero((np.abs(turned) > _STILL_RAD) | (gone > _STILL_RAD))
     if not len(moved):
@@ -146,9 +146,9 @@ def _start(path: Array, turned: Array, turns: tuple[float, ...]) -> float:
 
 
 def _stops(record: TrialRecord, on: Array, yaw: Array, turned: Array, rate: float) -> tuple[float, ...]:
-    """Lengths of the time without stick or turn, where the walk went on in the direction in which it had stopped.
+    """Durations without walking or turning, where the walk went on in the direction in which it had stopped [s].
 
-    Not where hands were at work. What was turned is taken off at the ``rate`` of the trial's turns [rad/s].
+    Manipulation is excluded. Time spent turning is subtracted, at the ``rate`` of the trial's turns [rad/s].
     """
     busy = [event.tick for event in record.journal if event.kind == "attempt"]
     edges, found = np.flatnonzero(np.diff(on.astype(int))), []

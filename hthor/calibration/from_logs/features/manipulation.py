@@ -1,4 +1,4 @@
-"""What a person's hands tried in a trial, read off the journal."""
+"""What a person tried to manipulate in a trial, from the journal."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ from hthor.eval.records.trial_record import TrialRecord
 
 
 class Attempt(Struct, frozen=True, kw_only=True):
-    """One try of the hands: how long it took [s], whether the hand ``missed``, and whether it was ``cut`` short."""
+    """One manipulation attempt: its duration [s], whether it ``missed``, and whether it was ``cut`` short."""
 
     seconds: float
     missed: bool
     cut: bool
 
 
-def of(record: TrialRecord) -> tuple[Attempt, ...]:
-    """The attempts of a trial in order; one without an end was cut short when the person went on, or by the end."""
+def manipulation_attempts(record: TrialRecord) -> tuple[Attempt, ...]:
+    """The attempts of a trial in order; one without an outcome was cut short by walking on or by the end."""
     walked = [
         tick
         for event in record.journal

@@ -1,4 +1,4 @@
-"""How a person dealt with messages in a trial, read off events, stick and journal."""
+"""How a person handled messages in a trial, from events, joystick and journal."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from hthor.types import Event, Message
 _ANSWERS = ("confirmed", "declined")
 _BEFORE_TICKS = round(1.5 / rules.TICK_S)
 _SLOWER = 0.75
-"""Who slows down to so much of their pace, without letting go of the stick, has noticed that a message came."""
+"""A person who slows down to this share of their pace, while still walking, has noticed that a message came."""
 
 
 class Reading(Struct, frozen=True, kw_only=True):
-    """A message from when it was shown to its answer: the ``seconds`` between, or until nobody could answer any more.
+    """A message from when it was shown to its answer: the ``seconds`` between, or until it could not be answered.
 
-    ``words`` is its length; ``known`` says that the same had been shown before.
+    ``words`` is its length; ``known``: the same message had been shown before.
     """
 
     seconds: float
@@ -33,7 +33,7 @@ class Reading(Struct, frozen=True, kw_only=True):
 
 
 class Offer(Struct, frozen=True, kw_only=True):
-    """A message about the task that was read: what spoke for and against it, and whether it was ``confirmed``."""
+    """A message about the task that was read: terms of the decision, and whether it was accepted (``confirmed``)."""
 
     gain: float
     load: float
@@ -41,8 +41,8 @@ class Offer(Struct, frozen=True, kw_only=True):
     confirmed: bool
 
 
-def readings(record: TrialRecord) -> tuple[Reading, ...]:
-    """Every message that was shown; one that only repeats the one before it while that is read goes on with it."""
+def message_readings(record: TrialRecord) -> tuple[Reading, ...]:
+    """Every message that was shown; a repetition of the message that is being read counts as the same."""
     sent = _messages(record)
     found: list[Reading] = []
     shown: list[Message] = []
@@ -60,12 +60,12 @@ def readings(record: TrialRecord) -> tuple[Reading, ...]:
     return (*found, *_left(begun, record.ticks))
 
 
-def noticings(record: TrialRecord) -> tuple[tuple[float, bool], ...]:
+def message_noticings(record: TrialRecord) -> tuple[tuple[float, bool], ...]:
     """For each message that came while the person walked: seconds until they slowed down, and whether they did.
 
-    Who let go of the stick first was not seen to slow down; what they did later tells nothing.
+    When the person stopped first, noticing is censored at that moment.
     """
-    stick = locomotion.stick(record)
+    stick = locomotion.stick_deflection(record)
     found: list[tuple[float, bool]] = []
     if stick is None:
         return ()
@@ -84,7 +84,7 @@ def noticings(record: TrialRecord) -> tuple[tuple[float, bool], ...]:
     return tuple(pair for pair in found if pair[0] > 0.0)
 
 
-def offers(record: TrialRecord) -> tuple[Offer, ...]:
+def message_offers(record: TrialRecord) -> tuple[Offer, ...]:
     """The messages about the task that were read, in order."""
     return tuple(
         Offer(
@@ -99,7 +99,7 @@ def offers(record: TrialRecord) -> tuple[Offer, ...]:
 
 
 def _kept(stick: Any) -> Any:
-    """Whether a deflection lasts for more than a tick: the last step to a corner is a short one for everybody."""
+    """Whether a deflection lasts for more than a tick: the last step to a corner is always a short one."""
     follows = np.append(stick[1:], 0)
     return np.abs(follows - stick) <= 0.02 * stick
 
@@ -129,7 +129,7 @@ def _message(event: Event) -> Message:
 
 
 def _left(begun: tuple[int, Message, bool] | None, tick: int) -> tuple[Reading, ...]:
-    """A message that nobody answered until ``tick``."""
+    """A message that was not answered until ``tick``."""
     return () if begun is None or tick <= begun[0] else (_reading(begun, tick, answered=False),)
 
 

@@ -1,4 +1,4 @@
-"""Which messages people confirm, as a logistic regression with an intercept for each person; reads no files."""
+"""Which messages people accept: a logistic regression with an intercept for each person."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from hthor.calibration.from_logs.features.messages import Offer
-from hthor.calibration.from_logs.models.mixed_effects import Array, Fit, fit
+from hthor.calibration.from_logs.models.mixed_effects import Array, Fit, fit_mixed_model
 from hthor.calibration.from_logs.models.priors import Belief
 from hthor.calibration.from_logs.models.timing_models import spread_term
 from hthor.humans.population.parameter_registry import parameter
@@ -16,15 +16,15 @@ from hthor.humans.population.parameters import Parameters
 TERMS = ("a0", "a_trust", "a_gain", "a_load", "a_again")
 
 
-def regression(offers: Sequence[Offer], trust: Array, person: Array, beliefs: Mapping[str, Belief]) -> Fit:
-    """Fit the terms of the logit of confirming, with the spread of ``a0`` between people.
+def fit_acceptance(offers: Sequence[Offer], trust: Array, person: Array, beliefs: Mapping[str, Belief]) -> Fit:
+    """Fit the terms of the logit of accepting, with the spread of ``a0`` between people.
 
-    A finger slips now and then, so neither answer is ever certain.
+    People sometimes press the wrong button (``p_slip``), so neither answer is ever certain.
 
     Args:
         offers: (N) messages about the task that were read.
-        trust: (N,) mean trust at the time, 0 to 1, as the ratings tell.
-        person: (N,) int, whose each is.
+        trust: (N,) mean trust at the time, 0 to 1, from the ratings.
+        person: (N,) int, the person of each.
     """
     gain, load, again = (np.array([getattr(one, name) for one in offers]) for name in ("gain", "load", "again"))
     confirmed, slip = np.array([one.confirmed for one in offers]), Parameters().p_slip
@@ -35,4 +35,6 @@ def regression(offers: Sequence[Offer], trust: Array, person: Array, beliefs: Ma
         share = slip + (1.0 - 2.0 * slip) / (1.0 + np.exp(-logit))
         return np.log(np.where(confirmed, share, 1.0 - share))
 
-    return fit(likelihood, [beliefs[name].term() for name in TERMS], person, spread_term(parameter("a0").effect))
+    return fit_mixed_model(
+        likelihood, [beliefs[name].term() for name in TERMS], person, spread_term(parameter("a0").effect)
+    )

@@ -1,7 +1,7 @@
-"""Where people chose to search, as a conditional logit of what each option promised; reads no files.
+"""Where people chose to search: a conditional logit of the value of each option.
 
-The worth of an option is (w knowledge + (1 - w) uniform) exp(-exposure) / seconds^kappa, and it is chosen with a chance
-that follows worth^beta; beta differs from person to person.
+The value of an option is (w knowledge + (1 - w) uniform) exp(-exposure) / seconds^kappa, and it is chosen with a chance
+that follows value^beta; beta differs from person to person.
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from msgspec import Struct
 
-from hthor.calibration.from_logs.models.mixed_effects import Array, Fit, fit
-from hthor.calibration.from_logs.models.priors import Belief, off
+from hthor.calibration.from_logs.models.mixed_effects import Array, Fit, fit_mixed_model
+from hthor.calibration.from_logs.models.priors import Belief, from_scale
 from hthor.calibration.from_logs.models.timing_models import spread_term
 from hthor.humans.population.parameter_registry import parameter
 from hthor.humans.population.parameters import Parameters
@@ -22,7 +22,7 @@ _LEAST = 1e-12
 
 
 class Choice(Struct, frozen=True, kw_only=True):
-    """One choice: rows [knowledge, uniform, metres, exposure, closed, is_door] of the options, and which was taken.
+    """One choice: rows [knowledge, uniform, metres, exposure, closed, is_door] of the options, and which was chosen.
 
     ``pace`` [m/s] is how fast this person walked.
     """
@@ -32,12 +32,12 @@ class Choice(Struct, frozen=True, kw_only=True):
     pace: float
 
 
-def conditional_logit(choices: Sequence[Choice], person: Array, beliefs: Mapping[str, Belief]) -> Fit:
+def fit_choices(choices: Sequence[Choice], person: Array, beliefs: Mapping[str, Belief]) -> Fit:
     """Fit ``beta``, ``kappa`` and ``w_prior``, with the spread of ``beta`` between people.
 
     Args:
-        person: (N,) int, whose choice each is.
-        beliefs: of these three, and of ``t_dwell`` and ``t_manip``, which stay as they are believed.
+        person: (N,) int, the person of each choice.
+        beliefs: of these three, and of ``t_dwell`` and ``t_manip``, which are not fitted.
     """
     width = max(len(choice.options) for choice in choices)
     table = np.zeros((len(choices), width, 6))
@@ -54,9 +54,9 @@ def conditional_logit(choices: Sequence[Choice], person: Array, beliefs: Mapping
     w_scale = beliefs["w_prior"].scale
 
     def likelihood(values: dict[str, float], effects: Array) -> Array:
-        w = off(values["w_prior"], w_scale)
-        worth = np.log(np.maximum(w * knowledge + (1.0 - w) * uniform, _LEAST)) - exposure
-        utility = np.exp(values["beta"] + effects)[:, None] * (worth - values["kappa"] * log_seconds)
+        w = from_scale(values["w_prior"], w_scale)
+        value = np.log(np.maximum(w * knowledge + (1.0 - w) * uniform, _LEAST)) - exposure
+        utility = np.exp(values["beta"] + effects)[:, None] * (value - values["kappa"] * log_seconds)
         utility = np.where(there, utility, -np.inf)
         top = utility.max(axis=1)
         total = top + np.log(np.exp(utility - top[:, None]).sum(axis=1))
@@ -64,9 +64,9 @@ def conditional_logit(choices: Sequence[Choice], person: Array, beliefs: Mapping
         return picked
 
     terms = [beliefs[name].term() for name in ("beta", "kappa", "w_prior")]
-    return fit(likelihood, terms, person, spread_term(parameter("beta").effect))
+    return fit_mixed_model(likelihood, terms, person, spread_term(parameter("beta").effect))
 
 
 def default_pace() -> float:
-    """How fast somebody walks whose walk is not known [m/s]."""
+    """Walking speed of a person whose own is not known [m/s]."""
     return Parameters().v_pace

@@ -1,7 +1,7 @@
-"""How fast people notice what they look for, as a regression of noticing on what was in view; reads no files.
+"""How fast people notice what they search for: a regression of noticing on what was in view.
 
 The rate of noticing is lam0 share exp(-(ecc / ecc_sd)^2 / 2 - clutter beside) / (1 + (a50 / angle)^2), more where the
-person is searching just there; an object is noticed in a glimpse with 1 - exp(-rate seconds), whose logarithm of the
+person is searching at that spot; an object is noticed in a glimpse with 1 - exp(-rate seconds), whose logarithm of the
 logarithm is linear in most of this. ``lam0`` differs from person to person.
 """
 
@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from msgspec import Struct
 
-from hthor.calibration.from_logs.models.mixed_effects import Array, Fit, fit
+from hthor.calibration.from_logs.models.mixed_effects import Array, Fit, fit_mixed_model
 from hthor.calibration.from_logs.models.priors import Belief
 from hthor.calibration.from_logs.models.timing_models import spread_term
 from hthor.humans.population.parameter_registry import parameter
@@ -32,11 +32,11 @@ class Exposure(Struct, frozen=True, kw_only=True):
     noticed: bool
 
 
-def regression(exposures: Sequence[Exposure], person: Array, beliefs: Mapping[str, Belief]) -> Fit:
+def fit_detection(exposures: Sequence[Exposure], person: Array, beliefs: Mapping[str, Belief]) -> Fit:
     """Fit ``lam0``, ``a50`` and ``clutter``, with the spread of ``lam0`` between people.
 
     Args:
-        person: (N,) int, in whose view each was.
+        person: (N,) int, the person of each.
     """
     counts = np.array([len(one.rows) for one in exposures])
     table = np.concatenate([np.array(one.rows, dtype=float) for one in exposures])
@@ -55,4 +55,4 @@ def regression(exposures: Sequence[Exposure], person: Array, beliefs: Mapping[st
         return found
 
     terms = [beliefs[name].term() for name in ("lam0", "a50", "clutter")]
-    return fit(likelihood, terms, person, spread_term(parameter("lam0").effect))
+    return fit_mixed_model(likelihood, terms, person, spread_term(parameter("lam0").effect))

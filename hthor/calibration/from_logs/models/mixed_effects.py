@@ -1,4 +1,4 @@
-"""Models with one random effect a person, fitted by Laplace's approximation.
+"""Models with one random effect per person, fitted by Laplace's approximation.
 
 The effects are integrated out around their modes, one Newton search for all people at once; the other parameters
 are found by a quasi-Newton search, with priors as penalties, and their errors come from the curvature there.
@@ -20,7 +20,7 @@ _STEPS, _H, _REACH = 12, 1e-3, 1.5
 _EDGE = 1e-3
 _SEARCH = {"maxiter": 200, "eps": 1e-4, "ftol": 1e-9, "gtol": 1e-4}
 _FAR = 5.0
-"""No parameter is looked for farther from what was believed of it, in standard deviations."""
+"""No parameter is searched for farther than this from its prior mean, in standard deviations."""
 
 
 class Term(Struct, frozen=True, kw_only=True):
@@ -33,7 +33,7 @@ class Term(Struct, frozen=True, kw_only=True):
 
 
 class Fit(Struct, frozen=True, kw_only=True):
-    """What was found: a value and a standard error of each term, their covariance, and the mode of each effect."""
+    """The fit: a value and a standard error of each term, their covariance, and the mode of each effect."""
 
     value: dict[str, float]
     se: dict[str, float]
@@ -46,12 +46,12 @@ Likelihood = Callable[[dict[str, float], Array], Array]
 """From the terms' values and the effect of each datum's person to the logarithm of each datum's likelihood."""
 
 
-def fit(likelihood: Likelihood, terms: Sequence[Term], person: Array, spread: Term | None) -> Fit:
+def fit_mixed_model(likelihood: Likelihood, terms: Sequence[Term], person: Array, spread: Term | None) -> Fit:
     """Fit a model.
 
     Args:
-        likelihood: of each datum. terms: what to find, besides the effects.
-        person: (N,) int, whose each datum is, counted from 0.
+        likelihood: of each datum. terms: what to fit, besides the effects.
+        person: (N,) int, the person of each datum, counted from 0.
         spread: the logarithm of the effects' standard deviation, None for a model without effects.
     """
     from scipy.optimize import minimize
@@ -131,6 +131,6 @@ def _curvature(loss: Callable[[Array], float], at: Array) -> Array:
 
 
 def _inverse(matrix: Array) -> Array:
-    """The inverse of what should be positive definite; directions that the data leave open get a wide error."""
+    """The inverse of what should be positive definite; directions that the data do not determine get a wide error."""
     values, vectors = np.linalg.eigh(np.nan_to_num(matrix))
     return (vectors / np.maximum(values, 1e-4)) @ vectors.T

@@ -1,4 +1,4 @@
-"""What is believed of each parameter before logs are looked at, as normal laws on a fitting scale; reads no logs."""
+"""The belief about each parameter before logs are used: normal distributions on a fitting scale."""
 
 from __future__ import annotations
 
@@ -33,17 +33,17 @@ class Belief(Struct, frozen=True, kw_only=True):
     @property
     def middle(self) -> float:
         """The median in the parameter's own unit."""
-        return float(off(self.mean, self.scale))
+        return float(from_scale(self.mean, self.scale))
 
     def term(self) -> Term:
-        """The parameter in a model, with what is believed as its prior."""
+        """The parameter as a term of a model, with this belief as its prior."""
         return Term(name=self.name, start=self.mean, mean=self.mean, sd=self.sd)
 
 
 Beliefs = Mapping[str, Belief]
 
 
-def on(value: Any, scale: Scale) -> Any:
+def to_scale(value: Any, scale: Scale) -> Any:
     """A value or an array of them on a scale."""
     if scale == "log":
         return np.log(np.maximum(value, _LEAST))
@@ -53,41 +53,41 @@ def on(value: Any, scale: Scale) -> Any:
     return value
 
 
-def off(value: Any, scale: Scale) -> Any:
+def from_scale(value: Any, scale: Scale) -> Any:
     """The inverse of `on`."""
     if scale == "log":
         return np.exp(value) if isinstance(value, np.ndarray) else math.exp(value)
     return 1.0 / (1.0 + np.exp(-value)) if scale == "logit" else value
 
 
-def scale(parameter: Parameter) -> Scale:
-    """On which scale a parameter's errors are most nearly symmetric."""
+def scale_of(parameter: Parameter) -> Scale:
+    """The scale on which a parameter's errors are most nearly symmetric."""
     if isinstance(parameter.prior, LogUniform | LogNormal):
         return "log"
     return "logit" if isinstance(parameter.prior, Beta) else "plain"
 
 
-def of_registry() -> dict[str, Belief]:
-    """The priors themselves."""
+def prior_beliefs() -> dict[str, Belief]:
+    """The beliefs that the registry's priors give."""
     return {
         p.name: _belief(p, [p.prior.quantile(share) for share in _SHARES]) for p in PARAMETERS if p.prior is not None
     }
 
 
-def of_draws(names: Sequence[str], draws: Any, weights: Any) -> dict[str, Belief]:
-    """A population: ``draws`` (D, P) in the parameters' units, ``weights`` (D,)."""
-    held = dict(zip(names, np.asarray(draws).T, strict=True))
+def population_beliefs(names: Sequence[str], draws: Any, weights: Any) -> dict[str, Belief]:
+    """The beliefs that a population gives: ``draws`` (D, P) in the parameters' units, ``weights`` (D,)."""
+    draws_of = dict(zip(names, np.asarray(draws).T, strict=True))
     return {
-        p.name: _belief(p, [_quantile(held[p.name], weights, share) for share in _SHARES])
+        p.name: _belief(p, [_quantile(draws_of[p.name], weights, share) for share in _SHARES])
         for p in PARAMETERS
-        if p.name in held
+        if p.name in draws_of
     }
 
 
 def _belief(parameter: Parameter, quantiles: Sequence[float]) -> Belief:
-    kind, prior = scale(parameter), parameter.prior
+    kind, prior = scale_of(parameter), parameter.prior
     assert prior is not None
-    low, middle, high = (float(on(value, kind)) for value in quantiles)
+    low, middle, high = (float(to_scale(value, kind)) for value in quantiles)
     return Belief(
         name=parameter.name,
         unit=parameter.unit,

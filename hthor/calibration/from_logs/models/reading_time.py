@@ -1,7 +1,7 @@
-"""How long people take from a message to its answer: noticing, then reading; reads no files.
+"""How long people take from a message to its answer: noticing, then reading.
 
-Both are log-normal; their sum is taken for log-normal too, with the sum's own mean and variance (Fenton and Wilkinson).
-A message without an answer was either not dealt with yet, or will never get one.
+Both are log-normal; their sum is treated as log-normal with its own mean and variance (Fenton and Wilkinson). A message
+without an answer was either not handled yet, or will never get one.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from hthor.calibration.from_logs.features.messages import Reading
-from hthor.calibration.from_logs.models.mixed_effects import Array, Fit, Term, fit
+from hthor.calibration.from_logs.models.mixed_effects import Array, Fit, Term, fit_mixed_model
 from hthor.calibration.from_logs.models.priors import Belief
-from hthor.calibration.from_logs.models.timing_models import log_normal, sample, spread_term
+from hthor.calibration.from_logs.models.timing_models import fit_log_normal, make_sample, spread_term
 from hthor.humans.communication.message_reading import LEAST_WORDS, REFERENCE_WORDS, REREADING_SHARE
 from hthor.humans.population.parameter_registry import parameter
 from hthor.humans.population.parameters import Parameters
@@ -23,21 +23,21 @@ _LOST = Term(name="lost", start=-2.0, mean=-2.0, sd=1.0)
 """Logit of the share of messages that never get an answer."""
 
 
-def notice(rows: Sequence[tuple[float, int, int, int]], belief: Belief) -> Fit:
+def fit_noticing(rows: Sequence[tuple[float, int, int, int]], belief: Belief) -> Fit:
     """Fit ``t_notice`` to the seconds until people who walked slowed down.
 
     Args:
-        rows: as `hthor.calibration.from_logs.models.timing_models.sample` takes them.
+        rows: as `hthor.calibration.from_logs.models.timing_models.make_sample` takes them.
     """
-    return log_normal(sample(rows), belief.term(), 0.0, noise=Parameters().read_sd, noise_sd=0.3)
+    return fit_log_normal(make_sample(rows), belief.term(), 0.0, noise=Parameters().read_sd, noise_sd=0.3)
 
 
-def durations(readings: Sequence[Reading], person: Array, beliefs: Mapping[str, Belief]) -> Fit:
+def fit_reading(readings: Sequence[Reading], person: Array, beliefs: Mapping[str, Belief]) -> Fit:
     """Fit ``t_read`` and ``t_notice``, with the spread of ``t_read`` between people.
 
     Args:
-        person: (N,) int, whose each is.
-        beliefs: of both; that of ``t_notice`` may stand on the logs already.
+        person: (N,) int, the person of each.
+        beliefs: of both; that of ``t_notice`` may come from these logs already.
     """
     from scipy.special import log_ndtr
 
@@ -59,4 +59,4 @@ def durations(readings: Sequence[Reading], person: Array, beliefs: Mapping[str, 
         return np.where(answered, found, waiting)
 
     terms = [beliefs["t_read"].term(), beliefs["t_notice"].term(), _LOST]
-    return fit(likelihood, terms, person, spread_term(parameter("t_read").effect))
+    return fit_mixed_model(likelihood, terms, person, spread_term(parameter("t_read").effect))

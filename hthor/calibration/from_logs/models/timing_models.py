@@ -1,4 +1,4 @@
-"""How fast people walk, turn, start, handle and read: log-normal laws with a person's own part; reads no files."""
+"""How fast people walk, turn, start, handle and read: log-normal distributions with an effect per person."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from typing import Any
 import numpy as np
 from msgspec import Struct
 
-from hthor.calibration.from_logs.models.mixed_effects import Array, Fit, Term, fit
+from hthor.calibration.from_logs.models.mixed_effects import Array, Fit, Term, fit_mixed_model
 from hthor.humans.population.parameters import Parameters
 
 SPREAD, NOISE, LEARN = "spread", "noise", "learn"
 _SPREAD_SD = 1.5
 _LEAST_NOISE = 0.01
-"""Nobody is measured more exactly than to 1 %."""
+"""No measurement is more precise than 1 %."""
 
 
 class Sample(Struct, frozen=True, kw_only=True):
-    """Positive numbers ``y`` (N,), whose each is, and the ``index`` (N,) of its trial.
+    """Positive numbers ``y`` (N,), the person of each, and the ``index`` (N,) of its trial.
 
-    ``censored`` (N,) is 0 for a number that was measured, 1 for one of which only a lower, -1 an upper bound is known.
+    ``censored`` (N,) is 0 for a measured number, 1 where only a lower, -1 where only an upper bound is known.
     """
 
     y: Array
@@ -31,12 +31,12 @@ class Sample(Struct, frozen=True, kw_only=True):
 
     @property
     def people(self) -> int:
-        """How many people there are numbers of."""
+        """How many people there are."""
         return len(np.unique(self.person))
 
 
-def sample(rows: Sequence[tuple[float, int, int, int]]) -> Sample:
-    """From rows of number, person, index and censoring; people are numbered anew, from 0."""
+def make_sample(rows: Sequence[tuple[float, int, int, int]]) -> Sample:
+    """From rows of number, person, index and censoring; people are renumbered from 0."""
     table = np.array(rows, dtype=float).reshape(-1, 4)
     table = table[np.isfinite(table[:, 0]) & (table[:, 0] > 0.0)]
     person = np.unique(table[:, 1], return_inverse=True)[1].astype(int)
@@ -44,12 +44,12 @@ def sample(rows: Sequence[tuple[float, int, int, int]]) -> Sample:
 
 
 def spread_term(effect: float) -> Term:
-    """The logarithm of the standard deviation between people, hardly bounded: of people like the paper's, or not."""
+    """The logarithm of the standard deviation between people, with a wide prior around that of the published people."""
     centre = math.log(Parameters().sigma * effect)
     return Term(name=SPREAD, start=centre, mean=centre, sd=_SPREAD_SD)
 
 
-def log_normal(
+def fit_log_normal(
     data: Sample,
     middle: Term,
     effect: float,
@@ -84,4 +84,4 @@ def log_normal(
     terms = [middle, Term(name=NOISE, start=math.log(noise), mean=math.log(noise), sd=noise_sd)]
     if is_free:
         terms.append(learn)
-    return fit(likelihood, terms, data.person, spread_term(effect) if effect else None)
+    return fit_mixed_model(likelihood, terms, data.person, spread_term(effect) if effect else None)

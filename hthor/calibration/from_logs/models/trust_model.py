@@ -1,6 +1,6 @@
-"""How people's trust moved, from their ratings: a hierarchical Beta law (Guo and Yang 2021); reads no files.
+"""How people's trust moved, from their ratings: a hierarchical Beta model (Guo and Yang 2021).
 
-Trust is Beta(alpha, beta); each trial adds counts for what the robots were worth in it, and the rating is its mean on
+Trust is Beta(alpha, beta); each trial adds counts for the value of the robots in it, and the rating is its mean on
 the scale of 1 to 7 with some noise. The first mean differs from person to person.
 """
 
@@ -13,7 +13,7 @@ import numpy as np
 from msgspec import Struct
 
 from hthor import rules
-from hthor.calibration.from_logs.models.mixed_effects import Array, Fit, fit
+from hthor.calibration.from_logs.models.mixed_effects import Array, Fit, fit_mixed_model
 from hthor.calibration.from_logs.models.priors import Belief
 from hthor.calibration.from_logs.models.timing_models import spread_term
 from hthor.humans.population.parameter_registry import parameter
@@ -24,10 +24,10 @@ _LEAST = 1e-12
 
 
 class Experience(Struct, frozen=True, kw_only=True):
-    """What the robots did in one trial, as its log tells, and how they were rated after it.
+    """What the robots did in one trial, and the rating after it.
 
-    ``offered`` says whether any message was shown, ``helped`` [s] when the first good one was confirmed (NaN without),
-    ``misled`` how many of those that were confirmed led nowhere, ``met`` whether the goal was met; ``rating`` is 1 to
+    ``offered`` says whether any message was shown, ``helped`` [s] when the first good one was accepted (NaN without),
+    ``misled`` how many of those that were accepted led nowhere, ``met`` whether the goal was met; ``rating`` is 1 to
     7, 0 for none.
     """
 
@@ -38,7 +38,7 @@ class Experience(Struct, frozen=True, kw_only=True):
     rating: int
 
 
-class Course(Struct, frozen=True, kw_only=True):
+class TrustData(Struct, frozen=True, kw_only=True):
     """The experiences of every session, (S, T) arrays; ``there`` marks the trials that are in the log."""
 
     offered: Array
@@ -50,8 +50,8 @@ class Course(Struct, frozen=True, kw_only=True):
     person: Array
 
 
-def course(sessions: Sequence[Sequence[Experience]], person: Array) -> Course:
-    """Sessions side by side. ``person`` (S,) int is whose each is."""
+def make_trust_data(sessions: Sequence[Sequence[Experience]], person: Array) -> TrustData:
+    """Sessions as arrays. ``person`` (S,) int is the person of each."""
     shape = (len(sessions), max(map(len, sessions)))
     arrays = {name: np.zeros(shape) for name in ("offered", "helped", "misled", "met", "rating", "there")}
     for row, session in enumerate(sessions):
@@ -59,10 +59,10 @@ def course(sessions: Sequence[Sequence[Experience]], person: Array) -> Course:
             for name in ("offered", "helped", "misled", "met", "rating"):
                 arrays[name][row, column] = getattr(one, name)
             arrays["there"][row, column] = 1.0
-    return Course(person=person, **arrays)
+    return TrustData(person=person, **arrays)
 
 
-def means(data: Course, values: Mapping[str, float], effects: Array) -> tuple[Array, Array]:
+def mean_trust(data: TrustData, values: Mapping[str, float], effects: Array) -> tuple[Array, Array]:
     """Mean trust (S, T) at the beginning of each trial, and after it; ``effects`` (S,) are added to mu0's logit."""
     fixed, n0 = Parameters(), math.exp(values["n0"])
     w_s, w_f, tau = (math.exp(values[name]) for name in ("w_s", "w_f", "tau_s"))
@@ -73,14 +73,14 @@ def means(data: Course, values: Mapping[str, float], effects: Array) -> tuple[Ar
     for column in range(data.rating.shape[1]):
         before[:, column] = alpha / (alpha + beta)
         beta = beta + w_f * data.misled[:, column]
-        worth, there = signal[:, column], data.there[:, column]
-        alpha, beta = alpha + there * w_s * worth, beta + there * w_f * (1.0 - worth)
+        value, there = signal[:, column], data.there[:, column]
+        alpha, beta = alpha + there * w_s * value, beta + there * w_f * (1.0 - value)
         after[:, column] = alpha / (alpha + beta)
     return before, after
 
 
-def dynamics(data: Course, beliefs: Mapping[str, Belief]) -> Fit:
-    """Fit first trust, its firmness, and what moves it, with the spread of first trust between people."""
+def fit_trust(data: TrustData, beliefs: Mapping[str, Belief]) -> Fit:
+    """Fit initial trust, its weight, and what changes it, with the spread of initial trust between people."""
     from scipy.special import ndtr
 
     rows, columns = np.nonzero(data.rating > 0.0)
@@ -93,19 +93,21 @@ def dynamics(data: Course, beliefs: Mapping[str, Belief]) -> Fit:
 
     def likelihood(values: dict[str, float], effects: Array) -> Array:
         own = effects[first][person] if len(effects) else np.zeros(len(person))
-        _, after = means(data, values, own)
+        _, after = mean_trust(data, values, own)
         mean = rules.TRUST_MIN + span * after[rows, columns]
         low = np.where(rated <= rules.TRUST_MIN, -np.inf, (rated - 0.5 - mean) / noise)
         high = np.where(rated >= rules.TRUST_MAX, np.inf, (rated + 0.5 - mean) / noise)
         return np.log(np.maximum(ndtr(high) - ndtr(low), _LEAST))
 
-    return fit(likelihood, [beliefs[name].term() for name in TERMS], owner, spread_term(parameter("mu0").effect))
+    return fit_mixed_model(
+        likelihood, [beliefs[name].term() for name in TERMS], owner, spread_term(parameter("mu0").effect)
+    )
 
 
-def _signals(data: Course, tau: float, fixed: Parameters) -> Array:
-    """Worth of the robots (S, T): the law of `hthor.humans.communication.trust`."""
+def _signals(data: TrustData, tau: float, fixed: Parameters) -> Array:
+    """Value of the robots (S, T) by the law of `hthor.humans.communication.trust`."""
     helped = data.helped > 0.0
-    worth = np.where(data.offered > 0.0, fixed.s_offered, 0.0)
-    worth = np.where(data.misled > 0.0, 0.0, worth)
-    worth = np.where(helped, 0.5 + 0.5 * np.exp(-data.helped / tau), worth)
-    return np.where(data.met > 0.0, worth, worth * fixed.s_failed)
+    value = np.where(data.offered > 0.0, fixed.s_offered, 0.0)
+    value = np.where(data.misled > 0.0, 0.0, value)
+    value = np.where(helped, 0.5 + 0.5 * np.exp(-data.helped / tau), value)
+    return np.where(data.met > 0.0, value, value * fixed.s_failed)

@@ -1,1 +1,1 @@
-"""The validation report: what is known of how far a human model may be trusted; it plays nothing and fits nothing."""
+"""The validation report: how well a human model reproduces the published study."""

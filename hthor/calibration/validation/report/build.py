@@ -1,4 +1,4 @@
-"""Everything that is known, put together as the findings that a page is made of; plays and draws nothing."""
+"""The findings of a validation, computed from the runs, the targets and the evidence."""
 
 from __future__ import annotations
 
@@ -7,52 +7,62 @@ from collections.abc import Mapping, Sequence
 import msgspec
 from msgspec import Struct
 
-from hthor.calibration.pipeline.evidence import Evidence
+from hthor.calibration.evidence import FIGURES, Evidence
 from hthor.calibration.simulation.trial_table import Table
 from hthor.calibration.targets import Targets
-from hthor.calibration.validation.report import criteria, known_misfits, measures, phrases, published, study_groups
-from hthor.calibration.validation.report.findings import Findings, Played, Rival, Setting, Subject
-from hthor.calibration.validation.report.study_groups import Array, Groups
+from hthor.calibration.validation.report import criteria, known_misfits, measures, phrases, study_groups
+from hthor.calibration.validation.report.findings import (
+    Findings,
+    ModelFigures,
+    ModelScore,
+    ModelUnderTest,
+    PublishedCount,
+    PublishedStudy,
+    Setting,
+)
+from hthor.calibration.validation.report.study_groups import Array, StudyGroups
 
 
-class Materials(Struct, frozen=True, kw_only=True, eq=False):
-    """What was played on the targets' suite: the subject's trials and those of simple human models, by name.
+class PlayedTrials(Struct, frozen=True, kw_only=True, eq=False):
+    """Trials on the targets' suite: of the model under test, and of simple human models (``rivals``) by name.
 
-    ``least`` is T* [s] by task, ``hands`` how many people together do every task once.
+    ``t_star`` is T* [s] by task, ``round_size`` how many people together do every task once.
     """
 
     trials: Table
-    least: Array
-    hands: int
+    t_star: Array
+    round_size: int
     rivals: Mapping[str, Table] = {}
 
 
-def findings(
-    subject: Subject,
+def make_findings(
+    subject: ModelUnderTest,
     setting: Setting,
     targets: Targets,
-    made: Materials,
+    played: PlayedTrials,
     *,
     evidence: Evidence | None,
     evidence_missing: str = "",
-    kinds: Sequence[Played] = (),
-    suites: Sequence[Played] = (),
+    kinds: Sequence[ModelFigures] = (),
+    suites: Sequence[ModelFigures] = (),
 ) -> Findings:
     """The whole document, gates and known misfits included."""
-    study = published.of(targets)
-    own = _groups(made.trials, made, targets, setting.seed)
-    rivals = {name: _groups(table, made, targets, setting.seed) for name, table in made.rivals.items()}
-    scored = tuple(measures.rival(name, study, made.rivals[name], made.least, drawn) for name, drawn in rivals.items())
+    study = published_study(targets)
+    own = _groups(played.trials, played, targets, setting.seed)
+    rivals = {name: _groups(table, played, targets, setting.seed) for name, table in played.rivals.items()}
+    scored = tuple(
+        measures.score_model(name, study, played.rivals[name], played.t_star, drawn) for name, drawn in rivals.items()
+    )
     bare = Findings(
         subject=subject,
         setting=setting,
         published=study,
-        table=measures.table(study, made.trials, made.least, own),
-        spent=measures.spent(made.trials),
-        differences=measures.differences(made.trials, own),
-        reach=measures.reach(made.trials),
-        trust=measures.trust(made.trials, own),
-        own=measures.rival(subject.name, study, made.trials, made.least, own),
+        table=measures.predict_figures(study, played.trials, played.t_star, own),
+        spent=measures.time_spent(played.trials),
+        differences=measures.time_differences(played.trials, own),
+        reach=measures.message_reach(played.trials),
+        trust=measures.trust_findings(played.trials, own),
+        own=measures.score_model(subject.name, study, played.trials, played.t_star, own),
         rivals=scored,
         kinds=tuple(kinds),
         suites=tuple(suites),
@@ -60,25 +70,44 @@ def findings(
         evidence_missing=evidence_missing,
         scope=phrases.SCOPE,
     )
-    return msgspec.structs.replace(bare, gates=criteria.judge(bare), misfits=known_misfits.find(bare))
+    return msgspec.structs.replace(bare, gates=criteria.judge_findings(bare), misfits=known_misfits.find_misfits(bare))
 
 
-def _with_rivals(evidence: Evidence | None, scored: Sequence[Rival]) -> Evidence | None:
-    """The evidence, with how well simple models foretell each condition that was left out."""
+def _with_rivals(evidence: Evidence | None, scored: Sequence[ModelScore]) -> Evidence | None:
+    """The evidence, with how well simple models predict each condition that was left out."""
     if evidence is None:
         return None
     held_out = tuple(
         msgspec.structs.replace(
-            part,
-            rivals={**{one.played.name: one.log_score[part.condition] for one in scored}, **part.rivals},
+            part, rivals={**{one.played.name: one.log_score[part.condition] for one in scored}, **part.rivals}
         )
         for part in evidence.held_out
     )
     return msgspec.structs.replace(evidence, held_out=held_out)
 
 
-def _groups(trials: Table, made: Materials, targets: Targets, seed: int) -> dict[str, Groups]:
+def _groups(trials: Table, played: PlayedTrials, targets: Targets, seed: int) -> dict[str, StudyGroups]:
     design = targets.design
-    return study_groups.together(
-        trials, made.least, hands=made.hands, valid=design.valid, counted=design.counted, seed=seed
+    return study_groups.make_groups(
+        trials, played.t_star, round_size=played.round_size, valid=design.valid, counted=design.counted, seed=seed
+    )
+
+
+def published_study(targets: Targets) -> PublishedStudy:
+    """The published study as the report shows it, from the targets."""
+    counts = [
+        (f"{metric} {name}", one) for metric in ("sr", "adoption") for name, one in getattr(targets, metric).items()
+    ]
+    return PublishedStudy(
+        name=targets.name,
+        source=targets.source,
+        sha256=targets.sha256,
+        counts=tuple(
+            PublishedCount(figure=figure, k=one.k, n=one.n, inferred=one.inferred, note=one.note)
+            for figure, one in counts
+        ),
+        ratio=dict(targets.ratio),
+        verbal=tuple((one.name, one.says) for one in targets.verbal),
+        figures={name: round(targets.published[name] / 100.0, 6) for name in FIGURES if name in targets.published},
+        design=targets.design.note,
     )

@@ -1,11 +1,11 @@
-"""The page's sections on a calibration; where there is none, a sentence each says so. Computes no statistics."""
+"""The page's sections on a calibration; without one, a sentence in each says so."""
 
 from __future__ import annotations
 
 import msgspec
 
-from hthor.calibration.pipeline.evidence import Evidence
-from hthor.calibration.simulation.trial_table import CONDITIONS
+from hthor.calibration.evidence import Evidence
+from hthor.calibration.targets import CONDITIONS
 from hthor.calibration.validation.report import phrases, tables
 from hthor.calibration.validation.report.figures import diagnostics, predictions
 from hthor.calibration.validation.report.findings import Findings
@@ -116,16 +116,16 @@ def emulator(found: Findings) -> list[str]:
         return _without(found, "no emulator was needed")
     drawn = elements.figure(
         matplotlib_svg.to_svg(
-            diagnostics.reliability(evidence.emulated), "reliability", "What the emulator said against what came"
+            diagnostics.reliability(evidence.emulated), "reliability", "Predicted and observed frequency"
         ),
-        "Trials that the emulators were not trained on, by the chance that was said. On the dashed line is right.",
+        "Trials that the emulators were not trained on, by predicted probability. The dashed line is perfect.",
     )
     return [
         elements.paragraph(phrases.emulator(evidence)),
         elements.table(
             tables.EMULATED,
             tables.emulated(evidence.emulated),
-            "z sd: of errors on whole studies. Log score: a held-out trial [nats]; baseline: always saying the mean",
+            "z sd: of errors on whole studies. Log score: per held-out trial [nats]; baseline: predicting the mean",
             words=(0, 1),
         ),
         drawn if any(one.bins for one in evidence.emulated) else "",
@@ -198,5 +198,5 @@ def _kinds(found: Findings) -> list[str]:
 
 
 def _without(found: Findings, so: str) -> list[str]:
-    why = found.evidence_missing or "The calibration says nothing of this."
+    why = found.evidence_missing or "The calibration has no evidence on this."
     return [elements.paragraph(f"{why} So {so}.", "note")]

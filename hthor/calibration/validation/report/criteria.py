@@ -1,4 +1,4 @@
-"""The bars that a human model has to clear: each says what it asks and what was found; shows nothing."""
+"""The criteria that a human model has to meet: what each asks, what was found, and the verdict."""
 
 from __future__ import annotations
 
@@ -6,37 +6,30 @@ from collections.abc import Sequence
 
 import msgspec
 
-from hthor.calibration.pipeline.evidence import Evidence
+from hthor.calibration.diagnostics.acceptance import CLOSE, FULL
+from hthor.calibration.evidence import Evidence
 from hthor.calibration.validation.report import phrases
-from hthor.calibration.validation.report.findings import Findings, Gate, Predicted, Trust, Verdict
+from hthor.calibration.validation.report.findings import FigurePrediction, Findings, Gate, TrustFindings, Verdict
 
-COVERAGE = (0.86, 0.94)
-STUDIES = 200
-Z_SD = (0.9, 1.1)
-ABC_SHIFT = 0.5
 ORDER = 0.95
 """Share of posterior draws that have to rank the robots oracle > frontier > none."""
 
 
-def judge(found: Findings) -> tuple[Gate, ...]:
-    """Every gate's verdict. What a short run or a model without a calibration cannot tell is not judged."""
+def judge_findings(found: Findings) -> tuple[Gate, ...]:
+    """Every gate's verdict. What a short run or a missing calibration leaves open is not judged."""
     short = found.setting.quick
-    return (
-        *_table(found.table, short),
-        _trust(found.trust, short),
-        *of_evidence(found.evidence),
-    )
+    return (*_table(found.table, short), _trust(found.trust, short), *judge_evidence(found.evidence))
 
 
-def of_evidence(found: Evidence | None) -> tuple[Gate, ...]:
-    """The bars for a calibration. A quick one is shown and not judged."""
+def judge_evidence(found: Evidence | None) -> tuple[Gate, ...]:
+    """The criteria for a calibration. Those of a quick one are shown and not judged."""
     gates = (*_held_out(found), _coverage(found), _emulator(found), _abc(found), _ranking(found))
     if found is None or not found.origin.quick:
         return gates
     return tuple(msgspec.structs.replace(gate, verdict="not judged") for gate in gates)
 
 
-def failed(gates: Sequence[Gate]) -> list[Gate]:
+def failed_gates(gates: Sequence[Gate]) -> list[Gate]:
     """Those that were not passed."""
     return [gate for gate in gates if gate.verdict == "failed"]
 
@@ -46,7 +39,7 @@ def _gate(name: str, asks: str, found: str, passed: bool | None) -> Gate:
     return Gate(name=name, asks=asks, found=found, verdict=verdict)
 
 
-def _table(rows: Sequence[Predicted], short: bool) -> tuple[Gate, ...]:
+def _table(rows: Sequence[FigurePrediction], short: bool) -> tuple[Gate, ...]:
     out = [phrases.figure(row.figure) for row in rows if not row.covered]
     far = [phrases.figure(row.figure) for row in rows if not row.close]
     total = len(rows)
@@ -59,14 +52,14 @@ def _table(rows: Sequence[Predicted], short: bool) -> tuple[Gate, ...]:
         ),
         _gate(
             "medians close",
-            "SR and TWSR within 4 points, adoption within 7",
+            CLOSE,
             f"{total - len(far)} of {total}" + (f"; too far: {phrases.listed(far)}" if far else ""),
             None if short else not far,
         ),
     )
 
 
-def _trust(found: Trust | None, short: bool) -> Gate:
+def _trust(found: TrustFindings | None, short: bool) -> Gate:
     name, asks = "trust", "in the oracle above that in the frontier robot over the session, and rising"
     if found is None:
         return _gate(name, asks, "nobody rated both robots", None)
@@ -93,16 +86,19 @@ def _held_out(found: Evidence | None) -> tuple[Gate, ...]:
 
 
 def _coverage(found: Evidence | None) -> Gate:
-    low, high = COVERAGE
-    ask = ("coverage", f"90 % intervals hold {low:.2f} to {high:.2f} of the truths, over {STUDIES} studies or more")
+    low, high = FULL.coverage
+    ask = (
+        "coverage",
+        f"90 % intervals hold {low:.2f} to {high:.2f} of the truths, over {FULL.studies} studies or more",
+    )
     if found is None or found.coverage is None:
         return _gate(*ask, _absent(found), None)
     said = f"{found.coverage.mean:.3f} over {found.coverage.studies} studies"
-    return _gate(*ask, said, found.coverage.studies >= STUDIES and low <= found.coverage.mean <= high)
+    return _gate(*ask, said, found.coverage.studies >= FULL.studies and low <= found.coverage.mean <= high)
 
 
 def _emulator(found: Evidence | None) -> Gate:
-    low, high = Z_SD
+    low, high = FULL.z_sd
     ask = ("emulator", f"standard deviation of its standardised errors from {low} to {high}")
     if found is None or found.emulator_z is None:
         return _gate(*ask, _absent(found), None)
@@ -110,11 +106,11 @@ def _emulator(found: Evidence | None) -> Gate:
 
 
 def _abc(found: Evidence | None) -> Gate:
-    ask = ("ABC cross-check", f"medians of the fitted parameters within {ABC_SHIFT} posterior standard deviations")
+    ask = ("ABC cross-check", f"medians of the fitted parameters within {FULL.shift} posterior standard deviations")
     if found is None or not found.abc:
         return _gate(*ask, _absent(found), None)
     worst = max(found.abc, key=lambda one: abs(one.shift))
-    return _gate(*ask, f"at most {abs(worst.shift):.2f} ({worst.name})", abs(worst.shift) < ABC_SHIFT)
+    return _gate(*ask, f"at most {abs(worst.shift):.2f} ({worst.name})", abs(worst.shift) < FULL.shift)
 
 
 def _ranking(found: Evidence | None) -> Gate:

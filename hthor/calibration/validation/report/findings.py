@@ -1,4 +1,4 @@
-"""What a validation found, as one document: every number that the page and the terminal show; draws nothing.
+"""The findings of a validation as one document: every number that the page and the terminal show.
 
 Fractions are fractions, times are seconds, trust is 1 to 7. ``condition`` is none, frontier or oracle.
 """
@@ -9,18 +9,16 @@ from typing import Literal
 
 from msgspec import Struct
 
-from hthor.calibration.pipeline.evidence import Band, Evidence
+from hthor.calibration.evidence import Band, Evidence
 
 SCHEMA = "hthor.validation/1"
-TOLERANCE = {"sr": 0.04, "twsr": 0.04, "adoption": 0.07}
-"""How far a median may lie from the published figure."""
 QUARTILE_S = 7.0
 """Lower quartiles of the time spent that differ by less than this count as equal."""
 Verdict = Literal["passed", "failed", "not judged"]
 
 
-class Subject(Struct, frozen=True, kw_only=True):
-    """The people under test. ``population`` is the name of theirs, empty where the model has none."""
+class ModelUnderTest(Struct, frozen=True, kw_only=True):
+    """The human model under test. ``population`` names its population, empty where it has none."""
 
     name: str
     model: str
@@ -32,9 +30,9 @@ class Subject(Struct, frozen=True, kw_only=True):
 
 
 class Setting(Struct, frozen=True, kw_only=True):
-    """What was played: so many people in each condition, ``trials`` trials in all three together.
+    """What was run: participants in each condition, and ``trials`` in all three together.
 
-    ``quick``: too few people for a verdict on what was played.
+    ``quick``: too few people for a verdict on the runs.
     """
 
     suite: str
@@ -48,7 +46,7 @@ class Setting(Struct, frozen=True, kw_only=True):
     quick: bool = False
 
 
-class Count(Struct, frozen=True, kw_only=True):
+class PublishedCount(Struct, frozen=True, kw_only=True):
     """A published share ``k`` of ``n`` trials; ``inferred`` where the article prints only the percentage."""
 
     figure: str
@@ -58,25 +56,26 @@ class Count(Struct, frozen=True, kw_only=True):
     note: str = ""
 
 
-class Published(Struct, frozen=True, kw_only=True):
-    """The published study: its counts, TWSR over SR by condition, what it says in words, and the eight figures."""
+class PublishedStudy(Struct, frozen=True, kw_only=True):
+    """The published study: its counts, TWSR over SR by condition, what it says in words, the eight figures, and its
+    design in a sentence.
+    """
 
     name: str
     source: str
     sha256: str
-    counts: tuple[Count, ...]
+    counts: tuple[PublishedCount, ...]
     ratio: dict[str, float]
     verbal: tuple[tuple[str, str], ...]
-    """(what it is about, what it says)."""
+    """(topic, statement)."""
     figures: dict[str, float]
     design: str = ""
-    """How the study was made, a sentence."""
 
 
-class Predicted(Struct, frozen=True, kw_only=True):
+class FigurePrediction(Struct, frozen=True, kw_only=True):
     """A published figure against simulated study groups of six people: their median and 90 % interval.
 
-    ``mean`` is that of all trials played, ``percentile`` the share of groups below the published figure (half of those
+    ``mean`` is that of all trials, ``percentile`` the share of groups below the published figure (half of those
     equal to it counted in).
     """
 
@@ -94,11 +93,11 @@ class Predicted(Struct, frozen=True, kw_only=True):
 
     @property
     def close(self) -> bool:
-        """Whether the median is as near as asked for."""
+        """Whether the median is within the tolerance."""
         return abs(self.band.median - self.published) <= self.tolerance + 1e-9
 
 
-class Spent(Struct, frozen=True, kw_only=True):
+class TimeSpent(Struct, frozen=True, kw_only=True):
     """Time spent in one condition [s], over all trials; an unsolved trial counts with the time limit."""
 
     condition: str
@@ -110,7 +109,7 @@ class Spent(Struct, frozen=True, kw_only=True):
     most: float
 
 
-class Difference(Struct, frozen=True, kw_only=True):
+class TimeDifference(Struct, frozen=True, kw_only=True):
     """By how much a statistic of the time spent [s] is larger in condition ``a`` than in ``b``.
 
     ``value`` is that of all trials; ``group`` the median and 90 % interval among simulated study groups.
@@ -123,9 +122,9 @@ class Difference(Struct, frozen=True, kw_only=True):
     group: Band
 
 
-class Reach(Struct, frozen=True, kw_only=True):
-    """How adoption came about in one condition: share of trials in which a message was shown to the person, and share
-    of those in which one was confirmed (None when none was shown).
+class MessageReach(Struct, frozen=True, kw_only=True):
+    """How adoption arises in one condition: share of trials in which a message was shown to the person, and share
+    of those in which one was accepted (None when none was shown).
     """
 
     condition: str
@@ -133,7 +132,7 @@ class Reach(Struct, frozen=True, kw_only=True):
     confirmed: float | None
 
 
-class Curve(Struct, frozen=True, kw_only=True):
+class TrustCurve(Struct, frozen=True, kw_only=True):
     """Trust by trial in one condition: means, their standard errors, and how many people rated each.
 
     ``slope`` is the mean over people of the least-squares slope [points a trial], ``slope_se`` its standard error.
@@ -147,14 +146,14 @@ class Curve(Struct, frozen=True, kw_only=True):
     slope_se: float
 
 
-class Trust(Struct, frozen=True, kw_only=True):
+class TrustFindings(Struct, frozen=True, kw_only=True):
     """Trust over a session. ``gap`` is oracle less frontier over all trials, ``above`` at how many it is positive.
 
     ``groups_above`` is the share of simulated study groups in which it is positive at every trial, ``groups_rising``
     that in which trust in the oracle rises.
     """
 
-    curves: tuple[Curve, ...]
+    curves: tuple[TrustCurve, ...]
     gap: float
     gap_se: float
     above: int
@@ -162,7 +161,7 @@ class Trust(Struct, frozen=True, kw_only=True):
     groups_rising: float
 
 
-class Played(Struct, frozen=True, kw_only=True):
+class ModelFigures(Struct, frozen=True, kw_only=True):
     """A human model's figures on a suite: means over its trials, None where there are none."""
 
     name: str
@@ -170,15 +169,15 @@ class Played(Struct, frozen=True, kw_only=True):
     trials: int
 
 
-class Rival(Struct, frozen=True, kw_only=True):
+class ModelScore(Struct, frozen=True, kw_only=True):
     """A human model's log score [nats] of each condition's published counts and ratio, and the figures behind it."""
 
-    played: Played
+    played: ModelFigures
     log_score: dict[str, float]
 
 
 class Gate(Struct, frozen=True, kw_only=True):
-    """A bar: what it asks, what was found, and whether that passed."""
+    """A criterion: what it asks, what was found, and the verdict."""
 
     name: str
     asks: str
@@ -190,18 +189,18 @@ class Findings(Struct, frozen=True, kw_only=True):
     """The whole validation. ``evidence`` is None for a human model that was not calibrated."""
 
     schema: str = SCHEMA
-    subject: Subject
+    subject: ModelUnderTest
     setting: Setting
-    published: Published
-    table: tuple[Predicted, ...]
-    spent: tuple[Spent, ...]
-    differences: tuple[Difference, ...]
-    reach: tuple[Reach, ...]
-    trust: Trust | None
-    own: Rival
-    rivals: tuple[Rival, ...] = ()
-    kinds: tuple[Played, ...] = ()
-    suites: tuple[Played, ...] = ()
+    published: PublishedStudy
+    table: tuple[FigurePrediction, ...]
+    spent: tuple[TimeSpent, ...]
+    differences: tuple[TimeDifference, ...]
+    reach: tuple[MessageReach, ...]
+    trust: TrustFindings | None
+    own: ModelScore
+    rivals: tuple[ModelScore, ...] = ()
+    kinds: tuple[ModelFigures, ...] = ()
+    suites: tuple[ModelFigures, ...] = ()
     evidence: Evidence | None = None
     evidence_missing: str = ""
     """Why there is no evidence, a sentence."""

@@ -1,4 +1,4 @@
-"""Where a human model is known to differ from the published study: sentences made from the numbers; draws nothing."""
+"""Where a human model differs from the published study, as sentences made from the numbers."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ _TAIL = 0.10
 """A published figure in the outer tenth of the predicted distribution is a misfit worth watching."""
 
 
-def find(found: Findings) -> tuple[str, ...]:
-    """Every misfit that the numbers show, the eight figures first; and what the model is known not to do."""
+def find_misfits(found: Findings) -> tuple[str, ...]:
+    """Every misfit that the numbers show, the eight figures first, and the model's general limits."""
     return (*_figures(found), *_held_out(found), *_time(found), *_trust(found), *_standing(found))
 
 

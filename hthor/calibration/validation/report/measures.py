@@ -1,46 +1,47 @@
-"""Played trials as the report's numbers: table, time spent, trust, log scores."""
+"""The report's numbers from trials: figures, time spent, trust, log scores."""
 
 from __future__ import annotations
 
 import itertools
 import math
 from collections.abc import Mapping
+from typing import Literal
 
 import numpy as np
 
-from hthor.calibration.pipeline.evidence import FIGURES, Band
+from hthor.calibration.evidence import FIGURES, TOLERANCE, Band
 from hthor.calibration.simulation import trial_table as tables
-from hthor.calibration.simulation.trial_table import CONDITIONS, Table
+from hthor.calibration.simulation.trial_table import Table
+from hthor.calibration.targets import CONDITIONS
 from hthor.calibration.validation.report import study_groups
 from hthor.calibration.validation.report.findings import (
-    TOLERANCE,
-    Curve,
-    Difference,
-    Played,
-    Predicted,
-    Published,
-    Reach,
-    Rival,
-    Spent,
-    Trust,
+    FigurePrediction,
+    MessageReach,
+    ModelFigures,
+    ModelScore,
+    PublishedStudy,
+    TimeDifference,
+    TimeSpent,
+    TrustCurve,
+    TrustFindings,
 )
-from hthor.calibration.validation.report.study_groups import Groups
+from hthor.calibration.validation.report.study_groups import StudyGroups
 
 Array = np.ndarray
 _DIGITS = 6
 
 
-def band(draws: Array, level: float = 0.90) -> Band:
-    """Median and central interval of draws; those that are nan do not count."""
+def central_band(draws: Array, level: float = 0.90) -> Band:
+    """Median and central interval of draws; NaN is left out."""
     tail = (1.0 - level) / 2.0
     low, middle, high = np.nanquantile(draws, [tail, 0.5, 1.0 - tail])
     return Band(low=_r(low), median=_r(middle), high=_r(high))
 
 
-def means(played: Table, least: Array) -> dict[str, float | None]:
-    """The eight figures over all trials, None for a condition that was not played."""
-    worth = tables.twsr(played, least)
-    values: dict[str, Array] = {"sr": played.met, "twsr": worth, "adoption": played.adopted}
+def mean_figures(played: Table, t_star: Array) -> dict[str, float | None]:
+    """The eight figures over all trials, None for a condition that was not run."""
+    twsr = tables.twsr(played, t_star)
+    values: dict[str, Array] = {"sr": played.met, "twsr": twsr, "adoption": played.adopted}
     found: dict[str, float | None] = {}
     for name in FIGURES:
         metric, condition = name.split()
@@ -49,18 +50,20 @@ def means(played: Table, least: Array) -> dict[str, float | None]:
     return found
 
 
-def table(published: Published, played: Table, least: Array, made: Mapping[str, Groups]) -> tuple[Predicted, ...]:
+def predict_figures(
+    published: PublishedStudy, played: Table, t_star: Array, made: Mapping[str, StudyGroups]
+) -> tuple[FigurePrediction, ...]:
     """The eight published figures against simulated study groups."""
-    average = means(played, least)
+    average = mean_figures(played, t_star)
     rows = []
-    for name, draws in study_groups.figures(made).items():
+    for name, draws in study_groups.group_figures(made).items():
         goal = published.figures[name]
         below = float((draws < goal - 5e-4).mean() + 0.5 * (abs(draws - goal) <= 5e-4).mean())
         rows.append(
-            Predicted(
+            FigurePrediction(
                 figure=name,
                 published=goal,
-                band=band(draws),
+                band=central_band(draws),
                 mean=average[name] or 0.0,
                 percentile=_r(below),
                 tolerance=TOLERANCE[name.split()[0]],
@@ -69,20 +72,20 @@ def table(published: Published, played: Table, least: Array, made: Mapping[str, 
     return tuple(rows)
 
 
-def played(name: str, run: Table, least: Array) -> Played:
+def model_figures(name: str, run: Table, t_star: Array) -> ModelFigures:
     """A model's figures on a suite."""
-    return Played(name=name, figures=means(run, least), trials=len(run))
+    return ModelFigures(name=name, figures=mean_figures(run, t_star), trials=len(run))
 
 
-def spent(run: Table) -> tuple[Spent, ...]:
+def time_spent(run: Table) -> tuple[TimeSpent, ...]:
     """Time spent by condition."""
     found = []
     for number, condition in enumerate(CONDITIONS):
-        seconds = tables.seconds(run)[run.condition == number]
+        seconds = tables.time_spent_s(run)[run.condition == number]
         if seconds.size:
             least, lower, middle, upper, most = (_r(np.percentile(seconds, part)) for part in (0, 25, 50, 75, 100))
             found.append(
-                Spent(
+                TimeSpent(
                     condition=condition,
                     trials=int(seconds.size),
                     least=least,
@@ -95,34 +98,27 @@ def spent(run: Table) -> tuple[Spent, ...]:
     return tuple(found)
 
 
-def differences(run: Table, made: Mapping[str, Groups]) -> tuple[Difference, ...]:
+def time_differences(run: Table, made: Mapping[str, StudyGroups]) -> tuple[TimeDifference, ...]:
     """Lower quartiles and minima of the time spent, each condition against each before it."""
-    whole = {one.condition: one for one in spent(run)}
-    pairs = [(a, b) for b, a in itertools.combinations(made, 2)]
-    quartiles = [
-        Difference(
-            statistic="lower quartile",
+    whole = {one.condition: one for one in time_spent(run)}
+    statistics: tuple[tuple[Literal["lower quartile", "minimum"], str], ...] = (
+        ("lower quartile", "lower"),
+        ("minimum", "least"),
+    )
+    return tuple(
+        TimeDifference(
+            statistic=statistic,
             a=a,
             b=b,
-            value=_r(whole[a].lower - whole[b].lower),
-            group=band(made[a].lower - made[b].lower),
+            value=_r(getattr(whole[a], field) - getattr(whole[b], field)),
+            group=central_band(getattr(made[a], field) - getattr(made[b], field)),
         )
-        for a, b in pairs
-    ]
-    minima = [
-        Difference(
-            statistic="minimum",
-            a=a,
-            b=b,
-            value=_r(whole[a].least - whole[b].least),
-            group=band(made[a].least - made[b].least),
-        )
-        for a, b in pairs
-    ]
-    return (*quartiles, *minima)
+        for statistic, field in statistics
+        for b, a in itertools.combinations(made, 2)
+    )
 
 
-def reach(run: Table) -> tuple[Reach, ...]:
+def message_reach(run: Table) -> tuple[MessageReach, ...]:
     """How adoption came about, for each condition with a robot."""
     found = []
     for number, condition in enumerate(CONDITIONS):
@@ -130,12 +126,12 @@ def reach(run: Table) -> tuple[Reach, ...]:
         if rows.any():
             shown = rows & (run.shown >= 0)
             confirmed = _r(run.adopted[shown].mean()) if shown.any() else None
-            found.append(Reach(condition=condition, shown=_r(shown.sum() / rows.sum()), confirmed=confirmed))
+            found.append(MessageReach(condition=condition, shown=_r(shown.sum() / rows.sum()), confirmed=confirmed))
     return tuple(found)
 
 
-def trust(run: Table, made: Mapping[str, Groups]) -> Trust | None:
-    """Trust in the frontier robot and the oracle over a session; None when nobody rated both."""
+def trust_findings(run: Table, made: Mapping[str, StudyGroups]) -> TrustFindings | None:
+    """Trust in the frontier robot and the oracle over a session; None when the people did not rate both."""
     rated = {name: _ratings(run, name) for name in CONDITIONS if name in made}
     curves = {name: ratings for name, ratings in rated.items() if ratings.size and ratings.min() > 0}
     if not {"frontier", "oracle"} <= set(curves):
@@ -143,7 +139,7 @@ def trust(run: Table, made: Mapping[str, Groups]) -> Trust | None:
     gap = curves["oracle"].mean(axis=0) - curves["frontier"].mean(axis=0)
     spread = [_se(ratings.mean(axis=1)) for ratings in (curves["frontier"], curves["oracle"])]
     apart = made["oracle"].trust - made["frontier"].trust
-    return Trust(
+    return TrustFindings(
         curves=tuple(_curve(name, ratings) for name, ratings in curves.items()),
         gap=_r(gap.mean()),
         gap_se=_r(math.hypot(*spread)),
@@ -161,10 +157,10 @@ def _ratings(run: Table, condition: str) -> Array:
     return found
 
 
-def _curve(condition: str, ratings: Array) -> Curve:
+def _curve(condition: str, ratings: Array) -> TrustCurve:
     slopes = study_groups.slopes(ratings)
     people, trials = ratings.shape
-    return Curve(
+    return TrustCurve(
         condition=condition,
         mean=tuple(_r(value) for value in ratings.mean(axis=0)),
         se=tuple(_se(ratings[:, trial]) for trial in range(trials)),
@@ -174,20 +170,24 @@ def _curve(condition: str, ratings: Array) -> Curve:
     )
 
 
-def rival(name: str, published: Published, run: Table, least: Array, made: Mapping[str, Groups]) -> Rival:
-    """A model's figures, and how well each condition's published counts and ratio were foretold by it.
+def score_model(
+    name: str, published: PublishedStudy, run: Table, t_star: Array, made: Mapping[str, StudyGroups]
+) -> ModelScore:
+    """A model's figures, and how well it predicts each condition's published counts and ratio.
 
-    Success and adoption are beta-binomial around the model's mean, as clustered as its own study groups are; the ratio
-    TWSR / SR is normal around the groups' mean.
+    Success and adoption are beta-binomial around the model's mean, with the overdispersion of its own study groups; the
+    ratio TWSR / SR is normal around the groups' mean.
     """
-    average = means(run, least)
-    return Rival(
-        played=played(name, run, least),
+    average = mean_figures(run, t_star)
+    return ModelScore(
+        played=model_figures(name, run, t_star),
         log_score={condition: _r(_log_score(condition, published, average, made[condition])) for condition in made},
     )
 
 
-def _log_score(condition: str, published: Published, average: Mapping[str, float | None], made: Groups) -> float:
+def _log_score(
+    condition: str, published: PublishedStudy, average: Mapping[str, float | None], made: StudyGroups
+) -> float:
     total = 0.0
     for count in published.counts:
         metric, where = count.figure.split()

@@ -1,4 +1,4 @@
-"""A validation as one page that needs nothing else: no network, no script; computes no statistics.
+"""A validation as one HTML page that needs nothing else: no network, no script.
 
 The first and last sections are here, those of the calibration in
 `hthor.calibration.validation.report.calibration_sections`.
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from html import escape
 
-from hthor.calibration.simulation.trial_table import CONDITIONS
+from hthor.calibration.targets import CONDITIONS
 from hthor.calibration.validation.report import calibration_sections, phrases, tables
 from hthor.calibration.validation.report.figures import predictions, sessions
 from hthor.calibration.validation.report.findings import Findings
@@ -19,7 +19,7 @@ _TITLES = {
     "table": "Published and predicted",
     "predictive": "Before and after the fit",
     "held-out": "Each condition held out",
-    "parameters": "What the data tell of each parameter",
+    "parameters": "What the data say about each parameter",
     "coverage": "Coverage",
     "emulator": "Emulator and cross-check",
     "sessions": "Time spent and trust",
@@ -60,21 +60,19 @@ def _head(found: Findings, title: str) -> str:
         "people": f"{subject.name}: {subject.purpose}" if subject.purpose else subject.name,
         "human model": subject.model,
         "population": f"{subject.population} ({subject.population_sha256[:10]})" if subject.population else "none",
-        "played": f"{setting.participants} participants in each condition on {setting.suite} "
+        "runs": f"{setting.participants} participants in each condition on {setting.suite} "
         f"({setting.suite_sha256[:10]}), {setting.trials} trials, seed {setting.seed}",
         "world": f"version {setting.simulation}, code {setting.code_sha256[:10]}",
     }
     listed = "".join(f"<dt>{escape(name)}</dt><dd>{escape(value)}</dd>" for name, value in facts.items())
     failed = [gate.name for gate in found.gates if gate.verdict == "failed"]
     judged = [gate for gate in found.gates if gate.verdict != "not judged"]
-    said = f"{len(judged) - len(failed)} of {len(judged)} bars that could be judged are passed."
+    said = f"{len(judged) - len(failed)} of {len(judged)} criteria that could be judged are passed."
     if failed:
         said += f" Failed: {phrases.listed(failed)}."
     notes = list(subject.notes)
     if setting.quick:
-        notes.append(
-            "Too few people to judge what was played. For a verdict leave out --quick, and ask for 18 people or more."
-        )
+        notes.append("Too few people for a verdict. For one, leave out --quick and ask for 18 people or more.")
     return "\n".join(
         (
             f"<h1>{escape(title)}</h1>",
@@ -143,7 +141,7 @@ def _sessions(found: Findings) -> list[str]:
         "<h3>Trust</h3>",
     ]
     if found.trust is None:
-        return [*parts, elements.paragraph("These people rate no robot, so there is nothing to say of trust.")]
+        return [*parts, elements.paragraph("These people rate no robot, so there is nothing to report about trust.")]
     return [
         *parts,
         elements.paragraphs(phrases.trust(found.trust)),

@@ -1,11 +1,27 @@
-"""What the numbers of a validation say, as sentences made from them."""
+"""Sentences made from the numbers of a validation."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-from hthor.calibration.pipeline.evidence import Band, Coverage, Evidence, HeldOut, ParameterFinding, Ranking, Shift
-from hthor.calibration.validation.report.findings import QUARTILE_S, Difference, Findings, Played, Reach, Spent, Trust
+from hthor.calibration.evidence import (
+    AbcShift,
+    Band,
+    CoverageFinding,
+    Evidence,
+    HeldOutCondition,
+    ParameterFinding,
+    RobotRanking,
+)
+from hthor.calibration.validation.report.findings import (
+    QUARTILE_S,
+    Findings,
+    MessageReach,
+    ModelFigures,
+    TimeDifference,
+    TimeSpent,
+    TrustFindings,
+)
 from hthor.eval.metrics import registry
 from hthor.report.html.number_format import listed as listed
 from hthor.report.html.number_format import percent as percent
@@ -16,7 +32,7 @@ IDENTIFIED, WEAKLY, NOT = "identified", "weakly identified", "not identified"
 CONTRACTS, CONTRACTS_WEAKLY = 0.4, 0.1
 """Contraction from which on a parameter is identified, and weakly so."""
 RECOVERS, RECOVERS_WEAKLY = 0.6, 0.45
-"""Recovery that it takes besides, where it was worked out."""
+"""Recovery that is needed too, where it was computed."""
 METRIC = {name: registry.get(name).symbol for name in ("sr", "twsr", "adoption")}
 CONDITION = {"none": "no robot", "frontier": "frontier", "oracle": "oracle"}
 _ROBOT = {"frontier": "the frontier robot", "oracle": "the oracle"}
@@ -27,7 +43,7 @@ SCOPE = (
 
 
 def identified(one: ParameterFinding) -> str:
-    """Whether the published numbers tell the parameter, in two words at most."""
+    """Whether the published numbers identify the parameter, in two words at most."""
     recovery = 1.0 if one.recovery is None else one.recovery
     if one.contraction >= CONTRACTS and recovery >= RECOVERS:
         return IDENTIFIED
@@ -35,7 +51,7 @@ def identified(one: ParameterFinding) -> str:
 
 
 def figure(name: str) -> str:
-    """A figure's name for people: ``sr none`` is "SR no robot"."""
+    """A figure's title: ``sr none`` is "SR no robot"."""
     metric, condition = name.split()
     return f"{METRIC[metric]} {CONDITION[condition]}"
 
@@ -46,7 +62,7 @@ def span(band: Band, scale: float = 1.0, digits: int = 1) -> str:
 
 
 def verdict(found: Findings) -> str:
-    """What the table comes to."""
+    """The result of the table of figures."""
     covered = [row for row in found.table if row.covered]
     close = [row for row in found.table if row.close]
     total = len(found.table)
@@ -66,14 +82,14 @@ def verdict(found: Findings) -> str:
     return text
 
 
-def held_out(parts: Sequence[HeldOut]) -> list[str]:
-    """What leaving conditions out has shown."""
+def held_out(parts: Sequence[HeldOutCondition]) -> list[str]:
+    """The result of leaving conditions out."""
     rows = [row for part in parts for row in part.figures]
     inside = sum(row.inside for row in rows)
     missing = 9 - len(rows)
     sentences = [f"{inside} of {len(rows)} held-out figures lie inside their 80 % intervals."]
     if missing == 1:
-        sentences.append("Of the nine figures one does not exist: without a robot there is nothing to adopt.")
+        sentences.append("One of the nine figures does not exist: without a robot there is nothing to adopt.")
     out = [figure(row.figure) for row in rows if not row.inside]
     if out:
         sentences.append(f"Outside: {listed(out)}.")
@@ -85,18 +101,18 @@ def held_out(parts: Sequence[HeldOut]) -> list[str]:
 
 
 def parameters(parts: Sequence[ParameterFinding]) -> list[str]:
-    """Which parameters the published numbers tell."""
+    """Which parameters the published numbers identify."""
     by_word = {word: [one.name for one in parts if identified(one) == word] for word in (IDENTIFIED, WEAKLY, NOT)}
     counts = {word: f"{len(names)}{f' ({listed(names)})' if names else ''}" for word, names in by_word.items()}
     return [
         f"Of {len(parts)} parameters {counts[IDENTIFIED]} are identified and {counts[WEAKLY]} weakly so. "
-        f"The other {len(by_word[NOT])} are not identified: what they are comes from the literature or from our own "
+        f"The other {len(by_word[NOT])} are not identified: their values come from the literature or are our own "
         "choice, not from the published study."
     ]
 
 
-def coverage(found: Coverage) -> str:
-    """How honest the intervals are."""
+def coverage(found: CoverageFinding) -> str:
+    """How often the intervals hold the truth."""
     return (
         f"Over {found.studies} simulated studies the 90 % intervals held the true value in {percent(found.mean)} % "
         f"of the cases; the parameters range from {percent(found.low)} to {percent(found.high)} %."
@@ -106,14 +122,14 @@ def coverage(found: Coverage) -> str:
 def emulator(found: Evidence) -> str:
     """How good the emulator is."""
     if found.emulator_z is None:
-        return "The emulator's errors on whole studies were not worked out."
+        return "The emulator's errors on whole studies were not computed."
     return (
         f"On whole simulated studies the emulator's standardised errors have a standard deviation of "
-        f"{found.emulator_z:.2f} (1 is right; above 1 it is too sure of itself)."
+        f"{found.emulator_z:.2f} (1 is right; above 1 it is overconfident)."
     )
 
 
-def cross_check(parts: Sequence[Shift]) -> str:
+def cross_check(parts: Sequence[AbcShift]) -> str:
     """How well ABC agrees."""
     worst = max(parts, key=lambda one: abs(one.shift))
     return (
@@ -123,7 +139,7 @@ def cross_check(parts: Sequence[Shift]) -> str:
     )
 
 
-def ranking(one: Ranking) -> str:
+def ranking(one: RobotRanking) -> str:
     """How firm the order of the robots is."""
     return (
         f"On {one.suite}, judged at {one.trials} trials a robot, oracle > frontier > none holds in success for "
@@ -133,7 +149,7 @@ def ranking(one: Ranking) -> str:
     )
 
 
-def swings(one: Ranking, known: Sequence[ParameterFinding]) -> list[str]:
+def swings(one: RobotRanking, known: Sequence[ParameterFinding]) -> list[str]:
     """What the parameters that are not identified do to the gaps between robots."""
     free = {part.name for part in known if identified(part) == NOT}
     rows = [swing for swing in one.swings if swing.name in free]
@@ -151,7 +167,7 @@ def swings(one: Ranking, known: Sequence[ParameterFinding]) -> list[str]:
     return [text + "No such parameter, at either end of its prior, turns a mean gap."]
 
 
-def order(one: Played) -> str:
+def order(one: ModelFigures) -> str:
     """The robots' order by success and by time-weighted success, in words."""
     kept = [metric for metric in ("sr", "twsr") if _kept(one, metric)]
     if len(kept) == 2:
@@ -159,7 +175,7 @@ def order(one: Played) -> str:
     return f"keeps it in {METRIC[kept[0]]} only" if kept else "keeps it in neither"
 
 
-def _kept(one: Played, metric: str) -> bool:
+def _kept(one: ModelFigures, metric: str) -> bool:
     values = [one.figures.get(f"{metric} {condition}") for condition in ("oracle", "frontier", "none")]
     known = [value for value in values if value is not None]
     return len(known) == 3 and known[0] > known[1] > known[2]
@@ -184,7 +200,7 @@ def kinds(found: Findings) -> str:
     return text + "The order oracle > frontier > none holds in SR and TWSR for every kind."
 
 
-def quartiles(parts: Sequence[Spent], pairs: Sequence[Difference]) -> str:
+def quartiles(parts: Sequence[TimeSpent], pairs: Sequence[TimeDifference]) -> str:
     """Whether help moves the lower quartile of the time spent."""
     each = listed(f"{CONDITION[one.condition]} {one.lower:.1f} s" for one in parts)
     rows = [one for one in pairs if one.statistic == "lower quartile"]
@@ -202,7 +218,7 @@ def quartiles(parts: Sequence[Spent], pairs: Sequence[Difference]) -> str:
     )
 
 
-def minima(pairs: Sequence[Difference]) -> str:
+def minima(pairs: Sequence[TimeDifference]) -> str:
     """Whether the shortest times are alike."""
     each = (
         f"{CONDITION[one.a]} less {CONDITION[one.b]} {signed(one.value)} s (groups of six {span(one.group)} s)"
@@ -212,18 +228,18 @@ def minima(pairs: Sequence[Difference]) -> str:
     return f"Shortest times: {listed(each)}. The article calls those of the two robots about equal."
 
 
-def reach(parts: Sequence[Reach]) -> str:
-    """What adoption is made of."""
+def reach(parts: Sequence[MessageReach]) -> str:
+    """How often messages are shown and accepted."""
     each = "; ".join(
         f"with {_ROBOT[one.condition]}, a message was shown in {percent(one.shown)} % of the trials"
-        + ("" if one.confirmed is None else f", and confirmed in {percent(one.confirmed)} % of those")
+        + ("" if one.confirmed is None else f", and accepted in {percent(one.confirmed)} % of those")
         for one in parts
     )
-    return f"Adoption is reach times willingness. {_upper(each)}."
+    return f"Adoption is reach times acceptance. {_upper(each)}."
 
 
-def trust(found: Trust) -> list[str]:
-    """What becomes of trust in a session, and what is not claimed of it."""
+def trust(found: TrustFindings) -> list[str]:
+    """How trust changes over a session, and what is not claimed about it."""
     curves = {curve.condition: curve for curve in found.curves}
     oracle, frontier = curves["oracle"], curves["frontier"]
     where = "above" if found.gap > 0 else "not above"
@@ -245,8 +261,8 @@ def trust(found: Trust) -> list[str]:
 def simulated(found: Evidence) -> str:
     """What the columns of section 3 are."""
     return (
-        f"Prior and posterior are foretold by the emulator; simulated are the medians and intervals of "
-        f"{found.simulated_studies} whole studies that people of the posterior did in the simulated world."
+        f"Prior and posterior are predicted by the emulator; simulated are the medians and intervals of "
+        f"{found.simulated_studies} whole studies simulated with people of the posterior."
     )
 
 

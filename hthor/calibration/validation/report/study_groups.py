@@ -1,8 +1,8 @@
-"""Study groups put together of simulated people: what six of them would have shown.
+"""Study groups drawn from simulated people: what six of them would have shown.
 
-The published study had six people in each condition. A group is made of whole rounds of people, in which every task is
-done once, as in the study; it loses the trials that the study lost. Groups share people, so there are many more of them
-than people, but their spread is that of people drawn from one population.
+The published study had six people in each condition. A group consists of whole rounds of people, in which every task is
+done once, as in the study; as many of its trials are dropped as the study lost. Groups share people, so there are many
+more groups than people, but their spread is that of people drawn from one population.
 """
 
 from __future__ import annotations
@@ -14,20 +14,21 @@ import numpy as np
 from msgspec import Struct
 
 from hthor import seeds
-from hthor.calibration.pipeline.evidence import FIGURES
+from hthor.calibration.evidence import FIGURES
 from hthor.calibration.simulation import trial_table as tables
-from hthor.calibration.simulation.trial_table import CONDITIONS, Table
+from hthor.calibration.simulation.trial_table import Table
+from hthor.calibration.targets import CONDITIONS
 from hthor.errors import HthorError
 
 Array = np.ndarray
 PEOPLE = 6
-"""In a group (P)."""
+"""People in a group."""
 DRAWS = 4000
-"""Groups that are put together."""
+"""Groups that are drawn."""
 
 
-class Groups(Struct, frozen=True, kw_only=True, eq=False):
-    """One condition's groups, G of them; arrays (G,), nan where a group shows nothing of the sort.
+class StudyGroups(Struct, frozen=True, kw_only=True, eq=False):
+    """One condition's groups, G of them; arrays (G,), NaN where a group has no such value.
 
     ``trust`` is (G, T), the mean rating by trial; ``slope`` the mean over people of their slopes [points a trial].
     """
@@ -42,29 +43,29 @@ class Groups(Struct, frozen=True, kw_only=True, eq=False):
     slope: Array
 
 
-def figures(groups: Mapping[str, Groups]) -> dict[str, Array]:
+def group_figures(groups: Mapping[str, StudyGroups]) -> dict[str, Array]:
     """Each of the eight figures in every group, (G,)."""
     return {name: getattr(groups[name.split()[1]], name.split()[0]) for name in FIGURES if name.split()[1] in groups}
 
 
-def together(
+def make_groups(
     played: Table,
-    least: Array,
+    t_star: Array,
     *,
-    hands: int,
+    round_size: int,
     valid: Mapping[str, int],
     counted: Mapping[str, int],
     seed: int = 0,
     draws: int = DRAWS,
-) -> dict[str, Groups]:
-    """Groups of every condition that was played.
+) -> dict[str, StudyGroups]:
+    """Groups of every condition that was run.
 
     Args:
-        least: T* [s] by task.
-        hands: people who together do every task once.
-        valid: by condition, trials of a group that count; the rest are lost at random.
-        counted: and those in which adoption is counted.
-        seed: of the chance that puts groups together.
+        t_star: T* [s] by task.
+        round_size: people who together do every task once.
+        valid: by condition, trials of a group that count; the rest are dropped at random.
+        counted: by condition, trials in which adoption is counted.
+        seed: of the draws.
 
     Raises:
         HthorError: when there are too few people for a group.
@@ -74,26 +75,26 @@ def together(
         rows = np.flatnonzero(played.condition == number)
         if rows.size:
             one = played.take(rows)
-            chance = np.random.Generator(np.random.Philox(key=seeds.derive(seed, "groups", condition)))
-            found[condition] = _groups(one, least, chance, hands, valid[condition], counted.get(condition, 0), draws)
+            rng = np.random.Generator(np.random.Philox(key=seeds.derive(seed, "groups", condition)))
+            found[condition] = _groups(one, t_star, rng, round_size, valid[condition], counted.get(condition, 0), draws)
     return found
 
 
 def _groups(
-    one: Table, least: Array, chance: np.random.Generator, hands: int, valid: int, counted: int, draws: int
-) -> Groups:
+    one: Table, t_star: Array, rng: np.random.Generator, round_size: int, valid: int, counted: int, draws: int
+) -> StudyGroups:
     people = _people(one)
-    chosen = _chosen(len(people), hands, chance, draws)  # (G, 6) rows of `people`
+    chosen = _chosen(len(people), round_size, rng, draws)  # (G, 6) rows of `people`
     rows = people[chosen].reshape(draws, -1)  # (G, 60) rows of the table
-    mixed = np.take_along_axis(rows, np.argsort(chance.random(rows.shape), axis=1), axis=1)
+    mixed = np.take_along_axis(rows, np.argsort(rng.random(rows.shape), axis=1), axis=1)
     kept, asked = mixed[:, : valid or None], mixed[:, : counted or None]
-    worth, spent = tables.twsr(one, least), tables.seconds(one)
+    twsr, spent = tables.twsr(one, t_star), tables.time_spent_s(one)
     met = one.met[kept].sum(axis=1)
     trust = one.trust.astype(float)[people][chosen]  # (G, 6, T)
-    return Groups(
+    return StudyGroups(
         sr=one.met[kept].mean(axis=1),
-        twsr=worth[kept].mean(axis=1),
-        ratio=np.where(met > 0, worth[kept].sum(axis=1) / np.maximum(met, 1), np.nan),
+        twsr=twsr[kept].mean(axis=1),
+        ratio=np.where(met > 0, twsr[kept].sum(axis=1) / np.maximum(met, 1), np.nan),
         adoption=one.adopted[asked].mean(axis=1),
         lower=np.percentile(spent[kept], 25.0, axis=1),
         least=spent[kept].min(axis=1),
@@ -112,13 +113,13 @@ def _people(one: Table) -> Array:
     return rows
 
 
-def _chosen(count: int, hands: int, chance: np.random.Generator, draws: int) -> Array:
-    """(draws, 6) which people make up each group: whole rounds where six people are whole rounds."""
-    size = hands if PEOPLE % hands == 0 else 1
+def _chosen(count: int, round_size: int, rng: np.random.Generator, draws: int) -> Array:
+    """(draws, 6) the people of each group: whole rounds where six people are whole rounds."""
+    size = round_size if PEOPLE % round_size == 0 else 1
     units, wanted = count // size, PEOPLE // size
     if units < wanted:
         raise HthorError(f"{count} people are too few for a group of {PEOPLE}; ask for {PEOPLE} or more.")
-    picked = np.argsort(chance.random((draws, units)), axis=1)[:, :wanted]
+    picked = np.argsort(rng.random((draws, units)), axis=1)[:, :wanted]
     members: Array = (picked[:, :, None] * size + np.arange(size)).reshape(draws, PEOPLE)
     return members
 
@@ -131,7 +132,7 @@ def slopes(trust: Array) -> Array:
 
 
 def log_count(k: int, n: int, p: float, phi: float) -> float:
-    """Log chance [nats] of k of n clustered trials: beta-binomial, with ``phi`` times the binomial variance."""
+    """Log rng [nats] of k of n clustered trials: beta-binomial, with ``phi`` times the binomial variance."""
     p, rho = min(max(p, 0.005), 0.995), min(max((phi - 1.0) / (n - 1.0), 1e-4), 0.5)
     a, b = p * (1.0 - rho) / rho, (1.0 - p) * (1.0 - rho) / rho
     ways = math.lgamma(n + 1) - math.lgamma(k + 1) - math.lgamma(n - k + 1)

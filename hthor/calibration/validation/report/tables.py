@@ -1,38 +1,36 @@
-"""Findings as rows of words and numbers, for the page and for the terminal alike."""
+"""Findings as rows of cells, for the page and for the terminal."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-from hthor.calibration.pipeline.evidence import (
+from hthor.calibration.evidence import (
     FIGURES,
     Band,
-    Emulated,
-    HeldOut,
+    EmulatorFit,
+    HeldOutCondition,
     ParameterFinding,
-    Predictive,
-    Ranking,
-    Swing,
+    ParameterSwing,
+    PredictedFigure,
+    RobotRanking,
 )
 from hthor.calibration.validation.report import phrases
-from hthor.calibration.validation.report.findings import Curve, Difference, Gate, Played, Predicted, Published, Spent
+from hthor.calibration.validation.report.findings import (
+    FigurePrediction,
+    Gate,
+    ModelFigures,
+    PublishedStudy,
+    TimeDifference,
+    TimeSpent,
+    TrustCurve,
+)
 from hthor.report.html.elements import Cell, Mark, mark
 
 Rows = list[list[Cell]]
-GATES = ("bar", "asks", "found", "verdict")
+GATES = ("criterion", "asks", "found", "verdict")
 TABLE = ("figure [%]", "published", "median", "90 % interval", "all trials", "covered", "off by", "allowed", "close")
 COUNTS = ("count", "k / n", "%", "", "how it was found")
-PREDICTIVE = (
-    "figure [%]",
-    "published",
-    "prior",
-    "90 %",
-    "posterior",
-    "90 %",
-    "simulated",
-    "90 %",
-    "design effect",
-)
+PREDICTIVE = ("figure [%]", "published", "prior", "90 %", "posterior", "90 %", "simulated", "90 %", "design effect")
 HELD_OUT = ("held out", "figure", "published", "median", "80 % interval", "inside")
 SCORES = ("held out", "fitted on", "log score", "prior", "gain over the prior")
 PARAMETERS = (
@@ -54,11 +52,11 @@ _VERDICTS = {"passed": "good", "failed": "bad", "not judged": "quiet"}
 
 
 def gates(found: Sequence[Gate]) -> Rows:
-    """Every bar and its verdict."""
+    """Every criterion and its verdict."""
     return [[gate.name, gate.asks, gate.found, Mark(gate.verdict, _VERDICTS[gate.verdict])] for gate in found]
 
 
-def table(rows: Sequence[Predicted]) -> Rows:
+def table(rows: Sequence[FigurePrediction]) -> Rows:
     """The eight published figures against simulated study groups [%]."""
     return [
         [
@@ -76,7 +74,7 @@ def table(rows: Sequence[Predicted]) -> Rows:
     ]
 
 
-def counts(found: Published) -> Rows:
+def counts(found: PublishedStudy) -> Rows:
     """Published counts, and which of them are inferred."""
     return [
         [
@@ -90,7 +88,7 @@ def counts(found: Published) -> Rows:
     ]
 
 
-def predictive(rows: Sequence[Predictive], published: dict[str, float]) -> Rows:
+def predictive(rows: Sequence[PredictedFigure], published: dict[str, float]) -> Rows:
     """The figures before and after the fit [%]."""
     return [
         [
@@ -108,7 +106,7 @@ def predictive(rows: Sequence[Predictive], published: dict[str, float]) -> Rows:
     ]
 
 
-def held_out(parts: Sequence[HeldOut]) -> Rows:
+def held_out(parts: Sequence[HeldOutCondition]) -> Rows:
     """Each figure of each condition that was left out [%]; what does not exist says so."""
     rows: Rows = []
     for part in parts:
@@ -124,7 +122,7 @@ def held_out(parts: Sequence[HeldOut]) -> Rows:
     return rows
 
 
-def scores(parts: Sequence[HeldOut], rivals: Sequence[str]) -> Rows:
+def scores(parts: Sequence[HeldOutCondition], rivals: Sequence[str]) -> Rows:
     """Log scores [nats] of each condition that was left out, and the gains."""
     return [
         [
@@ -139,7 +137,7 @@ def scores(parts: Sequence[HeldOut], rivals: Sequence[str]) -> Rows:
     ]
 
 
-def _gain(part: HeldOut, rival: str) -> str:
+def _gain(part: HeldOutCondition, rival: str) -> str:
     return phrases.signed(part.log_score - part.rivals[rival], 2) if rival in part.rivals else "–"
 
 
@@ -170,7 +168,7 @@ def _short(value: float) -> str:
     return f"{value:.{digits}f}".replace("-", "−")
 
 
-def emulated(parts: Sequence[Emulated]) -> Rows:
+def emulated(parts: Sequence[EmulatorFit]) -> Rows:
     """How good each emulator is."""
     return [
         [
@@ -185,7 +183,7 @@ def emulated(parts: Sequence[Emulated]) -> Rows:
     ]
 
 
-def spent(parts: Sequence[Spent]) -> Rows:
+def spent(parts: Sequence[TimeSpent]) -> Rows:
     """Time spent [s]."""
     return [
         [
@@ -197,7 +195,7 @@ def spent(parts: Sequence[Spent]) -> Rows:
     ]
 
 
-def differences(parts: Sequence[Difference]) -> Rows:
+def differences(parts: Sequence[TimeDifference]) -> Rows:
     """Differences of the time spent [s]."""
     return [
         [
@@ -210,7 +208,7 @@ def differences(parts: Sequence[Difference]) -> Rows:
     ]
 
 
-def curves(parts: Sequence[Curve]) -> Rows:
+def curves(parts: Sequence[TrustCurve]) -> Rows:
     """Trust in a session, 1 to 7, with standard errors."""
     return [
         [
@@ -224,7 +222,7 @@ def curves(parts: Sequence[Curve]) -> Rows:
     ]
 
 
-def models(parts: Sequence[Played]) -> Rows:
+def models(parts: Sequence[ModelFigures]) -> Rows:
     """Several human models: the eight figures of each [%]."""
     return [[one.name, *(phrases.percent(one.figures.get(name)) for name in FIGURES), str(one.trials)] for one in parts]
 
@@ -233,7 +231,7 @@ MODELS = ("people", *(phrases.figure(name) for name in FIGURES), "trials")
 RANKINGS = ("suite", "draws", "trials a robot", "SR order [%]", "TWSR order [%]", "both [%]")
 
 
-def rankings(parts: Sequence[Ranking]) -> Rows:
+def rankings(parts: Sequence[RobotRanking]) -> Rows:
     """How many of the posterior draws rank the robots oracle > frontier > none."""
     return [
         [
@@ -246,13 +244,13 @@ def rankings(parts: Sequence[Ranking]) -> Rows:
     ]
 
 
-def pairs(parts: Sequence[Swing]) -> list[tuple[str, str]]:
+def pairs(parts: Sequence[ParameterSwing]) -> list[tuple[str, str]]:
     """The pairs of robots that swings are of, in words."""
     found = dict.fromkeys((one.better, one.worse) for one in parts)
     return [(phrases.CONDITION[better], phrases.CONDITION[worse]) for better, worse in found]
 
 
-def swings(parts: Sequence[Swing], known: Sequence[ParameterFinding]) -> Rows:
+def swings(parts: Sequence[ParameterSwing], known: Sequence[ParameterFinding]) -> Rows:
     """What each parameter does to the gaps between robots [points], the parameters that are not identified first."""
     said = {one.name: phrases.identified(one) for one in known}
     names = sorted(dict.fromkeys(one.name for one in parts), key=lambda name: said.get(name) != phrases.NOT)

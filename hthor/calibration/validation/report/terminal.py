@@ -1,4 +1,4 @@
-"""A validation on the terminal: the table of published and predicted figures, and the bars; computes nothing."""
+"""A validation on the terminal: the table of published and predicted figures, and the criteria."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ if TYPE_CHECKING:
 _STYLES = {"good": "green", "bad": "bold red", "quiet": "dim"}
 
 
-def figures(found: Findings) -> Table:
+def figures_table(found: Findings) -> Table:
     """The eight published figures against simulated study groups."""
     setting = found.setting
     title = f"{found.subject.name} people: {setting.participants} in each condition on {setting.suite}, groups of six"
     return _table(title, tables.TABLE, tables.table(found.table), words={0})
 
 
-def gates(found: Findings) -> Table:
-    """Every bar, what was found, and its verdict."""
+def gates_table(found: Findings) -> Table:
+    """Every criterion, what was found, and its verdict."""
     rows = [[row[0], row[2], row[3]] for row in tables.gates(found.gates)]
-    return _table("bars", ("bar", "found", "verdict"), rows, words=range(3))
+    return _table("criteria", ("criterion", "found", "verdict"), rows, words=range(3))
 
 
 def _table(title: str, head: Sequence[str], rows: tables.Rows, *, words: Collection[int]) -> Table:

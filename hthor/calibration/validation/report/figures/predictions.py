@@ -1,4 +1,4 @@
-"""Figures that set published numbers against predicted ones."""
+"""Figures of published and predicted numbers."""
 
 from __future__ import annotations
 
@@ -9,11 +9,13 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from hthor.calibration.pipeline.evidence import Band, HeldOut, Predictive
-from hthor.calibration.simulation.trial_table import CONDITIONS
-from hthor.calibration.validation.report.findings import Findings, Predicted
+from hthor.calibration.evidence import Band, HeldOutCondition, PredictedFigure
+from hthor.calibration.targets import CONDITIONS
+from hthor.calibration.validation.report.findings import FigurePrediction, Findings
 from hthor.eval.metrics import registry
 from hthor.report.html import matplotlib_svg
+from hthor.report.html.matplotlib_svg import CONDITION as COLOUR
+from hthor.report.html.matplotlib_svg import INK, LINE, ORACLE, PAPER, PRIOR, PUBLISHED, SHADE, SOFT
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,52 +24,44 @@ METRICS = {name: registry.get(name).title for name in ("sr", "twsr", "adoption")
 CONDITION = {"none": "no robot", "frontier": "frontier", "oracle": "oracle"}
 
 
-def table(rows: Sequence[Predicted]) -> Figure:
+def table(rows: Sequence[FigurePrediction]) -> Figure:
     """The eight figures: published values, and what simulated study groups show."""
     with matplotlib_svg.style():
         made, panels = _panels(1.75, [row.band for row in rows])
         for row in rows:
             metric, condition = row.figure.split()
-            ax, y, shade = panels[metric], CONDITIONS.index(condition), matplotlib_svg.CONDITION[condition]
+            ax, y, shade = panels[metric], CONDITIONS.index(condition), COLOUR[condition]
             half = 100.0 * row.tolerance
-            ax.barh(y, 2 * half, left=100.0 * row.published - half, height=0.56, color=matplotlib_svg.SHADE, zorder=1)
+            ax.barh(y, 2 * half, left=100.0 * row.published - half, height=0.56, color=SHADE, zorder=1)
             _interval(ax, y, row.band, shade)
             _diamond(ax, y, row.published)
         made.legend(
-            handles=[
-                _line(matplotlib_svg.SOFT, "study group, median and 90 %"),
-                _mark("published"),
-                _patch("allowed for the median"),
-            ],
+            handles=[_line(SOFT, "study group, median and 90 %"), _mark("published"), _patch("allowed for the median")],
             loc="outside lower center",
             ncols=3,
         )
     return made
 
 
-def before_after(rows: Sequence[Predictive], published: dict[str, float]) -> Figure:
+def before_after(rows: Sequence[PredictedFigure], published: dict[str, float]) -> Figure:
     """Prior and posterior predictive intervals of the eight figures."""
     with matplotlib_svg.style():
         made, panels = _panels(2.1, [band for row in rows for band in (row.prior, row.posterior)])
         for row in rows:
             metric, condition = row.figure.split()
             ax, y = panels[metric], CONDITIONS.index(condition)
-            _interval(ax, y - 0.2, row.prior, matplotlib_svg.PRIOR, width=2.0)
-            _interval(ax, y + 0.2, row.posterior, matplotlib_svg.CONDITION[condition])
+            _interval(ax, y - 0.2, row.prior, PRIOR, width=2.0)
+            _interval(ax, y + 0.2, row.posterior, COLOUR[condition])
             _diamond(ax, y, published[row.figure])
         made.legend(
-            handles=[
-                _line(matplotlib_svg.PRIOR, "prior, 90 %"),
-                _line(matplotlib_svg.ORACLE, "posterior, 90 %"),
-                _mark("published"),
-            ],
+            handles=[_line(PRIOR, "prior, 90 %"), _line(ORACLE, "posterior, 90 %"), _mark("published")],
             loc="outside lower center",
             ncols=3,
         )
     return made
 
 
-def held_out(parts: Sequence[HeldOut]) -> Figure:
+def held_out(parts: Sequence[HeldOutCondition]) -> Figure:
     """What the other two conditions predict of each, 80 % intervals."""
     with matplotlib_svg.style():
         made, panels = _panels(1.75, [row.band for part in parts for row in part.figures])
@@ -75,10 +69,10 @@ def held_out(parts: Sequence[HeldOut]) -> Figure:
             for row in part.figures:
                 metric, condition = row.figure.split()
                 ax, y = panels[metric], CONDITIONS.index(condition)
-                _interval(ax, y, row.band, matplotlib_svg.CONDITION[condition])
+                _interval(ax, y, row.band, COLOUR[condition])
                 _diamond(ax, y, row.published)
         made.legend(
-            handles=[_line(matplotlib_svg.SOFT, "predicted without it, median and 80 %"), _mark("published")],
+            handles=[_line(SOFT, "predicted without it, median and 80 %"), _mark("published")],
             loc="outside lower center",
             ncols=2,
         )
@@ -98,17 +92,9 @@ def scores(findings: Findings) -> Figure:
                 **dict(sorted(part.rivals.items())),
             }
             for y, score in enumerate(named.values()):
-                shade = matplotlib_svg.CONDITION[part.condition] if y == 0 else matplotlib_svg.PRIOR
+                shade = COLOUR[part.condition] if y == 0 else PRIOR
                 ax.barh(y, score, height=0.6, color=shade)
-                ax.text(
-                    score,
-                    y,
-                    f"{score:.1f} ".replace("-", "−"),
-                    ha="right",
-                    va="center",
-                    fontsize=7,
-                    color=matplotlib_svg.INK,
-                )
+                ax.text(score, y, f"{score:.1f} ".replace("-", "−"), ha="right", va="center", fontsize=7, color=INK)
             ax.set_yticks(range(len(named)), list(named))
             ax.set_title(f"{CONDITION[part.condition]} held out")
             ax.set_xlabel("log score [nats], higher is better")
@@ -130,34 +116,26 @@ def _panels(height: float, bands: Sequence[Band]) -> tuple[Figure, dict[str, Axe
         ax.set_ylim(2.6, -0.6)
         ax.set_yticks(range(3), [CONDITION[name] for name in CONDITIONS])
         if metric == "adoption":
-            ax.text(
-                (first + 100) / 2,
-                0,
-                "no robot to adopt",
-                ha="center",
-                va="center",
-                color=matplotlib_svg.SOFT,
-                fontsize=7,
-            )
+            ax.text((first + 100) / 2, 0, "no robot to adopt", ha="center", va="center", color=SOFT, fontsize=7)
     return made, dict(zip(METRICS, panels, strict=True))
 
 
 def _interval(ax: Axes, y: float, band: Band, shade: str, width: float = 2.6) -> None:
     ax.plot((100.0 * band.low, 100.0 * band.high), (y, y), color=shade, lw=width, zorder=3)
-    ax.plot(100.0 * band.median, y, "o", color=shade, ms=5.2, mec=matplotlib_svg.PAPER, mew=0.9, zorder=4)
+    ax.plot(100.0 * band.median, y, "o", color=shade, ms=5.2, mec=PAPER, mew=0.9, zorder=4)
 
 
 def _diamond(ax: Axes, y: float, value: float) -> None:
-    ax.plot(100.0 * value, y, "D", mfc="none", mec=matplotlib_svg.PUBLISHED, mew=1.4, ms=6.4, zorder=5)
+    ax.plot(100.0 * value, y, "D", mfc="none", mec=PUBLISHED, mew=1.4, ms=6.4, zorder=5)
 
 
 def _line(shade: str, label: str) -> Line2D:
-    return Line2D([], [], color=shade, lw=2.6, marker="o", ms=5, mec=matplotlib_svg.PAPER, mew=0.9, label=label)
+    return Line2D([], [], color=shade, lw=2.6, marker="o", ms=5, mec=PAPER, mew=0.9, label=label)
 
 
 def _mark(label: str) -> Line2D:
-    return Line2D([], [], ls="", marker="D", mfc="none", mec=matplotlib_svg.PUBLISHED, mew=1.4, ms=6, label=label)
+    return Line2D([], [], ls="", marker="D", mfc="none", mec=PUBLISHED, mew=1.4, ms=6, label=label)
 
 
 def _patch(label: str) -> Patch:
-    return Patch(facecolor=matplotlib_svg.SHADE, edgecolor=matplotlib_svg.LINE, linewidth=0.5, label=label)
+    return Patch(facecolor=SHADE, edgecolor=LINE, linewidth=0.5, label=label)

@@ -1,4 +1,4 @@
-"""Figures of what happens in sessions: time spent, and trust by trial."""
+"""Figures of sessions: time spent, and trust by trial."""
 
 from __future__ import annotations
 
@@ -8,24 +8,26 @@ from matplotlib.figure import Figure
 
 from hthor import rules
 from hthor.calibration.validation.report.figures.predictions import CONDITION
-from hthor.calibration.validation.report.findings import Spent, Trust
+from hthor.calibration.validation.report.findings import TimeSpent, TrustFindings
 from hthor.report.html import matplotlib_svg
+from hthor.report.html.matplotlib_svg import CONDITION as COLOUR
+from hthor.report.html.matplotlib_svg import PAPER
 
 
-def spent(parts: Sequence[Spent]) -> Figure:
+def spent(parts: Sequence[TimeSpent]) -> Figure:
     """Box plots of the time spent: minimum, quartiles, maximum."""
     with matplotlib_svg.style():
         made = matplotlib_svg.new_figure(0.7 + 0.36 * len(parts), 6.2)
         ax = made.subplots()
         for y, one in enumerate(parts):
-            shade = matplotlib_svg.CONDITION[one.condition]
+            shade = COLOUR[one.condition]
             ax.plot((one.least, one.most), (y, y), color=shade, lw=1.0, zorder=2)
             ax.barh(
                 y,
                 one.upper - one.lower,
                 left=one.lower,
                 height=0.52,
-                facecolor=matplotlib_svg.PAPER,
+                facecolor=PAPER,
                 edgecolor=shade,
                 lw=1.4,
                 zorder=3,
@@ -42,13 +44,13 @@ def spent(parts: Sequence[Spent]) -> Figure:
     return made
 
 
-def trust(found: Trust) -> Figure:
+def trust(found: TrustFindings) -> Figure:
     """Mean trust by trial, bars of one standard error."""
     with matplotlib_svg.style():
         made = matplotlib_svg.new_figure(2.5, 5.2)
         ax = made.subplots()
         for shift, curve in zip((-0.06, 0.06), found.curves, strict=False):
-            shade = matplotlib_svg.CONDITION[curve.condition]
+            shade = COLOUR[curve.condition]
             x = [trial + 1 + shift for trial in range(len(curve.mean))]
             ax.errorbar(
                 x, curve.mean, yerr=curve.se, color=shade, marker="o", ms=3.2, lw=1.4, elinewidth=1.0, capsize=0
