@@ -224,7 +224,7 @@ def test_a_changed_line_is_told_of(tmp_path):
         book.append(_line("one", (1, 2)))
     path = tmp_path / session_store.FILE
     path.write_bytes(path.read_bytes().replace(b"[1,2]", b"[1,3]"))
-    with pytest.raises(RunError, match="line 1: check: [0-9a-f]+ is not the line's checksum"):
+    with pytest.raises(RunError, match=r"line 1: check: [0-9a-f]+ is not the line's checksum"):
         SessionStore(tmp_path, _identity(a="1"))
 
 
