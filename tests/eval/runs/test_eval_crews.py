@@ -92,7 +92,7 @@ def test_a_crew_of_nobody_is_one_silent_agent():
         ("tall:oracle,", (), "'' is not ROBOT:AGENT; expected something like --robots tall:oracle"),
         ("tall:,small:oracle", (), "'tall:' is not ROBOT:AGENT"),
         ("tall,small:oracle", (), "'tall' has no agent. Write tall:AGENT"),
-        ("tall:oracle", ("oracle",), "--agent has nobody to be"),
+        ("tall:oracle", ("oracle",), "--agent has no robot left"),
         ("tal:oracle", (), "unknown robot 'tal'. Did you mean 'tall'?"),
         ("tall:orcale", (), "unknown agent 'orcale'. Did you mean 'oracle'?"),
     ],
