@@ -222,8 +222,8 @@ def test_a_forger_who_makes_all_follow_passes_the_laws_but_not_an_old_verificati
     lie = forging.forged(true, 0.2, control)
     files.write_document(path, lie)
     assert board_check.check_board(board) == []  # all of it follows from its trials, which never were
-    assert kept(true).of(true) is not None
-    assert kept(true).of(lie) is None
+    assert kept(true).verification_of(true) is not None
+    assert kept(true).verification_of(lie) is None
 
 
 def test_numbers_of_older_statistics_are_worked_out_anew(board: Path, whole: Path):
@@ -360,8 +360,8 @@ SPOILT: dict[str, tuple[Callable[[Path], object], str]] = {
     "link": (lambda at: (at / "README.md").symlink_to("/etc/passwd"), "is a link"),
     "hidden": (lambda at: (at / ".env").write_bytes(b"1"), "no leading ."),
     "deep link": (lambda at: [(at / "more").mkdir(), (at / "more" / "x").symlink_to("/etc")], "is a link"),
-    "compiled": (lambda at: (at / "helper.pyc").write_bytes(b"1"), "hand in the sources"),
-    "cache": (lambda at: (at / "__pycache__").mkdir(), "hand in the sources"),
+    "compiled": (lambda at: (at / "helper.pyc").write_bytes(b"1"), "submit the sources"),
+    "cache": (lambda at: (at / "__pycache__").mkdir(), "submit the sources"),
     "space": (lambda at: (at / "my weights.bin").write_bytes(b"1"), "a name has"),
     "pipe": (lambda at: os.mkfifo(at / "pipe"), "neither a file nor a folder"),
     "capitals": (lambda at: [(at / name).write_text("") for name in ("a.bin", "A.bin")], "differ only in capitals"),

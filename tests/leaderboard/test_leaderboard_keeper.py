@@ -167,8 +167,8 @@ def test_a_refuted_control_takes_the_uplift_from_whoever_is_measured_against_it(
     entry, control = (files.read_entry(entry_of(board, name)) for name in ("helper", "silent"))
     verification.write_verification(board, entry, verified(entry, control=replayed(passed=False, why="made worse.")))
     kept_ = verification.load_records(board)
-    assert kept_.struck(control) is not None
-    assert kept_.struck(entry) is None
+    assert kept_.refutation_of(control) is not None
+    assert kept_.refutation_of(entry) is None
     entries = [files.read_entry(path) for path in files.entry_paths(board)]
     row = rows(entries, kept_, admission.load_admission(board))["helper"]
     assert (row.ranks, row.uplift) == (None, None)
@@ -239,7 +239,7 @@ def test_a_board_without_lists_takes_the_benchmark(tmp_path: Path):
 class Losing:
     """An engine that loses the sessions of one person, as where an agent's process is killed again and again."""
 
-    def perform(self, sessions, make):
+    def run_sessions(self, sessions, make):
         yield SessionAbandoned(participant=1, cause="its process was killed by SIGKILL", detail="")
 
 
