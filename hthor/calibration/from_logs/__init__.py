@@ -1,1 +1,1 @@
-"""Parameters of people from the logs of their trials."""
+"""Estimates human parameters from the logs of trials; begin with `run`."""

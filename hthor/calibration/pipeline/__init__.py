@@ -1,1 +1,1 @@
-"""The stages of `hthor calibrate`, their cache, progress and summary."""
+"""`hthor calibrate` on published numbers: configuration, stages, evidence and results; begin with `run`."""

@@ -1,1 +1,1 @@
-"""Simulated sessions for calibration: where, with whom, and the table of their outcomes."""
+"""Simulated sessions for calibration, their store, and the table of their outcomes; begin with `simulate`."""

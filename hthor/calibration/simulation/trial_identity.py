@@ -17,7 +17,7 @@ _NOT_COURSE = ("t_star", "difficulty", "split")
 
 
 class TrialIdentity(Struct, frozen=True, kw_only=True):
-    """Hashes of all that decides the course of trials of a suite: ``parts`` by the name of what they are of."""
+    """Hashes of everything that decides the course of trials of a suite; ``parts`` has them by name."""
 
     parts: dict[str, str]
 
@@ -27,13 +27,13 @@ class TrialIdentity(Struct, frozen=True, kw_only=True):
         return jsonio.sha256(self.parts)
 
     def differences(self, other: TrialIdentity) -> list[str]:
-        """Names of what is not the same in both."""
+        """Names of the parts that differ."""
         names = sorted({*self.parts, *other.parts})
         return [name for name in names if self.parts.get(name) != other.parts.get(name)]
 
 
 def trials_identity(suite: Suite) -> TrialIdentity:
-    """What trials of this suite hang on, in this version of everything."""
+    """Hashes of everything that trials of this suite depend on, in this version of hthor and its libraries."""
     numbers = {name: value for name, value in rules.as_dict().items() if not name.startswith(_T_STAR)}
     priors = [(one.name, one.prior, one.effect, one.scale) for one in PARAMETERS]
     versions = {name: version for name, version in installation.versions().items() if name != "hthor"}
@@ -49,7 +49,7 @@ def trials_identity(suite: Suite) -> TrialIdentity:
 
 
 def _course(task: object) -> dict[str, object]:
-    """A task without what has no part in the course of its trials."""
+    """A task without the fields that do not affect its trials."""
     told: dict[str, object] = msgspec.to_builtins(task)
     return {name: value for name, value in told.items() if name not in _NOT_COURSE}
 

@@ -1,7 +1,7 @@
-"""What was published of people, as counts to fit a model to.
+"""Published results of people, as counts to fit a model to.
 
-A target file says with how many trials each number was found, because percentages hide that, and marks what was
-inferred or only said in words. Our own lie in this folder.
+A target file says from how many trials each number comes, because percentages hide that, and marks what was inferred or
+only stated in words. Our own targets are in this folder.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class Count(Struct, frozen=True, kw_only=True):
 
 
 class VerbalFinding(Struct, frozen=True, kw_only=True):
-    """Something that was said in words; ``fitted`` whether the fit may use it or it is only checked."""
+    """A finding stated in words; ``fitted``: the fit may use it, otherwise it is only checked."""
 
     name: str
     says: str
@@ -88,7 +88,7 @@ class Targets(Struct, frozen=True, kw_only=True):
         return {name: self.published[f"twsr {name}"] / 100.0 for name in self.ratio}
 
     def without(self, condition: str) -> Targets:
-        """The same without anything about one condition, to see how well the others foretell it.
+        """The same without anything about one condition, to see how well the others predict it.
 
         Raises:
             UnknownName: when there is nothing about it.
@@ -131,7 +131,7 @@ class _Strict(Targets, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 def _check(path: Path, targets: Targets) -> None:
-    """See that numbers are what they can be, and that counts and ratios agree with what was printed."""
+    """Check that numbers are possible, and that counts and ratios agree with the printed percentages."""
     if targets.schema != SCHEMA:
         raise HthorError(f"{path}: schema: is '{targets.schema}', this version reads '{SCHEMA}'.")
     for metric in ("sr", "adoption", "ratio"):

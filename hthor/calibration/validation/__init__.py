@@ -1,1 +1,1 @@
-"""`hthor humans validate`: simulated study groups against the published figures."""
+"""`hthor humans validate`: simulated study groups compared with the published figures; begin with `run`."""

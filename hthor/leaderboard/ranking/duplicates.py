@@ -1,7 +1,7 @@
 """Which entries are one agent: ranks count each once.
 
 Two entries are of the same agent when a team submitted both under one name, as versions of it; when their code is the
-same, whoever submitted it; or when they did nearly the same, trial by trial.
+same, no matter who submitted it; or when they did nearly the same, trial by trial.
 """
 
 from __future__ import annotations
