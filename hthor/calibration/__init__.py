@@ -1,1 +1,1 @@
-"""Fits the human model to published results and to logs, and validates it; begin with `pipeline.run` or `validation.run`."""
+"""Fits the human model to published results and to logs, and validates it; see `pipeline.run`, `validation.run`."""
