@@ -312,10 +312,10 @@ def test_a_second_run_asks_nobody_and_answers_the_same(tmp_path):
 def test_the_cache_tells_people_models_and_settings_apart(tmp_path):
     path = tmp_path / "answers.jsonl"
     plain = {"model": "toy", "temperature": 0.5, "seed": 1, "tokens": 16}
-    assert ResponseCache(path, **plain).of("q", lambda q: "a", 9) == "a"
+    assert ResponseCache(path, **plain).answer("q", lambda q: "a", 9) == "a"
     for field, value in (("model", "other"), ("temperature", 0.6), ("seed", 2), ("tokens", 17)):
-        assert ResponseCache(path, **{**plain, field: value}).of("q", lambda q: f"new {q}", 9) == "new q"
-    assert ResponseCache(path, **plain).of("q", lambda q: "b", 9) == "a"
+        assert ResponseCache(path, **{**plain, field: value}).answer("q", lambda q: f"new {q}", 9) == "new q"
+    assert ResponseCache(path, **plain).answer("q", lambda q: "b", 9) == "a"
     assert policy.seed(PERSON) != policy.seed(Participant(seed=1, number=4))
 
 
@@ -324,10 +324,10 @@ def test_the_first_answer_in_the_file_holds_when_two_ask_at_once(tmp_path):
     other = ResponseCache(path, **plain)
 
     def slow(question):
-        other.of(question, lambda q: "first", 9)
+        other.answer(question, lambda q: "first", 9)
         return "second"
 
-    assert ResponseCache(path, **plain).of("q", slow, 9) == "first"
+    assert ResponseCache(path, **plain).answer("q", slow, 9) == "first"
     assert len(path.read_bytes().splitlines()) == 1
 
 
@@ -335,8 +335,8 @@ def test_the_first_answer_in_the_file_holds_when_two_ask_at_once(tmp_path):
 def test_a_torn_line_costs_one_answer_and_no_more(torn, tmp_path):
     path, plain = tmp_path / "answers.jsonl", {"model": "toy", "temperature": 0.5, "seed": 1, "tokens": 16}
     path.write_bytes(torn)
-    assert ResponseCache(path, **plain).of("q", lambda q: "a", 9) == "a"
-    assert ResponseCache(path, **plain).of("q", lambda q: "b", 9) == "a"
+    assert ResponseCache(path, **plain).answer("q", lambda q: "a", 9) == "a"
+    assert ResponseCache(path, **plain).answer("q", lambda q: "b", 9) == "a"
 
 
 def test_answers_are_cut(tmp_path):

@@ -25,13 +25,13 @@ _LEAVE_S = 3.0
 _STILL_M = 0.02
 """[m] Who moved less than this between two looks stands still. Our choice."""
 _NEAR_M = 0.45
-"""[m] A load this near to its spot may be put down. Our choice: inside the tolerance of 0.6 m."""
+"""[m] A load this near to its spot may be put down. Our choice."""
 _BESIDE_M = 1.5
 """[m] A robot this near to the load holds it, or is about to. Our choice."""
 _AHEAD_M = (0.7, 0.4, 0.0)
 """[m] How far past the spot to go, so that the load comes to lie there; the first that is free. Our choice."""
 _INSIDE_M = 1.9
-"""[m] How deep into a room to go, so that the load is in it too. Our choice: longer than any load."""
+"""[m] How deep into a room to go, so that the load is in it too. Our choice: farther than the load is long."""
 _DIRECTIONS = 16
 """[count] Directions tried for that. Our choice."""
 

@@ -17,7 +17,7 @@ from hthor.types import Drop, Place, Vec2, Vec3
 _EDGE_M = 0.12
 """[m] People put things down at least this far from the edge. Our choice."""
 _REACHABLE_Z_M = (0.25, 1.4)
-"""[m] Heights of the surfaces that people use first. Our choice: without bending down or reaching up."""
+"""[m] Heights of the surfaces that people use first. Our choice."""
 _SHIFTS_M = (0.0, 0.3, -0.3)
 """[m] How far along the surface later tries move the point, in turn. Our choice."""
 _BESIDE_M = 0.5

@@ -22,7 +22,7 @@ from hthor.navigation.grid_map import FREE
 from hthor.types import Vec2, Vec3
 
 _REACH_M = 1.14
-"""[m] Farthest spots around a position of which nothing is known. Our choice: an arm's length."""
+"""[m] Farthest spots around a position of which nothing is known. Our choice."""
 _NEAR_M = 1.5
 """[m] From so near to the place, or to the spot to stand at, people look again where to stand. Our choice."""
 _MAX_VIEWS = 3

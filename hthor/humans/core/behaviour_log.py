@@ -29,7 +29,7 @@ import msgspec
 from hthor.types import HUMAN, BodySpec, Event, Motion, Move
 
 _THOUSAND = 1000
-"""[count] Steps of the stick's deflection, and of the pitch's radian. Our choice: finer than a person can hold them."""
+"""[count] Steps of the stick's deflection, and of the pitch's radian. Our choice."""
 _DONE = {"pick": "picked", "place": "placed", "open": "opened", "close": "closed", "drop": "dropped"}
 """The event of the trial's log for each attempt that succeeds."""
 

@@ -17,7 +17,7 @@ Behaviour = Generator[Motion, None, bool]
 GAZE_PITCH = -0.25
 """[rad] Pitch of the head while people walk, a little downwards. Our choice."""
 _WAIT_S = 0.3
-"""[s] Longest single wait, so that people standing still keep glimpsing about three times a second. Our choice."""
+"""[s] Longest single wait, so that perception goes on. Our choice."""
 _AIMED_RAD = 0.05
 """[rad] Direction error at which a turn is complete. Our choice."""
 _MAX_TURNS = 100

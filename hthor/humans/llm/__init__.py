@@ -1,1 +1,1 @@
-"""A language model as the person: prompts, backends and cached responses."""
+"""A language model that decides in a participant's place. Begin with `policy`."""

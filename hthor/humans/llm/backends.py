@@ -22,7 +22,9 @@ STUB = "stub"
 URL, MODEL, KEY, CACHE = "HTHOR_LLM_URL", "HTHOR_LLM_MODEL", "HTHOR_LLM_KEY", "HTHOR_LLM_CACHE"
 """Variables of the environment that say what to ask."""
 _TIMEOUT_S = 120.0
+"""[s] Longest wait for an answer of the endpoint. Our choice."""
 _SHOWN = 200
+"""[bytes] Of an endpoint's error message that are shown. Our choice."""
 
 
 class Settings(Struct, frozen=True, kw_only=True):
@@ -60,20 +62,19 @@ def model_name(chosen: Settings) -> str:
     return chosen.name
 
 
-def make_policy(person: Participant, chosen: Settings) -> policy.LanguageModelPolicy:
-    """A language model in this person's place.
+def make_policy(participant: Participant, chosen: Settings) -> policy.LanguageModelPolicy:
+    """A policy that asks the language model in this participant's place.
 
     Raises:
         HthorError: when the settings name no model.
     """
-    backend = (
-        answer_by_rule if chosen.url == STUB else Endpoint(chosen, policy.temperature(person), policy.seed(person))
-    )
-    return policy.LanguageModelPolicy(person, backend, Path(chosen.cache), model_name(chosen))
+    temperature, seed = policy.temperature(participant), policy.seed(participant)
+    backend = answer_by_rule if chosen.url == STUB else Endpoint(chosen, temperature, seed)
+    return policy.LanguageModelPolicy(participant, backend, Path(chosen.cache), model_name(chosen))
 
 
 def answer_by_rule(question: str) -> str:
-    """A rule in place of a model: the option that is called nearest, and yes to what promises to save time."""
+    """A rule in place of a model: the nearest option, and yes to what is said to save time."""
     options = re.findall(r"^(\d+)\. (.*)$", question, re.MULTILINE)
     if not options:
         return "confirm" if "would save you" in question else "decline"

@@ -1,4 +1,4 @@
-"""What a language model is asked in a person's place, and how its answers are read."""
+"""The questions to a language model in a participant's place, and how its answers are read."""
 
 from __future__ import annotations
 
@@ -9,9 +9,17 @@ from hthor.humans.core.policy import Answer, Offer, Situation
 from hthor.humans.population.parameters import Parameters
 
 MAX_OPTIONS = 24
-"""So many options are listed, the nearest."""
+"""[count] Options that are listed, the nearest. Our choice."""
 _TEXT_MAX = 400
-"""Characters of an instruction or a message that are quoted."""
+"""[characters] Of an instruction or a message that are quoted. Our choice."""
+_PACE_M_S = (0.45, 0.75)
+"""[m/s] Limits of v_pace between slow, ordinary and brisk. Our choice."""
+_PLANNING = (1.0, 3.0)
+"""[exponent] Limits of beta between impulsive, thoughtful and careful. Our choice."""
+_TRUST = (0.45, 0.65)
+"""[share] Limits of mu0 between distrust, neither and trust. Our choice."""
+_WILLINGNESS = (1.0, 3.0)
+"""[logit] Limits of a0 between reluctant, willing and very willing. Our choice."""
 _ANSWERS: dict[str, Answer] = {"confirm": "confirm", "decline": "decline", "ignore": "ignore"}
 _SCENE = (
     "You are a person in a virtual-reality study. With a headset and two controllers you walk through a house that you "
@@ -21,11 +29,11 @@ _SCENE = (
 
 
 def persona(traits: Parameters) -> str:
-    """A person's traits in words, by the thresholds that stand here."""
-    walk = _word(traits.v_pace, (0.45, "slowly"), (0.75, "at an ordinary pace"), "briskly")
-    plan = _word(traits.beta, (1.0, "on impulse"), (3.0, "with some thought"), "carefully, weighing every option")
-    trust = _word(traits.mu0, (0.45, "distrust"), (0.65, "neither trust nor distrust"), "trust")
-    help_ = _word(traits.a0, (1.0, "reluctant"), (3.0, "willing"), "very willing")
+    """A participant's traits in words, by fixed limits."""
+    walk = _word(traits.v_pace, _PACE_M_S, "slowly", "at an ordinary pace", "briskly")
+    plan = _word(traits.beta, _PLANNING, "on impulse", "with some thought", "carefully, weighing every option")
+    trust = _word(traits.mu0, _TRUST, "distrust", "neither trust nor distrust", "trust")
+    help_ = _word(traits.a0, _WILLINGNESS, "reluctant", "willing", "very willing")
     return f"You walk {walk} and decide {plan}. At first you {trust} robots. You are {help_} to take up offers of help."
 
 
@@ -109,5 +117,5 @@ def read_answer(reply: str) -> Answer | None:
     return _ANSWERS.get(re.sub(r"^\W+|\W+$", "", reply).lower())
 
 
-def _word(value: float, low: tuple[float, str], middle: tuple[float, str], high: str) -> str:
-    return low[1] if value < low[0] else middle[1] if value < middle[0] else high
+def _word(value: float, limits: tuple[float, float], low: str, middle: str, high: str) -> str:
+    return low if value < limits[0] else middle if value < limits[1] else high

@@ -1,7 +1,7 @@
-"""A language model's answers, kept so that nothing is asked twice.
+"""A language model's answers, kept in a file so that nothing is asked twice.
 
-One line of JSON an answer, only ever appended, by several processes at once if need be. A run whose answers all stand
-there needs no model and gives the same bytes again; the file can be shared with the run.
+One line of JSON per answer, append-only, safe for several processes at once. A run whose answers are all there needs no
+model and gives the same bytes again; publish the file with the run.
 """
 
 from __future__ import annotations
@@ -36,8 +36,8 @@ class ResponseCache:
     """The answers of one model to one person.
 
     Args:
-        path: the file; made with the first answer.
-        model: what is asked. temperature, seed: how it draws. tokens: most tokens of an answer.
+        path: the file; created with the first answer.
+        model: its name. temperature, seed, tokens: its settings, of which the keys are made too.
     """
 
     def __init__(self, path: Path, *, model: str, temperature: float, seed: int, tokens: int) -> None:
@@ -46,11 +46,11 @@ class ResponseCache:
         self._known: dict[str, str] = {}
         self._read = 0
 
-    def of(self, prompt: str, ask: Callable[[str], str], most: int) -> str:
-        """The answer to a question, from the file where it stands there.
+    def answer(self, prompt: str, ask: Callable[[str], str], most: int) -> str:
+        """The answer to a question, from the file if it is there.
 
         Args:
-            ask: asks the model; its answer is cut to ``most`` characters before it is kept.
+            ask: asks the model; its answer is cut to ``most`` characters and kept.
         """
         key = jsonio.sha256({**self._about, "prompt": prompt})
         self._catch_up()
@@ -59,7 +59,7 @@ class ResponseCache:
         return self._known[key]
 
     def _keep(self, key: str, prompt: str, answer: str) -> None:
-        """Append it, unless another process was faster: the first answer in the file holds."""
+        """Append an answer, unless another process was faster: the first one in the file counts."""
         self.path.parent.mkdir(parents=True, exist_ok=True)
         handle = os.open(self.path, os.O_RDWR | os.O_APPEND | os.O_CREAT | os.O_CLOEXEC, 0o644)
         try:
@@ -75,7 +75,7 @@ class ResponseCache:
             os.close(handle)
 
     def _catch_up(self) -> None:
-        """Read what was appended since; a line that was torn or damaged is as good as not there."""
+        """Read what was appended since; torn or damaged lines are skipped."""
         if not self.path.exists():
             return
         with self.path.open("rb") as file:

@@ -16,7 +16,7 @@ from hthor.humans.memory.object_memory import KnownObject, ObjectMemory
 from hthor.humans.memory.spatial_memory import KnownPlace, SpatialMemory
 
 _EVERY_S = 1.5
-"""[s] How often the model checks what was forgotten. Our choice: short against every prior value of tau_seen."""
+"""[s] How often the model checks what was forgotten. Our choice: every second or two is enough."""
 
 
 class Forgetting:

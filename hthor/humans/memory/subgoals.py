@@ -14,9 +14,9 @@ from hthor.humans.memory.spatial_memory import KnownPlace, SpatialMemory
 from hthor.types import Job, Vec3
 
 _SPOT_M = 0.2
-"""[m] An object this near to its remembered spot is in its place. Our choice: over three times tour_sd."""
+"""[m] An object this near to its remembered spot is in its place. Our choice."""
 _JOINT_SPOT_M = 0.6
-"""[m] The same for an object that several carry. Our choice: two who carry put down less exactly."""
+"""[m] The same for an object that several carry. Our choice."""
 _ENOUGH_TRIES = 2
 """[count] After so many times of putting an object down where it belongs, people leave it where it is. Our choice."""
 

@@ -42,7 +42,7 @@ _DOORWAY_M = 1.0
 _GIVE_UP = 12
 """[count] Bumps after which a walk is given up. Our choice."""
 _REPLANS = 100
-"""[count] Plans after which a walk is given up. Our choice: a bound that walks do not reach."""
+"""[count] Plans after which a walk is given up. Our choice."""
 _POLITE_S = 0.5
 """[s] How long people wait for a robot in their way. Our choice."""
 _AVOID_S = 6.0

@@ -19,7 +19,7 @@ _SPACING_M = 0.6
 _FRONT_SPACING = 0.6
 """[ratio] Spots in front of furniture that opens are closer together by this factor. Our choice."""
 _RING_M = (0.6, 0.75, 0.9, 1.0, 1.14)
-"""[m] Radii of the rings of spots around an object. Our choice: up to an arm's length."""
+"""[m] Radii of the rings of spots around an object. Our choice."""
 _DIRECTIONS = 20
 """[count] Spots on each ring. Our choice."""
 _UNKNOWN_SIZE_M = 0.5

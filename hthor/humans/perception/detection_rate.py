@@ -16,7 +16,7 @@ from hthor.humans.population.parameters import Parameters
 from hthor.types import Pose, Vec3
 
 _USUAL_M = 0.1
-"""[m] Size of an object of unknown kind. Our choice: what a hand holds."""
+"""[m] Size of an object of unknown kind. Our choice."""
 
 
 def detection_rate(traits: Parameters, angle: float, ecc: float, share: float = 1.0, beside: int = 0) -> float:

@@ -13,11 +13,11 @@ from msgspec import Struct
 from hthor.humans.core.trial_context import HumanContext
 
 _PER_OCTAVE = 4
-"""[1/octave] Cells of visual angle into which glimpses are added up. Our choice, for small logs."""
+"""[1/octave] Cells of visual angle into which glimpses are added up. Our choice."""
 _ECC_RAD = 0.1
-"""[rad] Width of a cell of eccentricity. Our choice, for small logs."""
+"""[rad] Width of a cell of eccentricity. Our choice."""
 _SHARE = 0.2
-"""[share] Width of a cell of the visible share. Our choice, for small logs."""
+"""[share] Width of a cell of the visible share. Our choice."""
 _DIGITS = 4
 """[digits] Decimals of the means in the journal. Our choice."""
 

@@ -1,1 +1,1 @@
-"""Distributions over people: parameters, priors, populations and their files."""
+"""Participants' parameters: priors, populations, kinds, their files. Begin with `population` and `resolve`."""

@@ -9,8 +9,12 @@ from msgspec.structs import fields
 from hthor.errors import UnknownName
 from hthor.humans.population.parameters import Parameters
 
-_LEAST, _MOST = 1e-6, 1e6
-
+_LEAST = 1e-6
+"""[unit] Least value of a parameter that must be above zero, in its own unit. Our choice."""
+_MOST = 1e6
+"""[unit] Greatest value of a parameter, in its own unit. Our choice."""
+_MOST_LOGIT = 50.0
+"""[logit] Greatest size of a logit. Our choice."""
 _POSITIVE = (
     *("v_pace", "stop_every", "omega", "k_map", "k_read", "lam0", "a50", "ecc_sd", "focus", "lam_furniture"),
     *("d_furniture", "tau_mem", "tau_seen", "t_dwell", "t_manip", "t_notice", "t_read", "n0", "tau_s", "n_learn"),
@@ -19,7 +23,6 @@ _POSITIVE = (
 _SHARES = ("w_prior", "spare", "dest_factor", "tour_forget", "p_fail", "p_slip", "p_ignore", "mu0")
 _SIGNALS = ("s_offered", "s_failed")
 _LOGITS = ("a0", "a_trust", "a_gain", "a_load", "a_again")
-_MOST_LOGIT = 50.0
 
 
 def parameter_range(name: str) -> tuple[float, float]:

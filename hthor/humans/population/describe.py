@@ -15,7 +15,7 @@ from hthor.humans.population.population import Population, Validity
 from hthor.humans.population.resolve import ParticipantSource
 
 QUANTILES = (0.05, 0.5, 0.95)
-"""Of all quantiles that are told."""
+"""[probability] Quantiles of every described distribution. Our choice: median and 90 % interval."""
 
 
 class ParameterDescription(Struct, frozen=True, kw_only=True):

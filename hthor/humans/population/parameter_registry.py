@@ -14,9 +14,8 @@ from hthor.humans.population.distributions import Beta, HalfNormal, LogNormal, L
 from hthor.humans.population.parameters import Parameters
 
 PROXY_VERSION = 1
-"""Version of the proxy's mind: raised when a person with the same numbers would behave otherwise than before.
-
-Populations fitted to another version are no longer known to fit."""
+"""[version] Of the proxy: raised when a participant with the same parameters would behave differently, so that
+populations fitted to another version are not known to fit. Our choice."""
 
 Grade = Literal["A", "A-", "B", "B-", "C", "own"]
 """A: identified by the published numbers (A-: weakly); B: by logs of sessions (B-: weakly); C: by the literature only;

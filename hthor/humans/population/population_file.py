@@ -30,7 +30,7 @@ CALIBRATED_POPULATION = "study"
 _STEMS = {CALIBRATED_POPULATION: "paper"}
 """Files of populations that are called otherwise than their files, whose bytes and hashes stay; both words are read."""
 _ROUNDING = 1e-6
-"""How far from 1 a file's weights may add up."""
+"""[weight] Largest error of the sum of a file's weights, which is 1. Our choice."""
 _DAMAGED = (
     "it was changed or cut off after it was written; restore both files, or make them again with 'hthor calibrate'"
 )

@@ -7,9 +7,10 @@ from hthor.humans.population import parameter_registry
 from hthor.humans.population.population import Population, Validity
 
 DRAWS = 512
-"""Enough that the 5 % and 95 % quantiles of every column are the prior's to 1/1024 of its probability."""
+"""[count] Draws of the population from the priors. Our choice: quantiles are exact to 1/1024 of the probability."""
 _ROOT = seeds.derive(0, "literature")
-_DIGITS = 12  # of every value: less than what libraries' special functions may differ by
+_DIGITS = 12
+"""[digits] Of every value. Our choice: special functions of libraries may differ in later ones."""
 _NOTES = (
     "Every parameter is drawn from its prior: these people agree with the literature, and were fitted to no data.",
 )

@@ -13,7 +13,7 @@ from hthor.humans.population.parameter_registry import PARAMETERS
 from hthor.humans.population.parameters import Parameters
 
 _LEAST_SHARE = 1e-3
-"""A share is kept so far from 0 and 1, where its logit has no value."""
+"""[share] Shares are kept so far from 0 and 1, where their logit has no value. Our choice."""
 
 
 class RandomEffect(Protocol):

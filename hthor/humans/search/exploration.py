@@ -24,7 +24,7 @@ _GAZE_WIDTH_RAD = 1.0
 _GAZE_SLACK = 0.3
 """[gazes] A piece may be wider than its gazes take in by this share of one. Our choice."""
 _TABLE_M = 1.3
-"""[m] Open furniture lower than this is looked at on top, anything higher in the middle. Our choice: below the eyes."""
+"""[m] Open furniture lower than this is looked at on top, anything higher in the middle. Our choice."""
 _PART_SHARE = 0.6
 """[ratio] Share of t_dwell for each part of a piece that is looked at part by part. Our choice."""
 _PAUSE_S = 0.3

@@ -22,7 +22,7 @@ DOORWAY_S = 2.0
 SETTLE_S = 1.0
 """[s] Expected time to stop and turn at a place that is searched, besides the look at it. Our choice."""
 _STALE_TICKS = 100
-"""[ticks] After so long people work out again where to stand at a place: the map has grown. Our choice: ten seconds."""
+"""[ticks] After so long people work out again where to stand at a place. Our choice: ten seconds."""
 _FRESH_TICKS = 50
 """[ticks] So long the options of the last choice are taken for those of now. Our choice: five seconds."""
 

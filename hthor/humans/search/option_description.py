@@ -14,13 +14,13 @@ from hthor.humans.search.option import Option
 from hthor.types import HUMAN, Event
 
 MAX_RECORDED = 12
-"""[count] Options of one choice kept in the journal: the chosen one and a random sample. Our choice, for small logs."""
+"""[count] Options of one choice kept in the journal: the chosen one and a random sample. Our choice."""
 FEATURES = ("knowledge", "uniform", "metres", "exposure", "closed", "is_door")
 """What the journal holds of each option, see `hthor.humans.core.policy.OptionDescription`; the last two are 0 or 1."""
 _GLANCED = 0.5
 """[exposure] From here a place is described as "glanced at". Our choice."""
 _SEARCHED = 2.0
-"""[exposure] From here a place is described as "already searched". Our choice: as e_skip."""
+"""[exposure] From here a place is described as "already searched". Our choice."""
 _HERE_M = 1.0
 """[m] Anything nearer is described as "right here". Our choice."""
 
