@@ -1,4 +1,4 @@
-"""Which values each parameter can have at all."""
+"""The range of each parameter."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _POSITIVE = (
     *("v_pace", "stop_every", "omega", "k_map", "k_read", "lam0", "a50", "ecc_sd", "focus", "lam_furniture"),
     *("d_furniture", "tau_mem", "tau_seen", "t_dwell", "t_manip", "t_notice", "t_read", "n0", "tau_s", "n_learn"),
 )
-"""Divided by, or changed on their logarithm."""
+"""Parameters that are divided by, or changed on their logarithm."""
 _SHARES = ("w_prior", "spare", "dest_factor", "tour_forget", "p_fail", "p_slip", "p_ignore", "mu0")
 _SIGNALS = ("s_offered", "s_failed")
 _LOGITS = ("a0", "a_trust", "a_gain", "a_load", "a_again")
@@ -46,7 +46,7 @@ def parameter_names() -> tuple[str, ...]:
 
 
 def range_problem(name: str, value: float) -> str:
-    """What is wrong with a value, empty when nothing is."""
+    """What is wrong with a value, empty if nothing is."""
     low, high = parameter_range(name)
     if math.isfinite(value) and low <= value <= high:
         return ""
@@ -54,6 +54,6 @@ def range_problem(name: str, value: float) -> str:
 
 
 def clamp(name: str, value: float) -> float:
-    """The value itself, or the nearest that is possible."""
+    """The value itself, or the nearest in the range."""
     low, high = parameter_range(name)
     return min(high, max(low, value))

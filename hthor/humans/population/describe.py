@@ -1,4 +1,4 @@
-"""What there is to tell of people: their parameters, where these come from and how they differ; prints nothing."""
+"""A population described: parameters, where they come from, and how participants differ."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ QUANTILES = (0.05, 0.5, 0.95)
 
 
 class ParameterDescription(Struct, frozen=True, kw_only=True):
-    """One free parameter of people.
+    """One free parameter.
 
     Attributes:
         mean: over the population's draws, after the kind's changes; ``quantiles``, ``prior_quantiles`` at `QUANTILES`.
-        person_sd: standard deviation between people [of the logarithm, the logit or the number: ``scale``], mean draw.
-        says: whether the data tell anything of it.
+        person_sd: standard deviation between participants on the ``scale``, for the mean draw.
+        says: whether the data determine it.
     """
 
     name: str
@@ -44,7 +44,7 @@ class ParameterDescription(Struct, frozen=True, kw_only=True):
 
 
 class ParameterChange(Struct, frozen=True, kw_only=True):
-    """What a kind of people makes of one parameter; ``before`` and ``after`` are means over the draws."""
+    """How a kind changes one parameter; ``before`` and ``after`` are means over the draws."""
 
     parameter: str
     verb: str
@@ -55,7 +55,7 @@ class ParameterChange(Struct, frozen=True, kw_only=True):
 
 
 class PopulationDescription(Struct, frozen=True, kw_only=True):
-    """People in a document."""
+    """Everything about the participants of one word of `--humans`."""
 
     name: str
     purpose: str
@@ -80,8 +80,8 @@ class PopulationDescription(Struct, frozen=True, kw_only=True):
 
 
 def describe_population(found: ParticipantSource) -> PopulationDescription:
-    """Everything about these people."""
-    whom = _turned(found)
+    """Everything about the participants of this source."""
+    population = _changed_population(found)
     return PopulationDescription(
         name=found.name,
         purpose=found.purpose,
@@ -89,25 +89,25 @@ def describe_population(found: ParticipantSource) -> PopulationDescription:
         model=found.model,
         kind=found.kind.name if found.kind else "",
         reason=found.kind.reason if found.kind else "",
-        changes=_changes(found, whom),
-        population=population_file.population_name(whom.name),
+        changes=_changes(found, population),
+        population=population_file.population_name(population.name),
         population_sha256=found.population.sha256,
-        draws=len(whom.draws),
-        effective_draws=round(whom.ess, 1),
-        traits=_traits(whom),
-        fixed=whom.fixed,
-        statistics=whom.statistics,
-        design_effects=whom.design_effects,
-        figures=whom.figures,
-        notes=whom.notes,
-        validity=whom.validity,
-        seed=whom.seed,
-        command=whom.command,
+        draws=len(population.draws),
+        effective_draws=round(population.ess, 1),
+        traits=_parameters(population),
+        fixed=population.fixed,
+        statistics=population.statistics,
+        design_effects=population.design_effects,
+        figures=population.figures,
+        notes=population.notes,
+        validity=population.validity,
+        seed=population.seed,
+        command=population.command,
     )
 
 
 def sample_participants(found: ParticipantSource, count: int, seed: int) -> list[dict[str, Any]]:
-    """The first participants of the study with this seed: their number and all their parameters."""
+    """The first participants of the study with this seed, with all their parameters."""
     return [
         {"participant": number, **msgspec.structs.asdict(found.participant(seed, number).traits)}
         for number in range(count)
@@ -115,12 +115,12 @@ def sample_participants(found: ParticipantSource, count: int, seed: int) -> list
 
 
 def varying_parameters(found: ParticipantSource) -> list[str]:
-    """The parameters in which people differ, in order."""
+    """The parameters in which participants differ, in order."""
     return [spec.name for spec in found.population.specs if spec.effect]
 
 
-def _turned(found: ParticipantSource) -> Population:
-    """The population after what the kind changes, draw by draw."""
+def _changed_population(found: ParticipantSource) -> Population:
+    """The population after the kind's changes, draw by draw."""
     if found.kind is None:
         return found.population
     rows = [found.kind.change(found.population.parameters(row)) for row in range(len(found.population.draws))]
@@ -147,8 +147,8 @@ def _changes(found: ParticipantSource, after: Population) -> tuple[ParameterChan
     )
 
 
-def _traits(whom: Population) -> tuple[ParameterDescription, ...]:
-    mean, quantiles = whom.mean(), whom.quantiles(QUANTILES)
+def _parameters(population: Population) -> tuple[ParameterDescription, ...]:
+    mean, quantiles = population.mean(), population.quantiles(QUANTILES)
     return tuple(
         ParameterDescription(
             name=spec.name,
@@ -166,5 +166,5 @@ def _traits(whom: Population) -> tuple[ParameterDescription, ...]:
             says=spec.word,
             source=spec.source,
         )
-        for column, spec in enumerate(whom.specs)
+        for column, spec in enumerate(population.specs)
     )

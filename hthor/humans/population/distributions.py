@@ -1,4 +1,4 @@
-"""What is believed of a number before any data: distributions as data."""
+"""Prior distributions as data."""
 
 from __future__ import annotations
 

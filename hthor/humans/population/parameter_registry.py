@@ -1,13 +1,14 @@
-"""What every parameter of the proxy is: unit, prior, source, and what data could identify it."""
+"""Every free parameter of the proxy: unit, prior, source, and which data could identify it."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from msgspec import Struct
+from numpy.typing import ArrayLike, NDArray
 
 from hthor.errors import UnknownName
 from hthor.humans.population.distributions import Beta, HalfNormal, LogNormal, LogUniform, Normal, Prior, Uniform
@@ -17,22 +18,24 @@ PROXY_VERSION = 1
 """[version] Of the proxy: raised when a participant with the same parameters would behave differently, so that
 populations fitted to another version are not known to fit. Our choice."""
 
+Floats = NDArray[np.float64]
+
 Grade = Literal["A", "A-", "B", "B-", "C", "own"]
 """A: identified by the published numbers (A-: weakly); B: by logs of sessions (B-: weakly); C: by the literature only;
-own: a choice of ours that no data at hand speaks to."""
+own: our choice, without data."""
 
 
 class Parameter(Struct, frozen=True, kw_only=True):
     """One parameter.
 
     Attributes:
-        name: as in `hthor.humans.population.parameters`, where its unit and meaning stand too.
+        name: as in `hthor.humans.population.parameters`.
         prior: None for a number that is fixed at its default.
-        effect: how far a person may be from the population's mean, times ``sigma``; 0 when everybody is alike.
-        scale: whether that effect adds to the logarithm, to the logit or to the number itself.
-        fitted: whether calibration on the published results moves it. The others are drawn from their priors.
+        effect: spread between participants in units of ``sigma``; 0 for none.
+        scale: whether the effect is added to the logarithm, the logit or the number itself.
+        fitted: whether calibration on the published results moves it; others are drawn from their priors.
         grade: what could identify it.
-        source: where its prior comes from.
+        source: of its prior.
     """
 
     name: str
@@ -179,7 +182,7 @@ PARAMETERS: tuple[Parameter, ...] = (
     _free("sigma", "", Uniform(0.05, 0.5), "B", "how much people differ", "our choice"),
     _free("learn", "", Uniform(0.0, 0.4), "B", "gain by practice", "10 to 30 % over ten trials"),
 )
-"""Those that are not fixed, in the order of a population's columns."""
+"""In the order of a population's columns."""
 
 
 def free_parameter_names() -> tuple[str, ...]:
@@ -209,22 +212,17 @@ def parameters_at(point: tuple[float, ...] | list[float]) -> Parameters:
     return Parameters(**values)
 
 
-def to_unit(population: Parameters) -> tuple[float, ...]:
-    """The quantile of each free parameter in its prior."""
-    return tuple(p.prior.cdf(getattr(population, p.name)) for p in PARAMETERS if p.prior is not None)
-
-
-def from_quantiles(points: Any) -> Any:
+def from_quantiles(points: ArrayLike) -> Floats:
     """Populations at points of the unit cube, in physical units: (N, P) to (N, P), see `from_unit`."""
     return _by_column(points, [p.prior.quantile for p in PARAMETERS if p.prior is not None])
 
 
-def to_quantiles(values: Any) -> Any:
+def to_quantiles(values: ArrayLike) -> Floats:
     """Quantiles of populations in their priors: the inverse of `physical`."""
     return _by_column(values, [p.prior.cdf for p in PARAMETERS if p.prior is not None])
 
 
-def _by_column(table: Any, functions: list[Callable[[float], float]]) -> Any:
+def _by_column(table: ArrayLike, functions: list[Callable[[float], float]]) -> Floats:
     held = np.asarray(table, dtype=np.float64)
     if held.ndim != 2 or held.shape[1] != len(functions):
         raise ValueError(f"a table with {len(functions)} columns is expected, got the shape {held.shape}")

@@ -1,7 +1,7 @@
-"""A population: weighted draws of what people are on average, and how far they differ.
+"""A population: weighted draws of participants' mean parameters, and how far participants differ.
 
-The draws say what is not known of the mean, the random effects how people differ from it. A participant is one draw,
-picked by weight, and the random effects upon it, both by name: whoever the robots are, they meet the same people.
+The draws express what is not known about the mean, the random effects how participants differ from it. A participant is
+one draw, picked by weight, plus random effects, both by name: all robots meet the same participants.
 """
 
 from __future__ import annotations
@@ -37,10 +37,9 @@ _EARLIEST = (1980, 1, 1, 0, 0, 0)
 
 
 class PopulationColumn(Struct, frozen=True, kw_only=True):
-    """One column of a population: what `hthor.humans.population.parameter_registry.Parameter` says of it, and what the
-    data told.
+    """One column of a population: its entry in the registry, and how far the data determine it (``contraction``).
 
-    ``effect`` times the draw's ``sigma`` is the standard deviation between people, on the ``scale``.
+    ``effect`` times the draw's ``sigma`` is the standard deviation between participants, on the ``scale``.
     """
 
     name: str
@@ -57,18 +56,19 @@ class PopulationColumn(Struct, frozen=True, kw_only=True):
 
     @property
     def word(self) -> str:
-        """Whether the data say anything of it."""
+        """Whether the data determine it."""
         if self.contraction >= IDENTIFIED_FROM:
             return "identified"
         return "weakly identified" if self.contraction >= WEAKLY_IDENTIFIED_FROM else "not identified"
 
 
 class Validity(Struct, frozen=True, kw_only=True):
-    """What a population was fitted to and with: elsewhere it is not known to fit. Empty where it was fitted to nothing.
+    """What a population was fitted to and with; elsewhere it is not known to fit. Empty if it was fitted to nothing.
 
     Attributes:
-        simulation: `hthor.rules.SIMULATION`; ``mind``: `hthor.humans.population.parameter_registry.PROXY_VERSION`.
-        settings: what was set by hand and bears on the fit: the robot's name, speed, ranges and detector.
+        simulation: `hthor.rules.SIMULATION`.
+        mind: `hthor.humans.population.parameter_registry.PROXY_VERSION`.
+        settings: settings that influence the fit: the robot's name, speed, ranges and detector.
     """
 
     suite: str = ""
@@ -85,21 +85,21 @@ class Population(Struct, frozen=True, kw_only=True, eq=False, dict=True):
     """Weighted draws of population means.
 
     Attributes:
-        specs: one a column of ``draws``.
+        specs: one for each column of ``draws``.
         draws: (D, P) float64, in the units of ``specs``.
         log_weight: (D,) float64, natural logarithms of weights that add up to 1.
-        fixed: the values of the parameters that are no column.
+        fixed: values of the parameters that are no column.
         statistics: what it was fitted to; ``design_effects``: variance of those over that of independent trials.
         figures: further numbers about the fit, such as effective draws or coverage.
-        notes: what whoever uses it should know, a sentence each.
-        missing: parameters that this version has and the file does not know; they are at their defaults.
+        notes: cautions for its users, a sentence each.
+        missing: parameters of this version that the file does not have; they are at their defaults.
     """
 
     name: str
     purpose: str
     specs: tuple[PopulationColumn, ...]
-    draws: Any
-    log_weight: Any
+    draws: Floats
+    log_weight: Floats
     fixed: dict[str, float]
     seed: int
     command: str
@@ -130,13 +130,13 @@ class Population(Struct, frozen=True, kw_only=True, eq=False, dict=True):
         notes: Sequence[str] = (),
         validity: Validity | None = None,
     ) -> Population:
-        """A new population; units, priors, effects, grades and sources are the registry's of now.
+        """A new population with the current registry's units, priors, effects, grades and sources.
 
         Args:
-            draws: (D, P) in physical units, a column a name.
+            draws: (D, P) in physical units, one column for each name.
             log_weight: (D,), up to a constant; None when all draws count the same.
             names: the columns, by default every free parameter.
-            fixed: where the other parameters stand, by default their defaults.
+            fixed: values of the other parameters, by default their defaults.
 
         Raises:
             ValueError: when shapes do not fit, a value is out of its parameter's range, or no weight is left.
@@ -171,13 +171,13 @@ class Population(Struct, frozen=True, kw_only=True, eq=False, dict=True):
         return tuple(spec.name for spec in self.specs)
 
     @cached_property
-    def weights(self) -> Any:
+    def weights(self) -> Floats:
         """(D,), adding up to 1."""
         return np.exp(self.log_weight)
 
     @property
     def ess(self) -> float:
-        """How many draws of equal weight these are worth."""
+        """Effective number of draws."""
         return float(1.0 / (self.weights**2).sum())
 
     @cached_property
@@ -187,7 +187,7 @@ class Population(Struct, frozen=True, kw_only=True, eq=False, dict=True):
 
     @cached_property
     def sha256(self) -> str:
-        """Hash of all that makes the people, and of nothing that only tells of them."""
+        """Hash of everything that decides how participants behave, and of no description."""
         return jsonio.sha256(
             {
                 "arrays": hashlib.sha256(self.arrays).hexdigest(),
@@ -197,7 +197,7 @@ class Population(Struct, frozen=True, kw_only=True, eq=False, dict=True):
         )
 
     def parameters(self, row: int) -> Parameters:
-        """The means of a population, as draw number ``row`` has them."""
+        """The means in draw number ``row``."""
         return Parameters(**self.fixed, **dict(zip(self.names, self.draws[row].tolist(), strict=True)))
 
     def pick(self, seed: int, index: int) -> int:
@@ -208,10 +208,10 @@ class Population(Struct, frozen=True, kw_only=True, eq=False, dict=True):
     def draw_traits(
         self, seed: int, index: int, change: Callable[[Parameters], Parameters] | None = None
     ) -> Parameters:
-        """Participant ``index`` of the study with this seed: their draw, and their random effects upon it.
+        """Parameters of participant ``index`` of the study with this seed: a draw plus random effects.
 
         Args:
-            change: what becomes of the draw before that, for people of a kind of their own.
+            change: applied to the draw first, for a kind of people.
         """
         mean = self.parameters(self.pick(seed, index))
         return random_effects.add_random_effects(
@@ -222,7 +222,7 @@ class Population(Struct, frozen=True, kw_only=True, eq=False, dict=True):
         """The weighted mean of the draws."""
         return Parameters(**self.fixed, **dict(zip(self.names, (self.weights @ self.draws).tolist(), strict=True)))
 
-    def quantiles(self, levels: Sequence[float] = (0.05, 0.5, 0.95)) -> Any:
+    def quantiles(self, levels: Sequence[float] = (0.05, 0.5, 0.95)) -> Floats:
         """Weighted quantiles of every column, (levels, P)."""
         columns = []
         for values in self.draws.T:
@@ -252,8 +252,8 @@ def _pack(names: tuple[str, ...], draws: Floats, log_weight: Floats) -> bytes:
     return file.getvalue()
 
 
-def array_problem(names: Sequence[str], draws: Any, log_weight: Any) -> tuple[str, str] | None:
-    """What is wrong with a population's arrays: the field and the problem; None when nothing is."""
+def array_problem(names: Sequence[str], draws: Floats, log_weight: Floats) -> tuple[str, str] | None:
+    """What is wrong with a population's arrays: the field and the problem; None if nothing is."""
     if draws.ndim != 2 or draws.shape[1] != len(names) or not len(draws):
         return "draws", f"the shape is {draws.shape}; expected one row or more of {len(names)} columns"
     if log_weight.shape != (len(draws),):
@@ -267,7 +267,7 @@ def array_problem(names: Sequence[str], draws: Any, log_weight: Any) -> tuple[st
     return None
 
 
-def _spec(name: str, values: Any, log_weight: Any) -> PopulationColumn:
+def _spec(name: str, values: Floats, log_weight: Floats) -> PopulationColumn:
     known = parameter_registry.parameter(name)
     if known.prior is None:
         raise ValueError(f"names: '{name}' has no prior, so it cannot be a column")

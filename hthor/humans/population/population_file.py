@@ -1,6 +1,6 @@
-"""Populations in files: NAME.npz has the numbers, NAME.json beside it says what they are; draws nobody.
+"""Populations in files: NAME.npz has the draws, NAME.json beside it describes them.
 
-Both are the same bytes for the same population: the archive is stored as it is, with no hour of its making.
+Equal populations give equal bytes.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ from hthor.humans.population.population import Population, PopulationColumn, Val
 SCHEMA = "hthor.population/1"
 FOLDER = Path(__file__).parents[1] / "populations"
 PRIOR_POPULATION = "literature"
-"""The population that is no file: it is drawn from the priors of now."""
+"""The population without a file: drawn from the current priors."""
 CALIBRATED_POPULATION = "study"
-"""The population that is calibrated to the published user study."""
+"""The population calibrated to the published user study."""
 _STEMS = {CALIBRATED_POPULATION: "paper"}
-"""Files of populations that are called otherwise than their files, whose bytes and hashes stay; both words are read."""
+"""Populations whose file has another name, so that its bytes and hashes stay; both names are accepted."""
 _ROUNDING = 1e-6
 """[weight] Largest error of the sum of a file's weights, which is 1. Our choice."""
 _DAMAGED = (
@@ -37,7 +37,7 @@ _DAMAGED = (
 
 
 class Arrays(Struct, frozen=True, kw_only=True):
-    """The NPZ file that belongs to a JSON file."""
+    """The NPZ file of a JSON file."""
 
     draws: int
     effective: float
@@ -63,21 +63,21 @@ class Document(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 def names() -> tuple[str, ...]:
-    """The populations that come with hthor."""
+    """The populations that ship with hthor."""
     return tuple(sorted({PRIOR_POPULATION, *(population_name(path.stem) for path in FOLDER.glob("*.json"))}))
 
 
 def population_name(name: str) -> str:
-    """What a population of this name, or of this file's stem, is called."""
+    """The name of the population with this name or file stem."""
     return next((word for word, stem in _STEMS.items() if stem == name), name)
 
 
 def load_population(name_or_path: str | Path) -> Population:
-    """A population by name, or from its files, of which either is named; the other lies beside it.
+    """A population by name, or by the path of either of its two files.
 
     Raises:
         UnknownName: when no population has that name.
-        PeopleError: when a file is missing, damaged or not a population's, or a value is out of its range.
+        PopulationError: when a file is missing, damaged or not a population's, or a value is out of its range.
     """
     word = population_name(str(name_or_path))
     if word in names():
@@ -89,7 +89,7 @@ def load_population(name_or_path: str | Path) -> Population:
 
 
 def save_population(population: Population, path: Path) -> Path:
-    """Write PATH.npz and PATH.json; the JSON last, as it is what names the other by its hash."""
+    """Write PATH.npz and then PATH.json, which names the other by its hash; returns the JSON's path."""
     path = path.with_suffix("") if path.suffix in (".npz", ".json") else path
     data = population.arrays
     document = Document(
@@ -168,7 +168,7 @@ def _document(path: Path) -> Document:
 
 
 def _arrays(path: Path, document: Document) -> tuple[Any, Any]:
-    """Draws and weights out of the NPZ file that the document names by its hash."""
+    """Draws and weights from the NPZ file that the document names by its hash."""
     data = _bytes(path, "a population has two files, NAME.npz and NAME.json, side by side")
     if (digest := _sha256(data)) != document.arrays.sha256:
         there = document.arrays.sha256[:10]

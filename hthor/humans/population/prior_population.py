@@ -1,4 +1,4 @@
-"""People as the literature alone would have them: drawn from the priors."""
+"""The population by the literature alone: drawn from the priors."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def make_prior_population() -> Population:
         draws,
         purpose="people drawn from the priors, fitted to nothing",
         seed=0,
-        command="hthor.humans.population.prior_population.population()",
+        command="hthor.humans.population.prior_population.make_prior_population()",
         notes=_NOTES,
         validity=Validity(),
     )

@@ -1,4 +1,4 @@
-"""How people differ from their population's mean, and how practice changes them."""
+"""How participants differ from their population's mean, and how practice changes them."""
 
 from __future__ import annotations
 
@@ -17,9 +17,7 @@ _LEAST_SHARE = 1e-3
 
 
 class RandomEffect(Protocol):
-    """How far people are from their population's mean in one parameter: see
-    `hthor.humans.population.parameter_registry.Parameter`.
-    """
+    """Spread between participants in one parameter, as in `hthor.humans.population.parameter_registry.Parameter`."""
 
     @property
     def name(self) -> str: ...
@@ -30,7 +28,7 @@ class RandomEffect(Protocol):
 
 
 def add_random_effects(population: Parameters, root: int, effects: Iterable[RandomEffect] = PARAMETERS) -> Parameters:
-    """The population's parameters with the random effects of the person whose chances have this ``root``."""
+    """The population's parameters with the random effects of the participant with this ``root``."""
     own: dict[str, float] = {}
     for parameter in effects:
         if parameter.effect:
@@ -40,10 +38,10 @@ def add_random_effects(population: Parameters, root: int, effects: Iterable[Rand
 
 
 def with_practice(traits: Parameters, index: int) -> Parameters:
-    """The same person in their trial number ``index``, from 0: brisker with practice.
+    """The same participant in trial number ``index``, from 0: faster with practice.
 
-    What is new to people is the stick, the controllers and the search: pace, handling and dwelling get quicker. They
-    have turned their heads and read all their lives, so turning and reading stay as they are.
+    The stick, the controllers and the search are new to people, so pace, handling and dwelling get quicker; turning and
+    reading are not, and stay.
     """
     lift = 1.0 + traits.learn * (1.0 - math.exp(-index / traits.n_learn))
     return msgspec.structs.replace(

@@ -1,8 +1,8 @@
-"""Whom a trial's person comes from: a human model and the population that it draws people of, found by name.
+"""What a word of `--humans` stands for: a human model and the population that its participants are drawn from.
 
-A word for people is the name of a population ("study"), of a kind of people ("cautious"), of a human model ("greedy"),
-or the path of a file that holds one (pop.npz, my_kind.json, my_human.py). A model that is made from something has that
-after a colon ("replay:runs/demo"). ``WORD@POPULATION`` puts a kind or a model on another population than the default.
+A word is the name of a population ("study"), of a kind ("cautious"), of a human model ("greedy"), or the path of a file
+that holds one (pop.npz, my_kind.json, my_human.py). A model with a source has it after a colon ("replay:runs/demo").
+``WORD@POPULATION`` uses a kind or a model with another population than the default.
 """
 
 from __future__ import annotations
@@ -15,28 +15,29 @@ from msgspec import Struct
 
 from hthor import documents, jsonio, plugins
 from hthor.errors import PopulationError, UnknownName
+from hthor.humans.model import HumanModel
 from hthor.humans.population import kinds, population_file
 from hthor.humans.population.kinds import PopulationKind
 from hthor.humans.population.participant import Participant
 from hthor.humans.population.population import Population
 
 PROXY = "proxy"
-"""The human model that populations are of; as a word for people, that model with the default population."""
+"""The human model that populations are fitted to; as a word of `--humans`, with the default population."""
 _SORT = "human model"
 _HINT = "Or give a path: pop.npz of a population, my_kind.json of a kind of people, my_human.py of a human model."
 
 
 class ParticipantSource(Struct, frozen=True, kw_only=True, eq=False):
-    """People of one sort.
+    """Where the participants of a run come from: a human model and a population.
 
     Attributes:
-        name: what to call them; it has no folders in it.
-        word: finds them again, in any process and from any folder.
-        purpose: what they are, in a few words.
+        name: for tables and files; has no folders in it.
+        word: finds it again, in any process and from any folder.
+        purpose: a few words about it.
         model: the human model's name, or the path of its file.
-        source: what that model is made from in place of a population, such as the log that is replayed; mostly empty.
-        kind: what is changed in the population, None for nothing.
-        sha256: hash of all that makes them but hthor's own code.
+        source: what the model is made from instead of a population, such as a log to replay; mostly empty.
+        kind: changes to the population, None for none.
+        sha256: hash of everything that decides how participants behave, except hthor's own code.
     """
 
     name: str
@@ -49,23 +50,24 @@ class ParticipantSource(Struct, frozen=True, kw_only=True, eq=False):
     sha256: str
 
     def participant(self, seed: int, participant: int) -> Participant:
-        """Participant number ``participant`` of the study with this seed; the robots have no part in who that is.
+        """Participant number ``participant`` of the study with this seed, whichever robots they meet.
 
-        A model whose class says ``alike = True`` knows no differences between people: everybody is the mean.
+        Models whose class says ``alike = True`` get the population's mean.
         """
         if self.model != PROXY and getattr(plugins.load(_SORT, self.model), "alike", False):
             return Participant(seed=seed, number=participant, traits=self.population.mean())
         change = self.kind.change if self.kind is not None else None
         return Participant(seed=seed, number=participant, traits=self.population.draw_traits(seed, participant, change))
 
-    def make_model(self, seed: int, participant: int) -> Any:
-        """The human model of that person, before their first trial."""
-        model, who = plugins.load(_SORT, self.model), self.participant(seed, participant)
-        return model(who, source=self.source) if self.source else model(who)
+    def make_model(self, seed: int, participant: int) -> HumanModel:
+        """The human model of that participant, before the first trial."""
+        model, person = plugins.load(_SORT, self.model), self.participant(seed, participant)
+        made: HumanModel = model(person, source=self.source) if self.source else model(person)
+        return made
 
 
 def default_population() -> str:
-    """The population that people are of where none is named."""
+    """The population where none is named."""
     return (
         population_file.CALIBRATED_POPULATION
         if population_file.CALIBRATED_POPULATION in population_file.names()
@@ -74,16 +76,16 @@ def default_population() -> str:
 
 
 def human_names() -> tuple[str, ...]:
-    """Every word that stands for people without being a path: populations, kinds, models."""
+    """Every word of `--humans` that is not a path: populations, kinds, models."""
     return (*population_file.names(), *kinds.names(), *plugins.names(_SORT))
 
 
 def resolve_humans(word: str) -> ParticipantSource:
-    """The people that a word stands for.
+    """What a word of `--humans` stands for.
 
     Raises:
-        UnknownName: when there are none.
-        PeopleError: when a file of people cannot be used.
+        UnknownName: when nothing has that name.
+        PopulationError: when a file of a population or kind cannot be used.
         HthorError: when a human model's file does not load.
     """
     word = "@".join(map(population_file.population_name, word.split("@")))
@@ -140,7 +142,7 @@ def _people(
 
 
 def _named(word: str, digest: str) -> str:
-    """What to call these people: a file that is called like people of ours goes by its hash too, as it is not them."""
+    """A name for tables; the file of a user that has a name of ours gets a part of its hash too."""
     name = _plain(word)
     own = word in human_names() or not word.endswith((".npz", ".json", ".py"))
     return name if own or name not in human_names() else f"{name}-{digest[:6]}"
@@ -153,7 +155,7 @@ def _purpose(left: str, model: str, population: Population, kind: PopulationKind
 
 
 def _ingredients(model: str, source: str) -> Any:
-    """What a human model is made from besides its file and its person, as it says itself; see `hthor.humans.model`."""
+    """What else decides how a model behaves, by its own `ingredients`; see `hthor.humans.model`."""
     if model == PROXY:
         return {}
     plugins.load(_SORT, model)
@@ -167,7 +169,7 @@ def _parts(word: str, left: str) -> tuple[str, ...]:
 
 
 def _plain(word: str) -> str:
-    """A name that can be part of a file's name: "pop" for dir/pop.npz, "replay-demo" for replay:runs/demo."""
+    """A name fit for file names: "pop" for dir/pop.npz, "replay-demo" for replay:runs/demo."""
     model, colon, source = word.partition(":")
     stem = (
         Path(word).stem
@@ -180,7 +182,7 @@ def _plain(word: str) -> str:
 
 
 def _anywhere(word: str) -> str:
-    """The same word with a path that holds in every folder."""
+    """The same word with an absolute path."""
     if word.endswith((".npz", ".json", ".py")):
         return str(Path(word).resolve())
     model, colon, source = word.partition(":")
@@ -188,5 +190,5 @@ def _anywhere(word: str) -> str:
 
 
 def _schema(word: str) -> str:
-    """The schema that a JSON file names, empty for anything else."""
+    """The schema named by a JSON file, empty for anything else."""
     return documents.schema_of(Path(word)) if word.endswith(".json") else ""

@@ -1,7 +1,7 @@
-"""Kinds of people: a population with some parameters changed, one JSON file each; draws nobody.
+"""Kinds of people: a population with some parameters changed, one JSON file each.
 
-A new file here is a new kind; a path to a file of the same form works as well. What is changed is the population's
-mean, draw by draw: the random effects between people come on top as before.
+A new file here is a new kind; a path to such a file works as well. The population's mean is changed, draw by draw; the
+random effects between participants are added as before.
 """
 
 from __future__ import annotations
@@ -24,10 +24,7 @@ Verb = Literal["add", "times", "set"]
 
 
 class ParameterEdit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What becomes of one parameter: ``value`` is added to it, multiplies it, or takes its place.
-
-    Where that would leave the parameter's range, the range's end is taken.
-    """
+    """A change of one parameter: ``value`` is added to it, multiplies it, or replaces it, within the range."""
 
     parameter: str
     verb: Verb
@@ -44,7 +41,7 @@ class PopulationKind(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     """A kind of people.
 
     Attributes:
-        base: the population that is changed; empty for the default one.
+        base: the population to change; empty for the default one.
         reason: why such people are worth testing robots with.
     """
 
@@ -56,7 +53,7 @@ class PopulationKind(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
     base: str = ""
 
     def change(self, population: Parameters) -> Parameters:
-        """A population's parameters, as people of this kind have them."""
+        """A population's parameters after the changes."""
         new = population
         for change in self.changes:
             value = change.apply(getattr(new, change.parameter))
@@ -65,12 +62,12 @@ class PopulationKind(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tr
 
     @property
     def essence(self) -> list[tuple[str, str, float]]:
-        """What makes these people, without the words about it."""
+        """The changes without their reasons, for the hash."""
         return [(change.parameter, change.verb, change.value) for change in self.changes]
 
 
 def names() -> tuple[str, ...]:
-    """The kinds that come with hthor."""
+    """The kinds that ship with hthor."""
     return tuple(sorted(path.stem for path in FOLDER.glob("*.json")))
 
 
@@ -79,7 +76,7 @@ def load(name_or_path: str | Path) -> PopulationKind:
 
     Raises:
         UnknownName: when there is none of that name.
-        PeopleError: when the file cannot be read, or changes what there is not.
+        PopulationError: when the file cannot be read, or changes an unknown parameter.
     """
     word = str(name_or_path)
     if word in names():
