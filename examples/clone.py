@@ -1,10 +1,10 @@
-"""Learns the head of `cloned_person.py` from the logs of runs, and says how well it does on people it never saw.
+"""Learn the policy of `cloned_person.py` from the logs of runs, and test it on participants held out.
 
     hthor eval --agent frontier --agent oracle --suite paper --humans literature --participants 24 --out runs/clone
     python examples/clone.py runs/clone/frontier runs/clone/oracle
 
 Every decision of a log stands in its journal: a "choice" with what each option was like, an "offer" with what spoke for
-and against it. Every fourth person is held out: all their trials, whatever robots they met. The weights are those of a
+and against it. Every fourth participant is held out, with all their trials. The weights are those of a
 conditional logit and a logit, with a small penalty on their squares, found by Newton's method.
 """
 
@@ -28,7 +28,7 @@ from hthor.humans.population.random_effects import with_practice
 from hthor.humans.search.option_choice import DOORWAY_S, SETTLE_S
 from hthor.types import TrialSpec
 
-EVERY = 4  # each so manieth person is held out
+EVERY = 4  # one participant in so many is held out
 PENALTY = 0.01
 STEPS = 50
 
@@ -187,7 +187,7 @@ def learn_from(runs: Sequence[Path]) -> dict[str, Any]:
     }
 
 
-def told(found: dict[str, Any]) -> list[str]:
+def report(found: dict[str, Any]) -> list[str]:
     """How well the weights did, as a table in Markdown."""
     learnt, held = found["learnt_from"], found["held_out"]
     rows = [
@@ -208,7 +208,7 @@ def told(found: dict[str, Any]) -> list[str]:
 
 
 def main() -> None:
-    """Learn, write, tell."""
+    """Learn, write, report."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("runs", nargs="+", type=Path, help="folders of runs, or their trials.jsonl")
     parser.add_argument("--out", type=Path, default=clone.WEIGHTS, help="where to write the weights")
@@ -219,7 +219,7 @@ def main() -> None:
         sys.stderr.write(f"error: {error}\n")
         sys.exit(error.exit_code)
     jsonio.write(given.out, jsonio.pretty(found))
-    sys.stdout.write("\n".join(told(found)) + "\n")
+    sys.stdout.write("\n".join(report(found)) + "\n")
     sys.stdout.write(f"{given.out}\n")
 
 

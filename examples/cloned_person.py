@@ -1,10 +1,10 @@
-"""A person whose decisions were learnt from logs: what to search next, what to say to messages.
+"""A human whose decisions were learnt from logs: what to search next, what to answer to messages.
 
     hthor eval --agent frontier --suite paper --humans examples/cloned_person.py
 
 Two logits with a handful of weights each, in cloned_person.json beside this file; `examples/clone.py` learns them from
-runs. The rest of the person (eyes, memory, legs, hands, reading times) is the proxy's. Everybody has the same head, so
-what differs between people's ways of deciding is lost.
+runs. Eyes, memory, legs, hands and reading times are the proxy's. All participants have the same policy, so differences
+between their ways of deciding are lost.
 """
 
 import math
@@ -27,20 +27,20 @@ LEAST = 0.001  # a share of belief below which it makes no difference
 
 
 class Model(proxy.Model):
-    """The proxy with a head that was cloned."""
+    """The proxy with a cloned policy."""
 
-    def __init__(self, person: Participant, state: Mapping[str, Any] | None = None) -> None:
-        super().__init__(person, state)
+    def __init__(self, participant: Participant, state: Mapping[str, Any] | None = None) -> None:
+        super().__init__(participant, state)
         self._weights = load()
 
     def begin(self, briefing: Briefing) -> None:
-        """A trial begins, with luck of its own."""
+        """Start a trial with random numbers of its own."""
         self.policy = Clone(self._weights, seeds.derive(self.participant.trial_root(self.trials), "clone"))
         super().begin(briefing)
 
 
 class Clone:
-    """Decides by the weights; chance is drawn by name, so that a message shifts no luck but its own."""
+    """Decides by the weights; random numbers are drawn by name, so that a message changes no others."""
 
     def __init__(self, weights: Mapping[str, Any], root: int) -> None:
         self.weights, self.root = weights, root
@@ -57,7 +57,7 @@ class Clone:
 
     def answer(self, offer: Offer) -> Answer:
         """A logit of confirming; what is not confirmed is left alone as often as in the logs."""
-        chance = logistic(dot(self.weights["answer"], reasons(told(offer))))
+        chance = logistic(dot(self.weights["answer"], reasons(as_recorded(offer))))
         if seeds.draw(self.root, "confirm", offer.number) < chance:
             return "confirm"
         return "ignore" if seeds.draw(self.root, "ignore", offer.number) < self.weights["ignored"] else "decline"
@@ -82,7 +82,7 @@ def features(option: Sequence[float]) -> list[float]:
     ]
 
 
-def told(offer: Offer) -> dict[str, Any]:
+def as_recorded(offer: Offer) -> dict[str, Any]:
     """An offer as the journal's "offer" has it."""
     return {name: getattr(offer, name) for name in ("trust", "useful", "gain", "load", "again")}
 
@@ -110,11 +110,11 @@ def load(path: Path = WEIGHTS) -> dict[str, Any]:
     except OSError:
         raise HthorError(f"{path} is not there. Learn it from runs: python examples/clone.py RUN ...") from None
     if found.get("schema") != SCHEMA:
-        raise HthorError(f"{path} is of schema {found.get('schema')}, not {SCHEMA}. Learn it anew: examples/clone.py.")
+        raise HthorError(f"{path} is of schema {found.get('schema')}, not {SCHEMA}. Learn it again: examples/clone.py.")
     return found
 
 
 def ingredients(source: str = "") -> dict[str, Any]:  # noqa: ARG001  there is none
-    """What decides how these people behave, besides this file and hthor itself: the weights."""
+    """What else decides how this model behaves: the weights."""
     weights = load()
     return {"weights_sha256": jsonio.sha256({name: weights[name] for name in ("choice", "answer", "ignored")})}

@@ -498,7 +498,7 @@ def test_what_the_journal_has_and_what_a_policy_is_told_are_the_same_numbers():
     offers = [event.data for event in model.journal if event.kind == "offer"]
     assert len(offers) == len(policy.offers) == 1
     assert cloned_person.reasons(offers[0]) == pytest.approx(
-        cloned_person.reasons(cloned_person.told(policy.offers[0])), abs=0.01
+        cloned_person.reasons(cloned_person.as_recorded(policy.offers[0])), abs=0.01
     )
 
 
@@ -535,6 +535,6 @@ def test_the_human_models_in_the_handbook_play(root):
 
 
 def test_the_handbook_has_the_clone_s_own_figures(root):
-    rows = clone.told(cloned_person.load())
+    rows = clone.report(cloned_person.load())
     text = (root / "docs/people.md").read_text(encoding="utf-8")
     assert "\n".join(rows) in text

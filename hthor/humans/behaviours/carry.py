@@ -52,7 +52,7 @@ class JointCarrying:
         self._search = OptionChoice(human, memory, self.walker, "room")
 
     def carry(self, subgoal: Subgoal) -> Behaviour:
-        """Take hold, and bring the load where it belongs together with whoever takes the other end.
+        """Take hold, and bring the load where it belongs together with another carrier.
 
         Anybody may lead; the participant does when nobody has moved for a while.
         """

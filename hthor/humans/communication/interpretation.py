@@ -48,11 +48,11 @@ class AdviceTracker:
 
     def interpret(self, message: Message) -> Advice | None:
         """What a message can still be of use for, None for nothing."""
-        held = self.subgoals.all.get(self.human.now.holding)
+        in_hand = self.subgoals.all.get(self.human.now.holding)
         name = message.object
-        names_home = held is not None and self._names_destination(held, name)
+        names_home = in_hand is not None and self._names_destination(in_hand, name)
         if self.human.now.holding and (not self.subgoals.many or names_home):
-            if held is None or not names_home or self.subgoals.knows_destination(held):
+            if in_hand is None or not names_home or self.subgoals.knows_destination(in_hand):
                 return None
             return Advice(number=message.id, position=message.position, request="bring")
         subgoal = self._meant_subgoal(name, message.position)

@@ -84,8 +84,8 @@ def answer_by_rule(question: str) -> str:
 
 
 def _metres(text: str) -> int:
-    found = re.search(r"(\d+) m away", text)
-    return int(found[1]) if found else 0
+    match = re.search(r"(\d+) m away", text)
+    return int(match[1]) if match else 0
 
 
 class Endpoint:
@@ -125,9 +125,9 @@ class Endpoint:
             with urllib.request.urlopen(request, timeout=_TIMEOUT_S) as reply:
                 return _text(reply.read())
         except urllib.error.HTTPError as error:
-            said = error.read(_SHOWN).decode("utf-8", "replace")
+            text = error.read(_SHOWN).decode("utf-8", "replace")
             error.close()
-            raise self._failed(f"HTTP {error.code}: {said}") from None
+            raise self._failed(f"HTTP {error.code}: {text}") from None
         except (OSError, ValueError) as error:  # Unreadable is a ValueError
             raise self._failed(str(error)) from None
 

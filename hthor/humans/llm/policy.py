@@ -52,26 +52,26 @@ class LanguageModelPolicy:
     def choose(self, situation: Situation) -> int:
         """The option that the model names; the nearest if its answers cannot be read."""
         question = prompts.choice_question(self._who, situation)
-        found = self._ask(question, lambda reply: prompts.read_choice(reply, situation))
+        result = self._ask(question, lambda reply: prompts.read_choice(reply, situation))
         options = situation.options
-        return min(range(len(options)), key=lambda k: (options[k].metres, k)) if found is None else found
+        return min(range(len(options)), key=lambda k: (options[k].metres, k)) if result is None else result
 
     def answer(self, offer: Offer) -> Answer:
         """The model's answer; "ignore" if its answers cannot be read."""
-        found: Answer | None = self._ask(prompts.offer_question(self._who, offer), prompts.read_answer)
-        return found or "ignore"
+        result: Answer | None = self._ask(prompts.offer_question(self._who, offer), prompts.read_answer)
+        return result or "ignore"
 
     def _ask(self, question: str, read: Callable[[str], _T | None]) -> _T | None:
         self.questions += 1
         reply = self._answers.answer(question, self._backend, _MAX_CHARACTERS)
-        found = read(reply)
-        if found is None:
+        result = read(reply)
+        if result is None:
             reply = self._answers.answer(
                 prompts.repeated_question(question, reply, _MAX_CHARACTERS), self._backend, _MAX_CHARACTERS
             )
-            found = read(reply)
-        self.fallbacks += found is None
-        return found
+            result = read(reply)
+        self.fallbacks += result is None
+        return result
 
 
 def temperature(participant: Participant) -> float:

@@ -52,13 +52,13 @@ def choice_question(who: str, situation: Situation) -> str:
         if situation.aim == "target"
         else "You do not know yet where to bring it."
     )
-    held = f" You are holding: {situation.holding}." if situation.holding else ""
+    holding = f" You are holding: {situation.holding}." if situation.holding else ""
     return "\n".join(
         [
             _SCENE,
             who,
             f"Your task: {situation.instruction[:_TEXT_MAX]}",
-            f"{looked_for}{held} {situation.left:.0f} seconds are left.",
+            f"{looked_for}{holding} {situation.left:.0f} seconds are left.",
             "What do you do next?",
             *options,
             _rule(situation),

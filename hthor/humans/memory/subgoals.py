@@ -42,7 +42,7 @@ class Subgoal(Struct, kw_only=True):
 
     @property
     def by_room(self) -> bool:
-        """Whether it belongs in a room, on whatever there."""
+        """Whether it belongs in a room, anywhere there."""
         return self.job.relation == "at" and bool(self.job.destinations)
 
 

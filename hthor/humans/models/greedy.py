@@ -1,6 +1,6 @@
 """A human without doubts, mistakes or chance: the nearest unvisited option next, and every message is believed.
 
-With `hthor.humans.models.random` it brackets what real people may do: a robot that cannot help this human helps nobody.
+With `hthor.humans.models.random` it brackets what real people may do: a robot that does not help it is of no use.
 It has the mean body of its population, and differs from the proxy in that it
 
 - notices what it looks for at once and for certain within `SIGHT_M`, never beyond, and furniture and doorways at once

@@ -79,19 +79,19 @@ class PopulationDescription(Struct, frozen=True, kw_only=True):
     command: str
 
 
-def describe_population(found: ParticipantSource) -> PopulationDescription:
+def describe_population(source: ParticipantSource) -> PopulationDescription:
     """Everything about the participants of this source."""
-    population = _changed_population(found)
+    population = _changed_population(source)
     return PopulationDescription(
-        name=found.name,
-        purpose=found.purpose,
-        sha256=found.sha256,
-        model=found.model,
-        kind=found.kind.name if found.kind else "",
-        reason=found.kind.reason if found.kind else "",
-        changes=_changes(found, population),
+        name=source.name,
+        purpose=source.purpose,
+        sha256=source.sha256,
+        model=source.model,
+        kind=source.kind.name if source.kind else "",
+        reason=source.kind.reason if source.kind else "",
+        changes=_changes(source, population),
         population=population_file.population_name(population.name),
-        population_sha256=found.population.sha256,
+        population_sha256=source.population.sha256,
         draws=len(population.draws),
         effective_draws=round(population.ess, 1),
         traits=_parameters(population),
@@ -106,34 +106,34 @@ def describe_population(found: ParticipantSource) -> PopulationDescription:
     )
 
 
-def sample_participants(found: ParticipantSource, count: int, seed: int) -> list[dict[str, Any]]:
+def sample_participants(source: ParticipantSource, count: int, seed: int) -> list[dict[str, Any]]:
     """The first participants of the study with this seed, with all their parameters."""
     return [
-        {"participant": number, **msgspec.structs.asdict(found.participant(seed, number).traits)}
+        {"participant": number, **msgspec.structs.asdict(source.participant(seed, number).traits)}
         for number in range(count)
     ]
 
 
-def varying_parameters(found: ParticipantSource) -> list[str]:
+def varying_parameters(source: ParticipantSource) -> list[str]:
     """The parameters in which participants differ, in order."""
-    return [spec.name for spec in found.population.specs if spec.effect]
+    return [spec.name for spec in source.population.specs if spec.effect]
 
 
-def _changed_population(found: ParticipantSource) -> Population:
+def _changed_population(source: ParticipantSource) -> Population:
     """The population after the kind's changes, draw by draw."""
-    if found.kind is None:
-        return found.population
-    rows = [found.kind.change(found.population.parameters(row)) for row in range(len(found.population.draws))]
-    names = found.population.names
+    if source.kind is None:
+        return source.population
+    rows = [source.kind.change(source.population.parameters(row)) for row in range(len(source.population.draws))]
+    names = source.population.names
     draws = [[getattr(row, name) for name in names] for row in rows]
-    fixed = {name: getattr(rows[0], name) for name in found.population.fixed}
-    return msgspec.structs.replace(found.population, draws=np.array(draws), fixed=fixed)
+    fixed = {name: getattr(rows[0], name) for name in source.population.fixed}
+    return msgspec.structs.replace(source.population, draws=np.array(draws), fixed=fixed)
 
 
-def _changes(found: ParticipantSource, after: Population) -> tuple[ParameterChange, ...]:
-    if found.kind is None:
+def _changes(source: ParticipantSource, after: Population) -> tuple[ParameterChange, ...]:
+    if source.kind is None:
         return ()
-    before, now = found.population.mean(), after.mean()
+    before, now = source.population.mean(), after.mean()
     return tuple(
         ParameterChange(
             parameter=change.parameter,
@@ -143,7 +143,7 @@ def _changes(found: ParticipantSource, after: Population) -> tuple[ParameterChan
             after=getattr(now, change.parameter),
             reason=change.reason,
         )
-        for change in found.kind.changes
+        for change in source.kind.changes
     )
 
 

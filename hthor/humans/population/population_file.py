@@ -137,8 +137,8 @@ def _read(path: Path) -> Population:
     for name, value in document.fixed.items():
         if problem := bounds.range_problem(name, value):
             raise PopulationError(str(path), f"fixed.{name}", problem)
-    if found := array_problem(columns, draws, log_weight):
-        raise PopulationError(str(numbers), *found)
+    if bad := array_problem(columns, draws, log_weight):
+        raise PopulationError(str(numbers), *bad)
     with np.errstate(over="ignore"):
         total = float(np.exp(log_weight).sum())
     if abs(total - 1.0) > _ROUNDING:
@@ -175,18 +175,18 @@ def _arrays(path: Path, document: Document) -> tuple[Any, Any]:
         raise PopulationError(str(path), "$", f"it hashes to {digest[:10]}, the JSON file says {there}: {_DAMAGED}")
     try:
         with np.load(io.BytesIO(data), allow_pickle=False) as archive:
-            held = {name: archive[name] for name in ("names", "draws", "log_weight")}
+            arrays = {name: archive[name] for name in ("names", "draws", "log_weight")}
     except KeyError as error:
         raise PopulationError(str(path), str(error).strip("'\"").split(" ")[0], f"is missing; {_DAMAGED}") from None
     except (ValueError, EOFError, OSError, zipfile.BadZipFile) as error:
         raise PopulationError(str(path), "$", f"is no NPZ archive: {error}; {_DAMAGED}") from None
     columns = [spec.name for spec in document.parameters]
-    if (there := held["names"].tolist()) != columns:
-        raise PopulationError(str(path), "names", f"are {there}, the JSON file lists {columns}")
+    if (names := arrays["names"].tolist()) != columns:
+        raise PopulationError(str(path), "names", f"are {names}, the JSON file lists {columns}")
     for name in ("draws", "log_weight"):
-        if held[name].dtype != np.dtype("<f8"):
-            raise PopulationError(str(path), name, f"has the type {held[name].dtype}, expected float64")
-    return held["draws"], held["log_weight"]
+        if arrays[name].dtype != np.dtype("<f8"):
+            raise PopulationError(str(path), name, f"has the type {arrays[name].dtype}, expected float64")
+    return arrays["draws"], arrays["log_weight"]
 
 
 def _bytes(path: Path, hint: str) -> bytes:
