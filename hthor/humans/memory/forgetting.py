@@ -28,7 +28,7 @@ class Forgetting:
 
     def __init__(self, human: HumanContext, objects: ObjectMemory, memory: SpatialMemory) -> None:
         self.human, self.objects, self.memory = human, objects, memory
-        self._destinations = frozenset(name for job in human.task.jobs for name in job.destinations)
+        self._destinations = frozenset(name for job in human.task.todo for name in job.destinations)
         self._tau = human.traits.tau_seen / human.tick_s
         self._every = round(_EVERY_S / human.tick_s)
         self._checked = 0

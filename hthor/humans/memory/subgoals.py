@@ -51,7 +51,7 @@ class SubgoalTracker:
 
     def __init__(self, human: HumanContext, memory: SpatialMemory, known: dict[str, KnownObject]) -> None:
         self.human, self.memory = human, memory
-        jobs = human.task.jobs
+        jobs = human.task.todo
         self.many = len(jobs) > 1 or any(job.hands > 1 for job in jobs)
         self.all = {job.target: self._subgoal(job, known[job.target]) for job in jobs}
 

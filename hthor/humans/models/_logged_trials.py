@@ -47,7 +47,7 @@ class LoggedTrial(Struct, frozen=True, kw_only=True):
         task = self.spec.task
         words = (briefing.instruction, briefing.target, briefing.relation, briefing.time_limit)
         logged = (task.instruction, task.goal.target, task.goal.relation, task.time_limit)
-        return words == logged and briefing.jobs == task.goal.todo
+        return words == logged and briefing.todo == task.goal.todo
 
     def begins_at(self, pose: Pose) -> bool:
         """Whether the participant stood here at its start."""

@@ -60,7 +60,7 @@ class Model:
         human = self._human = HumanContext(traits, self.participant.trial_root(self.trials), briefing, self.policy)
         human.listener = self.listener
         self._memory = SpatialMemory(tau=traits.tau_mem / briefing.tick_s)
-        self._objects = ObjectMemory(job.target for job in briefing.jobs)
+        self._objects = ObjectMemory(job.target for job in briefing.todo)
         self._eyes = self.eyes(human, self._objects, self._memory)
         self._subgoals = SubgoalTracker(human, self._memory, self._objects.known)
         self._advice = AdviceTracker(human, self._memory, self._subgoals)
