@@ -236,7 +236,7 @@ def test_a_change_never_leaves_the_range(name: str, verb: Any, value: float, sha
     low, high = bounds.parameter_range(name)
     start = low + (min(high, 1e3) - low) * share
     change = kinds.ParameterEdit(parameter=name, verb=verb, value=value, reason="")
-    assert bounds.range_problem(name, change.of(start)) == ""
+    assert bounds.range_problem(name, change.apply(start)) == ""
 
 
 def test_a_kind_that_is_no_good_is_named_with_its_field(files: Path):
@@ -492,7 +492,8 @@ def test_a_worker_finds_files_by_path(files: Path):
     found = resolve.resolve_humans(f"{files}/mine.py@{files}/pop.npz")
     (one,) = sessions.make_sessions(suite, agent="none", human=found, participants=1)
     code = (
-        "import sys, msgspec\nfrom hthor.eval.runner import trial_runner\nfrom hthor.types import TrialSpec\n"
+        "import sys, msgspec\nfrom hthor.eval.runner import trial_runner\n"
+        "from hthor.eval.runner.sources import Sources\nfrom hthor.types import TrialSpec\n"
         "trial = msgspec.json.decode(sys.stdin.buffer.read(), type=TrialSpec)\n"
         "found = trial_runner.TrialRunner(Sources(humans=sys.argv[1]))._population_of(trial)\n"
         "print(type(found.make_model(trial.seed, 0)).__module__, found.participant(0, 0).traits.v_pace)\n"
