@@ -488,7 +488,7 @@ def test_a_worker_finds_files_by_path(files: Path):
     """Real worker processes, started in another folder than the files lie in."""
     model = "from hthor.humans.models.proxy import Model as Proxy\nclass Model(Proxy): pass\n"
     (files / "mine.py").write_text('"""Mine."""\n' + model)
-    suite = fakes.frozen("one", 1, tasks.load_suite("smoke").tasks[:1])
+    suite = fakes.make_suite("one", 1, tasks.load_suite("smoke").tasks[:1])
     found = resolve.resolve_humans(f"{files}/mine.py@{files}/pop.npz")
     (one,) = sessions.make_sessions(suite, agent="none", human=found, participants=1)
     code = (
