@@ -1,4 +1,4 @@
-"""What a mind may do and say."""
+"""What an agent or a human model may do and say: one motion and one utterance at a time."""
 
 from __future__ import annotations
 
@@ -8,50 +8,54 @@ from hthor.types.house import Vec3
 
 
 class Move(Struct, tag="move", frozen=True, kw_only=True):
-    """Go ``forward`` and ``left`` [m] in the body's frame; the vector is at most 0.5 m long."""
+    """Walk by ``forward`` and ``left`` [m] in the body's frame, at the body's speed.
+
+    The vector is at most `rules.MOVE_MAX_M` long. The body slides along what it meets at an angle, and stops, with an
+    outcome that names the obstacle, where it cannot.
+    """
 
     forward: float
     left: float = 0.0
 
 
 class Rotate(Struct, tag="rotate", frozen=True, kw_only=True):
-    """Turn by ``yaw`` [rad], left positive, and tilt the camera by ``pitch`` [rad], up positive."""
+    """Turn by ``yaw`` [rad], left positive, at most a full turn; tilt the camera by ``pitch`` [rad], up positive."""
 
     yaw: float = 0.0
     pitch: float = 0.0
 
 
 class Pick(Struct, tag="pick", frozen=True, kw_only=True):
-    """Take the object with this id in hand."""
+    """Take the object with this id in hand: in reach, in front of the body, in sight, and not too heavy."""
 
     object: str
 
 
 class Place(Struct, tag="place", frozen=True, kw_only=True):
-    """Put what is held on or in the thing ``on``, near ``position`` [m] house frame when given."""
+    """Put what is held on or in the thing ``on`` (an id), nearest to ``position`` [m], house frame, if given."""
 
     on: str
     position: Vec3 | None = None
 
 
 class Drop(Struct, tag="drop", frozen=True, kw_only=True):
-    """Let go of what is held, here: it falls, rolls, and settles on what is below the hand."""
+    """Let go of what is held: it falls, rolls, and comes to rest on what is below the hand."""
 
 
 class Open(Struct, tag="open", frozen=True, kw_only=True):
-    """Open the thing with this id."""
+    """Open the thing or door with this id, in reach and in sight."""
 
     thing: str
 
 
 class Close(Struct, tag="close", frozen=True, kw_only=True):
-    """Close the thing with this id."""
+    """Close the thing or door with this id, in reach and in sight."""
 
     thing: str
 
 
 class Wait(Struct, tag="wait", frozen=True, kw_only=True):
-    """Stand still for ``seconds``, at least one tick."""
+    """Stand still for ``seconds``, rounded up to whole ticks, at least one; at most an hour."""
 
     seconds: float = 0.1
 
@@ -60,7 +64,10 @@ Motion = Move | Rotate | Pick | Place | Drop | Open | Close | Wait
 
 
 class Send(Struct, tag="send", frozen=True, kw_only=True):
-    """Send ``text`` with the sender's own picture, about ``object``, believed to be at ``position`` [m]."""
+    """A robot's message to the person: ``text`` and the sender's own view now.
+
+    ``object`` (an id or a kind) is what it is about, ``position`` [m], house frame, where that is believed to be.
+    """
 
     text: str
     object: str = ""
@@ -68,14 +75,14 @@ class Send(Struct, tag="send", frozen=True, kw_only=True):
 
 
 class Reply(Struct, tag="reply", frozen=True, kw_only=True):
-    """Confirm (``accept``) or decline message number ``message``."""
+    """The person's answer to message number ``message``: accept it or decline it."""
 
     message: int
     accept: bool
 
 
 class Action(Struct, frozen=True, kw_only=True):
-    """One motion and one utterance; speaking never stops walking."""
+    """One motion and at most one utterance; speaking never stops walking."""
 
     motion: Motion = Wait()
     say: Send | Reply | None = None

@@ -1,4 +1,4 @@
-"""What the name of a robot's camera stands for."""
+"""The names and sizes by which users choose a robot's camera."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ from hthor.errors import HthorError, UnknownName
 from hthor.types import CameraSpec
 
 OWN = "own"
-"""Stands for the camera that a robot's body declares."""
+"""The camera that the robot's body declares."""
 LARGEST = 4096
-"""Pixels of the longest side."""
+"""Longest side of a picture [pixels]."""
 NAMED = {
     spec.name: spec
     for spec in (

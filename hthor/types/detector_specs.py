@@ -1,4 +1,4 @@
-"""What the name of a detector stands for."""
+"""The names and rates by which users choose a robot's detector."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from hthor.errors import HthorError, UnknownName
 from hthor.types import DetectorSpec
 
 OWN = "own"
-"""Stands for the detector that a robot's body declares."""
+"""The detector that the robot's body declares."""
 IDEAL = DetectorSpec(name="ideal")
 NOISY = DetectorSpec(name="noisy", miss=0.2, false_alarm=0.05, position_sigma=0.03)
 _NAMED = {spec.name: spec for spec in (IDEAL, NOISY)}
@@ -17,9 +17,9 @@ _VALID = "own, ideal, noisy, or rates such as miss=0.2,false_alarm=0.05,position
 
 
 def parse(text: str) -> DetectorSpec:
-    """The detector of a name, "ideal" or "noisy", or of rates: "miss=0.2,false_alarm=0.05,position_sigma=0.03".
+    """The detector named "ideal" or "noisy", or described by rates: "miss=0.2,false_alarm=0.05,position_sigma=0.03".
 
-    Rates that are left out are 0. The record's name is the same text in one spelling: rates in order, zeros left out.
+    Rates that are left out are 0. The record's name is the text in canonical spelling: rates in order, zeros left out.
 
     Raises:
         HthorError: when the text is neither, or a rate is out of range.
@@ -41,7 +41,7 @@ def parse(text: str) -> DetectorSpec:
 
 
 def canonical_name(text: str) -> str:
-    """The same detector in one spelling, "own" kept as it is.
+    """The canonical spelling of a detector; "own" stays as it is.
 
     Raises:
         HthorError: as `read`.

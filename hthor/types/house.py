@@ -1,4 +1,4 @@
-"""Places and things, and the units and frames of everything."""
+"""Houses as data: rooms, walls, openings and things, with their frames and units."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ HUMAN = "human"
 
 
 class Pose(Struct, frozen=True, kw_only=True):
-    """A body's place and gaze: ``x``, ``y`` [m] house frame, ``yaw`` [rad], camera ``pitch`` [rad], up positive."""
+    """A body's position ``x``, ``y`` [m], heading ``yaw`` [rad] (house frame), and camera ``pitch`` [rad], up positive."""
 
     x: float
     y: float
@@ -73,7 +73,7 @@ class Thing(Struct, frozen=True, kw_only=True):
 
     ``centre`` [m] house frame is the middle of the bounding box, ``size`` [m] its extents along the thing's local
     x (width), y (depth) and z (height) axes. ``variant`` picks one of its kind's finishes; it changes looks only.
-    ``lift`` [m] is how much higher the house's file has it, which was laid down since (`hthor.houses.laying`).
+    ``lift`` [m] is how far it was lowered from its height in the house's file (`hthor.houses.laying`).
     """
 
     id: str
@@ -113,8 +113,8 @@ class Wall(Struct, frozen=True, kw_only=True):
 class Opening(Struct, frozen=True, kw_only=True):
     """A hole in a wall: the floor segment ``a`` to ``b`` [m] and the heights ``low`` and ``high`` [m] it spans.
 
-    A ``passable`` one is an open doorway; the closed outside door and every window are not. In an ``openable`` one
-    hangs a leaf that stands open when a trial begins; in other doorways there is none. ``asset`` is what fills it.
+    A ``passable`` one is an open doorway; the closed outside door and windows are not. An ``openable`` one has a door
+    that stands open when a trial begins; other doorways have none. ``asset`` is what fills it.
     """
 
     id: str
@@ -130,7 +130,13 @@ class Opening(Struct, frozen=True, kw_only=True):
 
 
 class HouseSpec(Struct, frozen=True, kw_only=True):
-    """A floor plan with everything in it. ``sha256`` is the hash of the file's canonical JSON."""
+    """A floor plan with everything in it.
+
+    Attributes:
+        id: its name. sha256: hash of the file's canonical JSON.
+        rooms, walls, openings, things: its contents, in the house frame [m]; ids are unique within the house.
+        height: [m] of the ceilings. start: where bodies stand unless a task says otherwise.
+    """
 
     id: str
     sha256: str

@@ -1,8 +1,9 @@
-"""Messages, and what a mind is told and perceives."""
+"""What an agent or a human model perceives and is told: messages, sensor readings, observations, briefings."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal, Protocol
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeAlias
 
 from msgspec import Struct
 
@@ -13,13 +14,27 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    Floats: TypeAlias = NDArray[np.float64]
+    RgbImage: TypeAlias = NDArray[np.uint8]
+    DepthImage: TypeAlias = NDArray[np.float32]
+    LabelImage: TypeAlias = NDArray[np.int32]
+    ImageSource: TypeAlias = Callable[[], RgbImage] | None
+    SeatSenses: TypeAlias = "Senses"
+else:  # these records cross to agents' processes: without arrays, which are sent apart, and without senses
+    Floats = RgbImage = DepthImage = LabelImage = ImageSource = SeatSenses = Any
+
 Status = Literal["sent", "shown", "confirmed", "declined", "covered"]
 
 
 class Message(Struct, frozen=True, kw_only=True):
-    """An image-text message. ``position`` [m] is where the sender believes ``object`` to be.
+    """An image-text message from a robot to the person.
 
-    ``image`` is a callable that renders the sender's own frame at the sending tick, (H, W, 3) uint8, when called.
+    Attributes:
+        id: number of the message in its trial, from 0. sender: the robot's seat. tick: when it was sent.
+        text: what it says, on one line, at most `rules.TEXT_MAX` characters.
+        object: id or kind of what it is about, empty for nothing in particular.
+        position: [m], house frame, where the sender believes ``object`` to be.
+        image: when called, renders the sender's own view at the sending tick, (H, W, 3) uint8; None without a picture.
     """
 
     id: int
@@ -28,11 +43,15 @@ class Message(Struct, frozen=True, kw_only=True):
     text: str
     object: str = ""
     position: Vec3 | None = None
-    image: Any = None
+    image: ImageSource = None
 
 
 class Receipt(Struct, frozen=True, kw_only=True):
-    """What became of the sender's last message; ``tick`` is when that status began."""
+    """The status of a robot's last message, by its number; ``tick`` is when that status began.
+
+    A message is "sent", then "shown" to the person, and ends as "confirmed" (accepted), "declined", or "covered" by a
+    newer one.
+    """
 
     message: int
     status: Status
@@ -42,9 +61,13 @@ class Receipt(Struct, frozen=True, kw_only=True):
 class Detection(Struct, frozen=True, kw_only=True):
     """One thing in view: an object, a piece of furniture, a doorway, a person or a robot.
 
-    ``position`` [m] house frame is its centre, ``distance`` [m] from the eye. ``state`` is "open" or "closed" for what
-    opens. ``support`` is the id of what an object rests on or in, where the sensor can tell. ``held_by`` is the seat
-    that has it in hand, ``bearers`` are all that hold it by a handle.
+    Attributes:
+        id: of the thing, or the seat of a person or robot. kind: its kind, such as "mug", "fridge" or a robot's name.
+        position: [m], house frame, of its centre. size: [m] along its own x, y and z. yaw: [rad] its heading.
+        distance: [m] from the eye to ``position``.
+        state: "open" or "closed" for what opens, else empty.
+        support: id of what an object rests on or in, where the sensor can tell.
+        held_by: the seat that has it in hand. bearers: all seats that hold it by a handle.
     """
 
     id: str
@@ -61,22 +84,27 @@ class Detection(Struct, frozen=True, kw_only=True):
 
 
 class Scan(Struct, frozen=True, kw_only=True):
-    """A range scan: for each of N bearings the way to the first thing that would stop this body.
+    """A range scan: for each of N bearings, the distance to the first thing that would stop this body.
 
-    ``bearings`` (N,) float64 [rad] are relative to the heading, ``ranges`` (N,) float64 [m] from the body's axis, equal
-    to ``limit`` [m] where nothing was met. ``tops`` (N,) float64 [m] are the heights of what was met, as a depth
-    camera tells a wall from a table; infinite for walls and where nothing was met. ``beyond`` (N,) float64 [m] is the
-    way to the first thing behind what was met that is too tall to be looked over, as people see walls over tables;
-    ``limit`` where there is none, and None from a sensor that does not look over things. ``origin`` is the pose it was
-    taken from.
+    Walls, furniture and shut doors stop it; people, robots and movable objects are not in the scan.
+
+    Attributes:
+        origin: the pose it was taken from.
+        bearings: (N,) float64 [rad], relative to the heading, left positive.
+        ranges: (N,) float64 [m] from the body's axis; ``limit`` where nothing was met.
+        limit: [m] the sensor's range.
+        tops: (N,) float64 [m], heights of what was met, as a depth camera tells a table from a wall; infinite for walls
+            and where nothing was met.
+        beyond: (N,) float64 [m], distance to the first thing behind that is too tall to be looked over, as people see a
+            wall over a table; ``limit`` where there is none. None from a robot's sensor, which does not look over.
     """
 
     origin: Pose
-    bearings: Any
-    ranges: Any
+    bearings: Floats
+    ranges: Floats
     limit: float
-    tops: Any = None
-    beyond: Any = None
+    tops: Floats | None = None
+    beyond: Floats | None = None
 
 
 class CameraSpec(Struct, frozen=True, kw_only=True):
@@ -92,7 +120,7 @@ class CameraSpec(Struct, frozen=True, kw_only=True):
 
 
 class Camera(Struct, frozen=True, kw_only=True):
-    """A camera as OpenCV counts: in its frame x is right, y down, z along the optical axis.
+    """A pinhole camera by OpenCV's convention: in its frame x is right, y down, z along the optical axis.
 
     ``size`` is (width, height) [pixels]. ``matrix`` (3, 3) float64 holds the intrinsics [pixels]; the centre of the
     pixel in column i and row j is at (i, j). ``pose`` (4, 4) float64 takes points [m] from the camera's frame to the
@@ -101,20 +129,20 @@ class Camera(Struct, frozen=True, kw_only=True):
     """
 
     size: tuple[int, int]
-    matrix: Any
-    pose: Any
+    matrix: Floats
+    pose: Floats
     near: float
     far: float
 
 
 class View(Struct, frozen=True, kw_only=True):
-    """One glance of a seat's camera: ``rgb`` (H, W, 3) uint8, ``depth`` (H, W) float32 [m] along the optical axis,
-    ``segmentation`` (H, W) int32, indices into the world's list of names, -1 for nothing.
+    """What a seat's camera takes at one moment: ``rgb`` (H, W, 3) uint8, ``depth`` (H, W) float32 [m] along the optical
+    axis, ``segmentation`` (H, W) int32, indices into the world's list of names, -1 for nothing.
     """
 
-    rgb: Any
-    depth: Any
-    segmentation: Any
+    rgb: RgbImage
+    depth: DepthImage
+    segmentation: LabelImage
     camera: Camera
 
 
@@ -122,7 +150,7 @@ class DetectorSpec(Struct, frozen=True, kw_only=True):
     """How a detector errs; see `hthor.world.perception.detector_noise`.
 
     ``miss`` is the chance that an object in view goes unreported, ``false_alarm`` that an object is reported where it
-    is not, each drawn anew for every glimpse, a second of time. ``position_sigma`` [m] is the standard deviation of the
+    is not, each drawn independently for every second of time. ``position_sigma`` [m] is the standard deviation of the
     reported positions of objects along each axis.
     """
 
@@ -133,8 +161,11 @@ class DetectorSpec(Struct, frozen=True, kw_only=True):
 
 
 class Sighting(Struct, frozen=True, kw_only=True):
-    """How well one object is to be seen: the ``share`` of it that is in view, 0 to 1, neither hidden nor out of the
-    field of view, and how many other small objects in view are close ``beside`` it, as the eye sees them.
+    """How visible one object is.
+
+    Attributes:
+        share: 0 to 1, the part of it that is in the field of view and not hidden.
+        beside: how many other small objects in view appear close to it, as seen from the eye.
     """
 
     share: float = 0.0
@@ -142,22 +173,53 @@ class Sighting(Struct, frozen=True, kw_only=True):
 
 
 class Senses(Protocol):
-    """What a seat perceives at this tick, worked out only when asked; raises `StaleObservation` at a later tick.
+    """A seat's sensors at one tick. Readings are computed when first asked for, then kept for the tick.
 
-    ``sighting`` of an object by its id is for human models: robots that run in a process of their own go without.
+    Every method raises `hthor.errors.StaleObservation` once the world has moved on: read inside ``act``, and keep what
+    you need of the readings. Positions are in the house frame [m]. Costs are those of one call in the profile "fast" on
+    one processor core.
     """
 
-    def detections(self) -> tuple[Detection, ...]: ...
-    def sighting(self, id: str) -> Sighting: ...
-    def scan(self) -> Scan: ...
-    def rgb(self) -> NDArray[np.uint8]: ...
-    def depth(self) -> NDArray[np.float32]: ...
-    def segmentation(self) -> NDArray[np.int32]: ...
-    def camera(self) -> Camera: ...
+    def detections(self) -> tuple[Detection, ...]:
+        """Objects, furniture, doorways, people and robots in view and in range, by id, with the detector's errors.
+
+        Costs some microseconds.
+        """
+        ...
+
+    def sighting(self, id: str) -> Sighting:
+        """How visible the object ``id`` is; a share of 0 for what is not in view or is no object.
+
+        For human models only: it is not offered to robots that run in a process of their own.
+        """
+        ...
+
+    def scan(self) -> Scan:
+        """Ranges to walls, furniture and shut doors over the horizontal field of view. Costs some microseconds."""
+        ...
+
+    def rgb(self) -> RgbImage:
+        """(H, W, 3) uint8, the seat's own camera. The first of the three pictures costs about a millisecond."""
+        ...
+
+    def depth(self) -> DepthImage:
+        """(H, W) float32 [m] along the optical axis; `Camera.far` where there is nothing."""
+        ...
+
+    def segmentation(self) -> LabelImage:
+        """(H, W) int32, indices into the world's list of names, which each episode shuffles; -1 for nothing."""
+        ...
+
+    def camera(self) -> Camera:
+        """The intrinsics and the pose of the camera that takes the three pictures."""
+        ...
 
 
 class Outcome(Struct, frozen=True, kw_only=True):
-    """How the seat's last motion ended. ``reason`` is empty when ``ok``; ``by`` names the seat or thing in the way."""
+    """How a seat's last motion ended: ``motion`` is its name, such as "move".
+
+    ``reason`` says why it failed, empty when ``ok``; ``by`` names the seat, thing or "wall" in the way.
+    """
 
     motion: str
     ok: bool
@@ -181,17 +243,23 @@ class ThingState(Struct, frozen=True, kw_only=True):
 
 
 class Observation(Struct, frozen=True, kw_only=True):
-    """What a mind is given when it is asked to act.
+    """What an agent or a human model is given when it is asked to act; see `Mind.act`.
 
-    A mind is asked when its body is free for a new motion (``idle``) and whenever its mail changes (``idle`` may then
-    be false, and only ``say`` is heeded). The pictures, the scan and the detections are worked out on first access
-    and must be read during ``act``: an observation kept for later raises `StaleObservation`.
+    Attributes:
+        tick: ticks since the trial began. pose: of the seat's body, house frame.
+        idle: whether the body is free for a new motion; otherwise only ``Action.say`` takes effect.
+        senses: the seat's sensors, which the properties below read.
+        room: id of the room that the body is in, the last one while it is between rooms.
+        holding: id of the object in hand, or held by a handle; empty for none.
+        outcome: how the last motion ended; None before any has.
+        inbox: the open message, for the person only. receipt: the status of the robot's last message.
+        truth: true states of all objects, only for agents that declare the privilege ``object_poses``.
     """
 
     tick: int
     pose: Pose
     idle: bool
-    senses: Any
+    senses: SeatSenses
     room: str = ""
     holding: str = ""
     outcome: Outcome | None = None
@@ -201,46 +269,45 @@ class Observation(Struct, frozen=True, kw_only=True):
 
     @property
     def detections(self) -> tuple[Detection, ...]:
-        found: tuple[Detection, ...] = self.senses.detections()
-        return found
+        """What the detector reports, by id; see `Senses.detections`."""
+        return self.senses.detections()
 
     @property
     def scan(self) -> Scan:
-        scan: Scan = self.senses.scan()
-        return scan
+        """The range scan; see `Scan`."""
+        return self.senses.scan()
 
     @property
-    def rgb(self) -> NDArray[np.uint8]:
+    def rgb(self) -> RgbImage:
         """(H, W, 3) uint8, the seat's own camera."""
-        image: NDArray[np.uint8] = self.senses.rgb()
-        return image
+        return self.senses.rgb()
 
     @property
-    def depth(self) -> NDArray[np.float32]:
+    def depth(self) -> DepthImage:
         """(H, W) float32 [m] along the optical axis."""
-        image: NDArray[np.float32] = self.senses.depth()
-        return image
+        return self.senses.depth()
 
     @property
-    def segmentation(self) -> NDArray[np.int32]:
-        """(H, W) int32, an index into the world's list of names, -1 for nothing."""
-        image: NDArray[np.int32] = self.senses.segmentation()
-        return image
+    def segmentation(self) -> LabelImage:
+        """(H, W) int32, indices into the world's list of names, -1 for nothing."""
+        return self.senses.segmentation()
 
     @property
     def camera(self) -> Camera:
-        """Where the seat's own camera is and how it projects: what the three pictures were taken with."""
-        camera: Camera = self.senses.camera()
-        return camera
+        """The intrinsics and the pose of the camera that takes the three pictures."""
+        return self.senses.camera()
 
 
 class Briefing(Struct, frozen=True, kw_only=True):
-    """What a mind is told before a trial.
+    """What an agent or a human model is told before a trial.
 
-    ``kind`` is the kind of task, ``jobs`` all there is to do; ``target``, ``destination`` (the kind of the thing to
-    place the target in or on, empty for a search) and ``relation`` tell the first of them. ``crew`` holds every seat's
-    body, one's own included. ``house`` is given only to a mind that declares the privilege ``house_map``;
-    ``Observation.truth`` is filled only for ``object_poses``.
+    Attributes:
+        seat: its own seat. body: its own body. teammates: all other seats. crew: every seat's body, its own included.
+        instruction: the task in words. kind: the task kind. time_limit: [s] of the trial. tick_s: [s] of one tick.
+        target, destination, relation: the first job: the object's id, the kind of thing to place it in or on (empty for
+            a search), and "find", "on", "in" or "at".
+        jobs: everything there is to do.
+        privileges: what it declared and was granted. house: the floor plan, only with the privilege ``house_map``.
     """
 
     seat: str

@@ -17,11 +17,17 @@ RELATIONS: tuple[Relation, ...] = ("find", "on", "in", "at")
 class BodySpec(Struct, frozen=True, kw_only=True):
     """What a body can do, of a robot or of the person's avatar.
 
-    ``eye`` [m] is the camera's height; ``fov`` [rad] its horizontal and vertical field of view; ``sight_range`` [m]
-    bounds what its detector reports, ``scan_range`` [m] its range scan. ``reach`` [m] is horizontal, from the body's
-    axis; ``reach_low`` and ``reach_high`` [m] bound the height of a grasp; ``strength`` [kg] what it can lift.
-    ``handling`` [s] is how long pick, place, open and close take. ``pitch_limit`` [rad] bounds the camera either way.
-    ``detector`` is how its detector errs unless a trial says otherwise, as `hthor.types.detector_specs.parse` reads it.
+    Attributes:
+        name: of a robot, that of its file. title: what people call it.
+        radius: [m] of the disc that it occupies on the floor. height: [m].
+        eye: [m] height of the camera. fov: [rad] horizontal and vertical field of view.
+        speed: [m/s] of walking. turn_rate: [rad/s] of turning and of tilting the camera.
+        sight_range: [m] to which its detector reports. scan_range: [m] of its range scan. scan_beams: how many.
+        pitch_limit: [rad] by which the camera tilts at most, up or down.
+        capabilities: "navigate", "pick" (with place and drop), "open" (with close).
+        reach: [m] horizontal, from the body's axis. reach_low, reach_high: [m] heights between which it grasps.
+        strength: [kg] that it lifts. handling: [s] that pick, place, drop, open and close take.
+        detector: how its detector errs unless a trial says otherwise, see `hthor.types.detector_specs.parse`.
     """
 
     name: str
@@ -46,13 +52,14 @@ class BodySpec(Struct, frozen=True, kw_only=True):
 
 
 class RobotSpec(BodySpec, frozen=True, kw_only=True):
-    """A robot's body, one file each in ``hthor/world/robots``."""
+    """A robot's body; one file each in ``hthor/world/robots``, see docs/robots.md."""
 
 
 class Placement(Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """Where an object starts: ``position`` [m] of its centre, and what it rests ``on`` or lies ``in``.
+    """Where an object starts.
 
-    ``near`` is the id of the thing or object that a scene prior wanted it near to, empty for one that is about
+    ``position`` [m], house frame, is its centre, ``yaw`` [rad] its heading; it rests ``relation`` ("on" or "in") the
+    thing ``support``. ``near`` is the id of what a scene prior wanted it near to, empty if the prior was about
     ``support``.
     """
 
@@ -77,10 +84,10 @@ _DEFAULTS = tuple(
 
 
 class Job(Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """One thing to be done with one object, ``target``: find it, or bring it on, in or to where it belongs.
+    """One thing to do with one object, ``target``: find it, or bring it on, in or to a destination.
 
-    ``destinations`` are the kinds or the ids of things, or the ids of rooms, any of which will do. ``place`` [m] is
-    where exactly, where that matters. ``hands`` says how many bodies it takes to carry the object.
+    ``destinations`` are kinds or ids of things, or ids of rooms; any of them will do. ``place`` [m], house frame, is
+    the exact place if that matters. ``hands`` is the number of bodies it takes to carry the object.
     """
 
     target: str
@@ -91,9 +98,9 @@ class Job(Struct, frozen=True, kw_only=True, omit_defaults=True):
 
 
 class Goal(Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """What ends a task well: find or place ``target`` (an object's id); ``destination`` is a thing's *kind*.
+    """What completes a task: find or place ``target`` (an object's id); ``destination`` is a *kind* of thing.
 
-    Where there is more to do than one thing, ``jobs`` lists all of it, and the other fields tell the first of them.
+    With several jobs, ``jobs`` lists them all and the other fields describe the first.
     """
 
     target: str
@@ -103,7 +110,7 @@ class Goal(Struct, frozen=True, kw_only=True, omit_defaults=True):
 
     @property
     def todo(self) -> tuple[Job, ...]:
-        """All there is to do, in every kind of task."""
+        """All jobs, whatever the task kind."""
         if self.jobs:
             return self.jobs
         destinations = (self.destination,) if self.destination else ()
@@ -133,7 +140,7 @@ class TaskSpec(Struct, frozen=True, kw_only=True, omit_defaults=True):
 
 
 class AgentRef(Struct, frozen=True, kw_only=True):
-    """Which mind a robot has: a name, where it was loaded from, and the hash of its code."""
+    """A robot's agent: its name, where it was loaded from, the hash of its code, and its privileges."""
 
     name: str
     source: str
@@ -142,9 +149,9 @@ class AgentRef(Struct, frozen=True, kw_only=True):
 
 
 class RobotSeat(Struct, frozen=True, kw_only=True):
-    """One robot of a trial: its body and its mind. ``detector`` as `hthor.types.detector_specs.parse` reads it.
+    """One robot of a trial: its body and its agent. ``detector`` as `hthor.types.detector_specs.parse` reads it.
 
-    ``camera`` is there only where it is not the body's own, as `hthor.types.cameras.parse` reads it.
+    ``camera`` is set only if it is not the body's own, as `hthor.types.cameras.parse` reads it.
     ``robot_sha256`` is the hash of the body's code: of the file of a user's own, of the syntax of one that ships
     with hthor.
     """
@@ -158,13 +165,14 @@ class RobotSeat(Struct, frozen=True, kw_only=True):
 
 
 class TrialSpec(Struct, frozen=True, kw_only=True):
-    """Everything that decides a trial's course; its content hash is the trial's key.
+    """Everything that determines a trial; its content hash is the trial's key.
 
-    ``assets_sha256`` is the hash of what the robots' pictures show and of what draws it, empty where no mind is known
-    to take pictures;
-    ``kind_sha256`` that of a user's own file of the task's kind, empty for a kind that ships with hthor. ``realtime``
-    is there only where robots' thinking took time of the trial, ``step_limit_s`` only where submitted agents had
-    another deadline for each action than usual [s].
+    Attributes:
+        assets_sha256: hash of what the robots' pictures show and of the code that draws it, empty where no agent is
+            known to take pictures.
+        kind_sha256: hash of a user's own file of the task kind, empty for a kind that ships with hthor.
+        realtime: set only where the robots' thinking took trial time.
+        step_limit_s: [s] set only where submitted agents had another deadline for each action than usual.
     """
 
     task: TaskSpec

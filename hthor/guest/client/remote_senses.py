@@ -93,15 +93,19 @@ class RemoteSenses:
 
 
 def _scan(data: bytes) -> Scan:
-    scan = msgspec.msgpack.decode(data, type=Scan)
-    return msgspec.structs.replace(
+    scan: Any = msgspec.msgpack.decode(data, type=Scan)
+    decoded: Scan = msgspec.structs.replace(
         scan,
         bearings=wire.decode_array(scan.bearings),
         ranges=wire.decode_array(scan.ranges),
         tops=scan.tops if scan.tops is None else wire.decode_array(scan.tops),
     )
+    return decoded
 
 
 def _camera(data: bytes) -> Camera:
-    camera = msgspec.msgpack.decode(data, type=Camera)
-    return msgspec.structs.replace(camera, matrix=wire.decode_array(camera.matrix), pose=wire.decode_array(camera.pose))
+    camera: Any = msgspec.msgpack.decode(data, type=Camera)
+    decoded: Camera = msgspec.structs.replace(
+        camera, matrix=wire.decode_array(camera.matrix), pose=wire.decode_array(camera.pose)
+    )
+    return decoded
