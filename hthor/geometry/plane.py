@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from hthor.types import Vec2, Vec3
 
@@ -73,3 +74,17 @@ def distance_to_rectangle(point: Vec2, centre: Vec2, size: Vec2, yaw: float) -> 
     """Distance [m] from a point to a turned rectangle, zero inside."""
     x, y = turn((point[0] - centre[0], point[1] - centre[1]), -yaw)
     return math.hypot(max(abs(x) - size[0] / 2, 0.0), max(abs(y) - size[1] / 2, 0.0))
+
+
+def rectangular_strips(polygon: Sequence[Vec2]) -> Iterator[tuple[float, float, float, float]]:
+    """A polygon as rectangles x0, y0, x1, y1 [m], from south to north; exact where all corners are square."""
+    xs, ys = (sorted({round(corner[axis], 4) for corner in polygon}) for axis in (0, 1))
+    for y0, y1 in itertools.pairwise(ys):
+        begin = None
+        for x0, x1 in [*itertools.pairwise(xs), (xs[-1], xs[-1])]:
+            covered = x1 > x0 and inside(((x0 + x1) / 2, (y0 + y1) / 2), polygon)
+            if covered and begin is None:
+                begin = x0
+            elif not covered and begin is not None:
+                yield (begin, y0, x0, y1)
+                begin = None

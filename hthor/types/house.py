@@ -15,7 +15,7 @@ HUMAN = "human"
 
 
 class Pose(Struct, frozen=True, kw_only=True):
-    """A body's position ``x``, ``y`` [m], heading ``yaw`` [rad] (house frame), and camera ``pitch`` [rad], up positive."""
+    """A body's ``x``, ``y`` [m] and heading ``yaw`` [rad], house frame; its camera's ``pitch`` [rad], up positive."""
 
     x: float
     y: float

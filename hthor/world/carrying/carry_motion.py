@@ -44,7 +44,7 @@ class CarryMotion:
         return (None if self._left > _EPS else Outcome(motion="move", ok=True)), ()
 
     def _stop(self, tick: int, step: Vec2) -> TickResult:
-        other = self._load.beside(self._seat)
+        other = self._load.body_in_the_way(self._seat)
         by = other or self._culprit(self._seat, step)
         outcome = Outcome(motion="move", ok=False, reason=f"{other} is in the way" if other else "blocked", by=by)
         kind = "in_way" if other else "blocked"

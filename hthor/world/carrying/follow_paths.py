@@ -1,4 +1,4 @@
-"""Ways that one goes after another by, as points: where to head for, how long they are."""
+"""Paths that a bearer or a carried thing follows, as points: where to head for, how long they are."""
 
 from __future__ import annotations
 
@@ -11,38 +11,38 @@ from hthor.types import Vec2
 from hthor.world.carrying import trailer_kernel
 
 MARGINS_M = (0.25, 0.15, 0.05)
-"""How clear of corners one goes after another: as clear as one can."""
+"""[m] clear of corners that a follower tries to stay, the largest first; our choice."""
 AHEAD_M = 0.25
-"""A point that is nearer than this is hardly ahead."""
+"""[m] A point nearer than this gives no useful direction."""
 TAUT_MARGIN_M = 0.05
-"""How clear of corners a way is pulled taut."""
+"""[m] clear of corners at which a path is pulled taut."""
 
 
-def aim_index(way: Sequence[Vec2], rows: Any) -> int:
-    """Which of the points of a way to go to straight from its first: the last that keeps clear of corners.
+def aim_index(path: Sequence[Vec2], obstacles: Any) -> int:
+    """Index of the last point of a path that can be reached in a straight line from its first, clear of corners.
 
-    As clear as it can, but a point that is hardly ahead leads nowhere.
+    The clearance is the largest of `MARGINS_M` with which there is such a point at least `AHEAD_M` away.
     """
     for margin in MARGINS_M:
-        for there in range(len(way) - 1, 0, -1):
-            if there < len(way) - 1 and math.dist(way[0], way[there]) < AHEAD_M:
+        for there in range(len(path) - 1, 0, -1):
+            if there < len(path) - 1 and math.dist(path[0], path[there]) < AHEAD_M:
                 break
-            if not trailer_kernel.is_line_blocked(*way[0], *way[there], rows, margin):
+            if not trailer_kernel.is_line_blocked(*path[0], *path[there], obstacles, margin):
                 return there
-    return next((k for k in range(1, len(way)) if math.dist(way[0], way[k]) >= AHEAD_M), len(way) - 1)
+    return next((k for k in range(1, len(path)) if math.dist(path[0], path[k]) >= AHEAD_M), len(path) - 1)
 
 
-def taut_length(way: Sequence[Vec2], rows: Any) -> float:
-    """Length [m] of the way once its bends are pulled out of it, as far as walls and furniture let."""
+def taut_length(path: Sequence[Vec2], obstacles: Any) -> float:
+    """Length [m] of the path when it is pulled taut around walls and furniture."""
     total, here = 0.0, 0
-    while here < len(way) - 1:
-        there = len(way) - 1
-        while there > here + 1 and trailer_kernel.is_line_blocked(*way[here], *way[there], rows, TAUT_MARGIN_M):
+    while here < len(path) - 1:
+        there = len(path) - 1
+        while there > here + 1 and trailer_kernel.is_line_blocked(*path[here], *path[there], obstacles, TAUT_MARGIN_M):
             there -= 1
-        total, here = total + math.dist(way[here], way[there]), there
+        total, here = total + math.dist(path[here], path[there]), there
     return total
 
 
-def path_length(way: Sequence[Vec2]) -> float:
-    """Length [m] of the way as it is."""
-    return math.fsum(math.dist(a, b) for a, b in itertools.pairwise(way))
+def path_length(path: Sequence[Vec2]) -> float:
+    """Length [m] of the path."""
+    return math.fsum(math.dist(a, b) for a, b in itertools.pairwise(path))

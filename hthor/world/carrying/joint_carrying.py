@@ -1,32 +1,31 @@
-"""Laws of carrying together: what is too heavy for one, taken by its handles and lifted by several.
+"""Rules of carrying together: what is too heavy for one body is taken by its handles and lifted by several.
 
 A thing with handles (`hthor.catalog.Kind.handles`, such as a trunk) has one at either end of its length. A body that is
-not strong enough to take it in hand takes hold of a handle instead, with the same motion:
+not strong enough to take it in hand takes hold of a handle instead, with the same action:
 
-- ``Pick(object=...)`` takes hold of the free handle that is nearest to the body. The laws of the hand hold as ever (the
-  body can pick, its hands are empty, the handle is in reach and before it, the thing in sight); weight is no objection.
-  It must not stand on the thing (what lies on the floor stops nobody from walking over it). The outcome is ok, the
-  event ``held``, and ``Observation.holding`` the thing's id.
-- By a handle, a body lifts `rules.HANDLE_STRENGTH` times its ``strength``. Once what all who hold the thing lift adds
-  up to its mass, it rises: the event ``lifted`` names its ``bearers``. Until then it lies where it lies, and whoever
-  holds it may turn, wait for another, or let go; a ``Move`` is refused and says how much is missing.
+- ``Pick(object=...)`` takes hold of the free handle nearest to the body. The usual rules hold (the body can pick, its
+  hands are empty, the handle is in reach and in front, the thing in sight), except that weight does not matter. The
+  body must not stand on the thing. The outcome is ok, the event is ``held``, ``Observation.holding`` the thing's id.
+- By a handle, a body lifts `rules.HANDLE_STRENGTH` times its ``strength``. When all bearers together lift at least its
+  mass, it rises: the event ``lifted`` names its ``bearers``. Until then it stays on the floor, and a bearer may turn,
+  wait, or let go; a ``Move`` is refused and says how much is missing.
 - While it is up, a ``Move`` of any bearer carries it along. The others are drawn along by their handle, no faster than
-  they walk and whatever else they do, so one leads and the others wait (or turn, or look about). Of several bearers
-  that move in the same tick the first in the order of the seats leads, the person before all robots. All go at
-  `rules.HANDLE_PACE` times the pace of the slowest.
-- Every body keeps to its own free floor, and the thing, as the rectangle that it is, touches no wall, no furniture, no
-  shut door and nobody else. What would tear it from a hand (farther from a handle than that body's reach) or push it
-  into something does not happen: the move ends ``blocked``, as it does for a body alone.
-- ``Drop()`` by any bearer lets go. If the rest are too weak, the thing is put down right there and all are rid of it:
-  event ``lowered``. Before it was up, only that body lets go: event ``released``. ``Place(on="floor")`` is the same;
-  on furniture it cannot be placed.
+  they walk, whatever else they do: one leads and the others wait (or turn, or look around). If several move in the same
+  tick, the first in the order of the seats leads, the person before all robots. Everyone goes at `rules.HANDLE_PACE`
+  times the speed of the slowest.
+- Every body stays on its own free floor, and the thing, as a rectangle, touches no wall, furniture, shut door or other
+  body. A step that would tear it from a hand (farther from a handle than that body's reach) or push it into something
+  is not taken: the move ends ``blocked``, as it does for a body alone.
+- ``Drop()`` by any bearer lets go. If the others are too weak, the thing is put down there and nobody holds it: event
+  ``lowered``. Before it was up, only that body lets go: event ``released``. ``Place(on="floor")`` does the same; it
+  cannot be placed on furniture.
 
-In the truth and to detectors ``held_by`` is empty while the thing lies on the floor and names who took hold of it first
-while it is up; ``bearers`` names all who hold it, up or not, in the order in which they took hold.
+In the truth and to detectors, ``bearers`` names all who hold it, in the order in which they took hold; ``held_by`` is
+empty while it is on the floor and names the first bearer while it is up.
 
-It follows like a trailer. A leader who pulls gets it round corners, one who pushes does only straight ahead; so whoever
-is to lead should take hold of the end that the way begins at (the handle nearest to where they stand is theirs), and go
-where a disc of 0.40 m would find room, as far as there is such a way.
+It follows like a trailer: a leader who pulls gets it round corners, one who pushes moves it straight ahead only. The
+body that is to lead should take the handle at the end where the route begins, and where possible use floor on which a
+disc of 0.40 m radius has room.
 """
 
 from __future__ import annotations
@@ -39,6 +38,7 @@ import numpy as np
 
 from hthor import catalog
 from hthor.geometry import plane
+from hthor.geometry.ray_casting import Floats
 from hthor.houses.space import free_space
 from hthor.types import HouseSpec, Vec3
 from hthor.world.carrying.load import LIFT_M
@@ -52,17 +52,17 @@ from hthor.world.state.objects import Objects
 from hthor.world.state.overlap_test import OverlapTest
 
 _LOWER_STEP_M = 0.01
-"""In such steps a place is sought for what is put down, from the floor up."""
+"""[m] Steps in which a free height is sought for what is put down, from the floor up."""
 _STANDING_ON_M = 0.05
-"""How far a body may stand in what lies on the floor and still take hold of it."""
+"""[m] by which a body's disc may overlap a thing on the floor that it takes hold of."""
 _CARRY_HEIGHT_M = 1.0
-"""What begins higher above the floor is in the way of nothing that is carried so."""
+"""[m] What begins higher above the floor is not in the way of a carried thing."""
 EventList = tuple[tuple[str, dict[str, Any]], ...]
-"""What happened: kinds of events with their data."""
+"""Kinds of events with their data."""
 
 
 class JointCarrying:
-    """What several bodies of one world hold by its handles."""
+    """The things that bodies of one world hold by their handles."""
 
     def __init__(
         self, house: HouseSpec, objects: Objects, doors: Doors, overlap: OverlapTest, seats: Sequence[BodyState]
@@ -70,20 +70,20 @@ class JointCarrying:
         self._house, self._objects, self._doors, self._overlap = house, objects, doors, overlap
         self._seats = tuple(seats)
         self._loads: dict[str, TrailerLoad] = {}
-        self._fixed: Any = None
+        self._fixed: Floats | None = None
 
     def reset(self) -> None:
-        """An episode begins: nobody holds anything."""
+        """Begin an episode: nobody holds anything."""
         self._loads.clear()
 
     def of(self, seat: BodyState) -> TrailerLoad | None:
-        """What ``seat`` holds by a handle, None for nothing."""
+        """What ``seat`` holds by a handle; None for nothing."""
         load = self._loads.get(seat.holding)
         return load if load is not None and seat.name in load.ends else None
 
     @staticmethod
     def takes(seat: BodyState, item: MovableObject) -> bool:
-        """Whether ``seat`` can only take the object by a handle: it is too heavy, or others hold it so."""
+        """Whether ``seat`` can take the object only by a handle: it is too heavy, or others hold it by one."""
         return catalog.kind(item.kind).handles and (item.mass > seat.spec.strength or bool(item.bearers))
 
     def refusal(self, seat: BodyState, item: MovableObject) -> str:
@@ -98,7 +98,7 @@ class JointCarrying:
         return out_of_reach(seat, f"the handle of {item.id}", self._handle(seat, item)[1])
 
     def stuck(self, seat: BodyState) -> str:
-        """Why ``seat`` cannot go anywhere because of what it holds, empty when it can."""
+        """Why ``seat`` cannot move because of what it holds; empty when it can."""
         load = self.of(seat)
         if load is None or load.up:
             return ""
@@ -106,8 +106,8 @@ class JointCarrying:
         return f"{weight}: wait until somebody helps, or let go"
 
     def hold(self, seat: BodyState, item: MovableObject) -> EventList:
-        """Take hold; the thing rises if that is enough."""
-        load = self._loads.setdefault(item.id, TrailerLoad(item, self._seats, self._rows))
+        """Take hold of the nearest free handle; the thing rises if its bearers are strong enough."""
+        load = self._loads.setdefault(item.id, TrailerLoad(item, self._seats, self._obstacles))
         load.ends[seat.name] = self._handle(seat, item)[0]
         seat.holding = item.id
         self._objects.grip(item.id, tuple(load.ends))
@@ -119,7 +119,7 @@ class JointCarrying:
         return (held, ("lifted", {"object": item.id, "bearers": list(load.ends)}))
 
     def release(self, seat: BodyState) -> EventList:
-        """Let go; what the rest cannot hold is put down."""
+        """Let go; if the other bearers are too weak, the thing is put down."""
         load = self.of(seat)
         if load is None:
             return ()
@@ -139,15 +139,15 @@ class JointCarrying:
         self._objects.grip(load.item.id, tuple(load.ends))
         return news
 
-    def _rows(self) -> Any:
-        """(N, 5) what stands in the way of such a thing now, see `hthor.world.carrying.trailer_kernel`."""
+    def _obstacles(self) -> Floats:
+        """Rectangles (N, 5) that are in the way of a carried thing now, see `hthor.world.carrying.trailer_kernel`."""
         if self._fixed is None:
             self._fixed = free_space.obstacle_rectangles(self._house, _CARRY_HEIGHT_M)
         shut = [doorways.leaf_rectangle(leaf.opening) for leaf in self._doors if leaf.opening and not leaf.open]
         return np.concatenate((self._fixed, np.array(shut))) if shut else self._fixed
 
     def _lower(self, load: TrailerLoad) -> None:
-        """Put it down where it is: on the floor, or on what lies there."""
+        """Put it down where it is, on the floor or on what lies there."""
         item, top = load.item, load.z
         low = item.size[2] / 2 + _LOWER_STEP_M / 10
         for step in range(math.ceil((top - low) / _LOWER_STEP_M)):
@@ -160,8 +160,8 @@ class JointCarrying:
         self._objects.put(item.id, load.pose(), "")
 
     def _handle(self, seat: BodyState, item: MovableObject) -> tuple[int, Vec3]:
-        """The free handle that is nearest to a body: which end, and where [m]."""
-        load = self._loads.get(item.id) or TrailerLoad(item, self._seats, self._rows)
+        """The free handle nearest to a body: which end, and its position [m]."""
+        load = self._loads.get(item.id) or TrailerLoad(item, self._seats, self._obstacles)
         here = (seat.pose.x, seat.pose.y)
         ends = [end for end in (1, -1) if end not in load.ends.values()]
         places = [(end, load.handle(end)) for end in ends]

@@ -1,4 +1,4 @@
-"""A thing that several hold by its handles: who has which end, where it is, what they can lift."""
+"""A thing held by its handles: who holds which end, where it is, and what the bearers lift together."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from hthor.world.state.body_state import BodyState
 from hthor.world.state.movable_object import MovableObject
 
 LIFT_M = 0.30
-"""How high above the floor the bottom of what is carried hangs."""
+"""[m] Height of the underside of what is carried; our choice."""
 
 
 class Load:
-    """One thing with handles, from the moment somebody takes hold of it.
+    """One thing with handles, from when the first body takes hold of it.
 
     Attributes:
         ends: seat -> +1 or -1, the end that it holds, in the order in which they took hold.
@@ -45,17 +45,17 @@ class Load:
 
     @property
     def lifted(self) -> float:
-        """What all who hold it lift together [kg]."""
+        """[kg] that its bearers lift together."""
         return math.fsum(rules.HANDLE_STRENGTH * seat.spec.strength for seat in self.bearers)
 
     @property
     def holders(self) -> str:
-        """Who holds it, and the verb."""
+        """The seats that hold it, with the verb, for messages."""
         return f"{' and '.join(self.ends)} {'lifts' if len(self.ends) == 1 else 'together lift'}"
 
     @property
     def pace(self) -> float:
-        """How fast they go with it [m/s]."""
+        """[m/s] Speed at which it is carried."""
         return rules.HANDLE_PACE * min(seat.spec.speed for seat in self.bearers)
 
     def handle(self, end: int) -> Vec3:
@@ -64,7 +64,7 @@ class Load:
         return (float(self.state[0]) + x, float(self.state[1]) + y, self.z)
 
     def pose(self) -> QPose:
-        """Where it is."""
+        """Its pose, for the engine."""
         return (float(self.state[0]), float(self.state[1]), self.z, *geoms.quaternion(float(self.state[2])))
 
     def follows(self, seat: BodyState, tick: int) -> bool:

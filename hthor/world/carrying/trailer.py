@@ -1,92 +1,106 @@
-"""A thing that is carried by its handles, its leader and those who are drawn along: one step of all.
+"""A thing that several bodies carry by its handles: one step of the leader, the thing, and the followers.
 
-The thing goes after its leader, and the others go after the thing, each on the tracks of what it follows, so that
-they come round the same corners; see `hthor.world.carrying.follow_paths`. A step is worked out first and taken only
-if all is well after it: the thing in no wall and in nobody, every arm no longer than it is.
+Seen from above, the thing is a rectangle with a handle at either end; each bearer holds one at arm's length::
+
+    leader  o----[=========]----o  follower
+            arm  handle   handle  arm
+
+Like a trailer on a drawbar, the thing has no drive of its own. Each step is solved by position-based dynamics (Müller
+et al. 2007, "Position based dynamics"): the handles are drawn towards the bearers until no arm is longer than allowed,
+and the rectangle is pushed out of walls and bodies; every correction is the smallest shift and turn of a uniform plate
+that meets it (`hthor.world.carrying.trailer_kernel`). Then the followers walk after their handles, along the path that
+the handle took, so that they come round the same corners (`hthor.world.carrying.follow_paths`). A solved step is taken
+only if it leaves the thing in no wall and no body, and no arm longer than its body's reach.
+
+All lengths, angles and counts below are our choice.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any
 
 import numpy as np
 
 from hthor import rules
 from hthor.geometry.plane import turn
+from hthor.geometry.ray_casting import Floats
 from hthor.types import Pose, Vec2
-from hthor.world.carrying import follow_paths as ways
-from hthor.world.carrying import trailer_kernel
+from hthor.world.carrying import follow_paths, trailer_kernel
 from hthor.world.carrying.load import Load
 from hthor.world.state.body_state import BodyState
 from hthor.world.state.movable_object import MovableObject
 
 ARM_M = 0.30
-"""How far from its bearer's side a handle is carried; arms stretch further only for a while."""
+"""[m] from a bearer's side to the handle it carries; an arm stretches further only for a while."""
 ELBOW_M = 0.03
-"""What stays free between a bearer and what it carries."""
+"""[m] kept free between a bearer's disc and the thing."""
 TOUCH_M = 0.002
-"""Being less deep in something than this does not count."""
+"""[m] Overlaps up to this depth are ignored: what the solver leaves of a contact."""
 _ITERATIONS = 4
-"""How often in a step the thing goes after those who hold it, and they after it."""
+"""How often in a step the thing and the followers are solved in turn."""
 _LEADER_PULL_M, _FOLLOWER_PULL_M = 0.005, 0.001
-"""How far a leader draws its handle at a time, and how far one who is drawn along holds it back."""
+"""[m] The most by which one pull moves a leader's or a follower's handle, so that the thing slides along obstacles."""
 _STEP_SHARES = (1.0, 0.5, 0.25, 0.0)
-"""Parts of a step that a leader tries; with the last the others catch up."""
+"""Shares of a step that a leader tries in turn; with the last one only the others catch up."""
 _STEP_MAX_M = 0.3
-"""Nothing goes farther in a step."""
+"""[m] Nothing goes farther in one step; obstacles beyond are left out of it."""
 _IN_WAY_GAP_M = 0.06
-"""Who is farther away than this was in nobody's way."""
+"""[m] A body farther than this from the leader or the thing is not named as being in the way."""
 _PATH_RESOLUTION_M = 1e-4
-"""Tracks are not kept finer than this."""
+"""[m] Points of a path that are closer than this are one point."""
 _STANDSTILL_M = 0.002
-"""Whoever moves less in a tick stands still."""
+"""[m] What moves less in a tick stands still."""
 _STUCK_STRETCH_M, _STEER_GAIN_M = 0.05, 0.008
-"""An arm longer by the first while the thing stands still: it is caught. Then a pull aside is worth the second."""
+"""[m] A thing that stands still while the leader's path to it is this much too long is stuck; then the pull is turned
+aside if that moves the thing by the second length."""
 _STEER_ANGLES = tuple(math.radians(angle) for angle in (30.0, -30.0, 60.0, -60.0, 90.0, -90.0))
+"""[rad] by which the pull on a stuck thing is turned aside, tried in this order."""
 _STEER_TICKS = 8
-"""What is caught is pulled aside at one of these angles [rad], for so long."""
+"""[ticks] for which the pull stays turned aside."""
 _FOLLOW_ANGLES = tuple(side * math.radians(15.0 * k) for k in range(9) for side in ((1.0, -1.0) if k else (1.0,)))
-"""Ways that somebody who is drawn along tries, off the straight one [rad]."""
+"""[rad] off the straight line that a follower tries, up to 120 degrees to either side, the smallest first."""
 
-_Step = tuple[Any, dict[str, Vec2], dict[str, tuple[Vec2, ...]]]
-"""A step of all: the thing's state, its bearers' places, and the lanes between them."""
+_Step = tuple[Floats, dict[str, Vec2], dict[str, tuple[Vec2, ...]]]
+"""A solved step: the thing's state (3,), each bearer's place, and each bearer's path from its handle."""
 
 
 class TrailerLoad(Load):
-    """A load on its way.
+    """A load that its bearers move together.
 
     Args:
-        rows: gives (N, 5) what stands in its way now, see `hthor.world.carrying.trailer_kernel`.
+        obstacles: returns the rectangles (N, 5) in its way now, see `hthor.world.carrying.trailer_kernel`.
     """
 
-    def __init__(self, item: MovableObject, seats: Sequence[BodyState], rows: Callable[[], Any]) -> None:
+    def __init__(self, item: MovableObject, seats: Sequence[BodyState], obstacles: Callable[[], Floats]) -> None:
         super().__init__(item, seats)
-        self._rows = rows
-        self._lanes: dict[str, tuple[Vec2, ...]] = {}
-        self._bend, self._bent = 0.0, 0
-        self._around = float(self.half[0]) + _STEP_MAX_M + max((seat.spec.reach for seat in seats), default=0.0)
+        self._obstacles = obstacles
+        self._paths: dict[str, tuple[Vec2, ...]] = {}
+        self._steer_angle, self._steer_left = 0.0, 0
+        self._horizon = float(self.half[0]) + _STEP_MAX_M + max((seat.spec.reach for seat in seats), default=0.0)
 
     def lead(self, leader: BodyState, dx: float, dy: float) -> bool:
-        """Let ``leader`` go by (dx, dy) [m], or by a part of it, and all that hangs on it come along.
+        """Move ``leader`` by (dx, dy) [m], or by a share of it, and the thing and the other bearers with it.
 
         Returns:
-            whether anything moved. Nothing does that would end in a wall, in somebody, or out of a bearer's reach.
+            whether anything moved. A step that would end in a wall, in a body or out of a bearer's reach is not taken.
         """
-        rows, strangers = trailer_kernel.nearby_rectangles(self.state, self._around, self._rows()), self._strangers()
-        self._bent = max(0, self._bent - 1)
-        found = self._step(leader, (dx, dy), self._bend if self._bent else 0.0, rows, strangers)
-        if found is None or (self._stir(found) < _STANDSTILL_M and self._stretched(leader, rows)):
+        obstacles, strangers = (
+            trailer_kernel.nearby_rectangles(self.state, self._horizon, self._obstacles()),
+            self._stranger_discs(),
+        )
+        self._steer_left = max(0, self._steer_left - 1)
+        step = self._step(leader, (dx, dy), self._steer_angle if self._steer_left else 0.0, obstacles, strangers)
+        if step is None or (self._displacement(step) < _STANDSTILL_M and self._is_stuck(leader, obstacles)):
             for angle in _STEER_ANGLES:
-                other = self._step(leader, (dx, dy), angle, rows, strangers)
-                if other is not None and self._stir(other) > _STEER_GAIN_M:
-                    found, self._bend, self._bent = other, angle, _STEER_TICKS
+                other = self._step(leader, (dx, dy), angle, obstacles, strangers)
+                if other is not None and self._displacement(other) > _STEER_GAIN_M:
+                    step, self._steer_angle, self._steer_left = other, angle, _STEER_TICKS
                     break
-        return found is not None and self._accept(*found, rows, leader)
+        return step is not None and self._take_step(*step, obstacles, leader)
 
-    def beside(self, leader: BodyState) -> str:
-        """The seat of a body so close to the leader, or of a stranger so close to the thing, that it is in the way."""
+    def body_in_the_way(self, leader: BodyState) -> str:
+        """The seat of a body that is too close to the leader, or of another that is too close to the thing."""
         for other in self.seats:
             apart = math.dist((leader.pose.x, leader.pose.y), (other.pose.x, other.pose.y))
             disc = np.array((other.pose.x, other.pose.y, other.spec.radius + _IN_WAY_GAP_M))
@@ -95,34 +109,34 @@ class TrailerLoad(Load):
                 return other.name
         return ""
 
-    def _step(self, leader: BodyState, by: Vec2, bend: float, rows: Any, strangers: Any) -> _Step | None:
-        """The longest part of a step after which all is well, None when there is none."""
-        before = trailer_kernel.deepest_contacts(self.state, self.half, rows, strangers)
+    def _step(self, leader: BodyState, by: Vec2, steer: float, obstacles: Floats, strangers: Floats) -> _Step | None:
+        """The largest share of a step that ends validly; None if there is none."""
+        before = trailer_kernel.deepest_contacts(self.state, self.half, obstacles, strangers)
         for share in _STEP_SHARES:
             to = (leader.pose.x + share * by[0], leader.pose.y + share * by[1])
-            if share and not self._may(leader, to):
+            if share and not self._can_go(leader, to):
                 continue
-            state, places = self._drawn(leader, to, bend, rows, strangers)
-            wall, body = trailer_kernel.deepest_contacts(state, self.half, rows, strangers)
+            state, places = self._solve(leader, to, steer, obstacles, strangers)
+            wall, body = trailer_kernel.deepest_contacts(state, self.half, obstacles, strangers)
             if wall <= max(TOUCH_M, before[0]) and body <= max(TOUCH_M, before[1]):
-                lanes = {seat.name: self._lane(seat, state, places[seat.name]) for seat in self.bearers}
-                if self._sound(state, places, lanes, rows):
-                    return state, places, lanes
+                paths = {seat.name: self._path(seat, state, places[seat.name]) for seat in self.bearers}
+                if self._is_valid(state, places, paths, obstacles):
+                    return state, places, paths
         return None
 
-    def _stir(self, found: _Step) -> float:
-        """How far the thing goes in a step [m]."""
-        (x, y, yaw), now = found[0], self.state
+    def _displacement(self, step: _Step) -> float:
+        """How far the thing moves in a step [m], its turn counted at the ends."""
+        (x, y, yaw), now = step[0], self.state
         return math.hypot(x - now[0], y - now[1]) + float(self.half[0] * abs(yaw - now[2]))
 
-    def _stretched(self, seat: BodyState, rows: Any) -> bool:
-        way = self._way(seat, self.state, (seat.pose.x, seat.pose.y))
-        return ways.taut_length(way, rows) > _arm_length(seat) + _STUCK_STRETCH_M
+    def _is_stuck(self, seat: BodyState, obstacles: Floats) -> bool:
+        way = self._path_to(seat, self.state, (seat.pose.x, seat.pose.y))
+        return follow_paths.taut_length(way, obstacles) > _arm_length(seat) + _STUCK_STRETCH_M
 
-    def _drawn(
-        self, leader: BodyState, to: Vec2, bend: float, rows: Any, strangers: Any
-    ) -> tuple[Any, dict[str, Vec2]]:
-        """Where the thing and its bearers come to be when the leader goes there."""
+    def _solve(
+        self, leader: BodyState, to: Vec2, steer: float, obstacles: Floats, strangers: Floats
+    ) -> tuple[Floats, dict[str, Vec2]]:
+        """Where the thing and its bearers end up when the leader goes to ``to``."""
         bearers, state = self.bearers, self.state
         places = {seat.name: (seat.pose.x, seat.pose.y) for seat in bearers}
         places[leader.name] = to
@@ -130,40 +144,42 @@ class TrailerLoad(Load):
         pulls = np.array([_LEADER_PULL_M if seat is leader else _FOLLOWER_PULL_M for seat in bearers])
         first = [number for number, seat in enumerate(bearers) if seat is leader]
         for _ in range(_ITERATIONS):
-            hands, ropes = self._hands(state, places, rows, leader, bend)
+            hands, ropes = self._pull_points(state, places, obstacles, leader, steer)
             discs = np.array([(*places[seat.name], seat.spec.radius + ELBOW_M) for seat in bearers])
             near = np.concatenate((strangers, discs[first]))
-            state = trailer_kernel.relax(state, self.half, ends, hands, ropes, pulls, rows, near)
+            state = trailer_kernel.relax(state, self.half, ends, hands, ropes, pulls, obstacles, near)
             for seat in bearers:
                 if seat is not leader:
-                    places[seat.name] = self._come(seat, state, places, rows)
-            hands, ropes = self._hands(state, places, rows, leader, bend)
+                    places[seat.name] = self._follow(seat, state, places, obstacles)
+            hands, ropes = self._pull_points(state, places, obstacles, leader, steer)
             discs[:, :2] = [places[seat.name] for seat in bearers]
             near = np.concatenate((strangers, discs))
-            state = trailer_kernel.relax(state, self.half, ends, hands, ropes, pulls, rows, near)
+            state = trailer_kernel.relax(state, self.half, ends, hands, ropes, pulls, obstacles, near)
         return state, places
 
-    def _hands(self, state: Any, places: dict[str, Vec2], rows: Any, leader: BodyState, bend: float) -> tuple[Any, Any]:
-        """Where each bearer draws its handle to, and what is left of its arm there: round corners on its own tracks."""
+    def _pull_points(
+        self, state: Floats, places: dict[str, Vec2], obstacles: Floats, leader: BodyState, steer: float
+    ) -> tuple[Floats, Floats]:
+        """The point that each bearer pulls its handle towards, round corners, and the arm length left there [m]."""
         hands, ropes = [], []
         for seat in self.bearers:
-            way = self._way(seat, state, places[seat.name])
-            aim = ways.aim_index(way, rows)
+            way = self._path_to(seat, state, places[seat.name])
+            aim = follow_paths.aim_index(way, obstacles)
             x, y = way[aim]
-            if bend and seat is leader:
-                dx, dy = turn((x - way[0][0], y - way[0][1]), bend)
+            if steer and seat is leader:
+                dx, dy = turn((x - way[0][0], y - way[0][1]), steer)
                 x, y = way[0][0] + dx, way[0][1] + dy
             hands.append((x, y))
-            ropes.append(max(0.0, _arm_length(seat) - ways.path_length(way[aim:])))
+            ropes.append(max(0.0, _arm_length(seat) - follow_paths.path_length(way[aim:])))
         return np.array(hands), np.array(ropes)
 
-    def _come(self, seat: BodyState, state: Any, places: dict[str, Vec2], rows: Any) -> Vec2:
-        """Where a bearer goes whose handle is drawn away from it, or pushed towards it."""
+    def _follow(self, seat: BodyState, state: Floats, places: dict[str, Vec2], obstacles: Floats) -> Vec2:
+        """Where a follower goes when its handle is drawn away from it, or the thing is pushed into it."""
         here = places[seat.name]
-        way = self._way(seat, state, here)[::-1]
-        aim = ways.aim_index(way, rows)
+        way = self._path_to(seat, state, here)[::-1]
+        aim = follow_paths.aim_index(way, obstacles)
         far = math.dist(here, way[aim])
-        spare = far + ways.path_length(way[aim:]) - _arm_length(seat)
+        spare = far + follow_paths.path_length(way[aim:]) - _arm_length(seat)
         deep, nx, ny, _, _ = trailer_kernel.disc_contact(
             state, self.half, np.array((*here, seat.spec.radius + ELBOW_M))
         )
@@ -182,26 +198,35 @@ class TrailerLoad(Load):
                 return to
         return here
 
-    def _end(self, seat: BodyState, state: Any) -> Vec2:
+    def _handle(self, seat: BodyState, state: Floats) -> Vec2:
         x, y = turn((self.ends[seat.name] * float(self.half[0]), 0.0), float(state[2]))
         return (float(state[0]) + x, float(state[1]) + y)
 
-    def _way(self, seat: BodyState, state: Any, place: Vec2) -> tuple[Vec2, ...]:
-        """From the handle to its bearer, the way that one of them went after the other."""
-        return (self._end(seat, state), *self._lanes.get(seat.name, ()), place)
+    def _path_to(self, seat: BodyState, state: Floats, place: Vec2) -> tuple[Vec2, ...]:
+        """From the handle to its bearer, along the path that one took after the other."""
+        return (self._handle(seat, state), *self._paths.get(seat.name, ()), place)
 
-    def _lane(self, seat: BodyState, state: Any, place: Vec2) -> tuple[Vec2, ...]:
-        """What lies between the handle and its bearer once both have moved."""
-        lane, now, end = self._lanes.get(seat.name, ()), (seat.pose.x, seat.pose.y), self._end(seat, self.state)
-        before = (end,) if math.dist(end, self._end(seat, state)) > _PATH_RESOLUTION_M else ()
+    def _path(self, seat: BodyState, state: Floats, place: Vec2) -> tuple[Vec2, ...]:
+        """The path between the handle and its bearer once both have moved."""
+        path, now, end = (
+            self._paths.get(seat.name, ()),
+            (seat.pose.x, seat.pose.y),
+            self._handle(seat, self.state),
+        )
+        before = (end,) if math.dist(end, self._handle(seat, state)) > _PATH_RESOLUTION_M else ()
         after = (now,) if math.dist(now, place) > _PATH_RESOLUTION_M else ()
-        return (*before, *lane, *after)
+        return (*before, *path, *after)
 
-    def _sound(self, state: Any, places: dict[str, Vec2], lanes: dict[str, tuple[Vec2, ...]], rows: Any) -> bool:
-        """Whether no arm is stretched too far, and the thing is in no bearer that it was not in before."""
+    def _is_valid(
+        self, state: Floats, places: dict[str, Vec2], paths: dict[str, tuple[Vec2, ...]], obstacles: Floats
+    ) -> bool:
+        """Whether every arm is within reach, and the thing is in no bearer more deeply than before."""
         for seat in self.bearers:
             place = places[seat.name]
-            if ways.taut_length((self._end(seat, state), *lanes[seat.name], place), rows) > seat.spec.reach:
+            if (
+                follow_paths.taut_length((self._handle(seat, state), *paths[seat.name], place), obstacles)
+                > seat.spec.reach
+            ):
                 return False
             now = np.array((seat.pose.x, seat.pose.y, seat.spec.radius))
             deep = trailer_kernel.disc_contact(state, self.half, np.array((*place, seat.spec.radius)))[0]
@@ -209,31 +234,36 @@ class TrailerLoad(Load):
                 return False
         return True
 
-    def _accept(
-        self, state: Any, places: dict[str, Vec2], lanes: dict[str, tuple[Vec2, ...]], rows: Any, leader: BodyState
+    def _take_step(
+        self,
+        state: Floats,
+        places: dict[str, Vec2],
+        paths: dict[str, tuple[Vec2, ...]],
+        obstacles: Floats,
+        leader: BodyState,
     ) -> bool:
-        """Take the step, unless nobody gets anywhere by it."""
+        """Take the step, unless hardly anything moves by it."""
         ways_gone = (math.dist(places[seat.name], (seat.pose.x, seat.pose.y)) for seat in self.bearers)
-        if max(self._stir((state, places, lanes)), *ways_gone) <= _STANDSTILL_M:
+        if max(self._displacement((state, places, paths)), *ways_gone) <= _STANDSTILL_M:
             return False
         for seat in self.bearers:
             place, pose = places[seat.name], seat.pose
-            way = (self._end(seat, state), *lanes[seat.name], place)
+            path = (self._handle(seat, state), *paths[seat.name], place)
             if seat is leader:
-                lanes[seat.name] = way[ways.aim_index(way, rows) : -1]
+                paths[seat.name] = way[follow_paths.aim_index(way, obstacles) : -1]
             else:
-                lanes[seat.name] = way[::-1][ways.aim_index(way[::-1], rows) : -1][::-1]
+                paths[seat.name] = way[::-1][follow_paths.aim_index(way[::-1], obstacles) : -1][::-1]
             if place != (pose.x, pose.y) or seat is leader:  # a new record tells the world that something has moved
                 seat.pose = Pose(x=float(place[0]), y=float(place[1]), yaw=pose.yaw, pitch=pose.pitch)
-        self.state, self._lanes = state, lanes
+        self.state, self._paths = state, paths
         return True
 
-    def _may(self, seat: BodyState, to: Vec2) -> bool:
+    def _can_go(self, seat: BodyState, to: Vec2) -> bool:
         here = (seat.pose.x, seat.pose.y)
         return seat.space.segment_free(here, to) and self._clear(seat, here, to, {})
 
     def _clear(self, seat: BodyState, here: Vec2, to: Vec2, places: dict[str, Vec2]) -> bool:
-        """Whether a step comes too close to nobody; away from those who are too close already it always may."""
+        """Whether a step comes too close to no other body; moving away from one is always allowed."""
         for other in self.seats:
             if other is not seat:
                 at = places.get(other.name, (other.pose.x, other.pose.y))
@@ -242,9 +272,9 @@ class TrailerLoad(Load):
                     return False
         return True
 
-    def _strangers(self) -> Any:
-        found = [(one.pose.x, one.pose.y, one.spec.radius) for one in self.seats if one.name not in self.ends]
-        return np.array(found).reshape(-1, 3)
+    def _stranger_discs(self) -> Floats:
+        step = [(one.pose.x, one.pose.y, one.spec.radius) for one in self.seats if one.name not in self.ends]
+        return np.array(step).reshape(-1, 3)
 
 
 def _arm_length(seat: BodyState) -> float:

@@ -1,8 +1,12 @@
-"""A rectangle drawn by its handles between obstacles, in the plane: compiled.
+"""A rectangle pulled by its handles between obstacles in the plane: position-based dynamics, compiled.
 
-A state is ``(x, y, yaw)`` [m, rad] of a rectangle with half extents ``half`` [m]. Rectangles in its way are rows
-``(x, y, half width, half depth, yaw)``, discs rows ``(x, y, radius)``. Every constraint is met in turn by the least
-shift and turn that meets it, as of a thin plate of even weight, a few times over.
+A state is ``(x, y, yaw)`` [m, rad] of a rectangle with half extents ``half`` [m]. Obstacles are rectangles, rows
+``(x, y, half width, half depth, yaw)``, and discs, rows ``(x, y, radius)``. Constraints are met one after another, a
+few times over, each by the smallest shift and turn of a thin uniform plate.
+
+For a plate of mass m and half extents a, b, the moment of inertia is m (a² + b²) / 3. A displacement of length l along
+the unit vector n, applied at arm r = p × n from the centre, is met by the impulse that shifts the centre by
+l / (1 + r² k) and turns it by r k l / (1 + r² k), with k = 3 / (a² + b²); see `_displace`.
 """
 
 from __future__ import annotations
@@ -14,13 +18,14 @@ import numba
 import numpy as np
 
 _END_SLACK_M, _TOLERANCE_M = 0.005, 1e-6
+"""[m] A line may start or end this much closer to a rectangle than its margin; errors below the second count as 0."""
 _PULL_ROUNDS, _PUSH_ROUNDS, _WALL_PASSES = 12, 6, 2
-"""How often it is drawn, then only pushed out of what it is in; how often each time it is pushed out of the walls."""
+"""Rounds of pulling and pushing it out of obstacles, then of pushing alone; passes over the walls in each round."""
 
 
 @numba.njit(cache=True)
 def _displace(state: Any, half: Any, px: float, py: float, dx: float, dy: float) -> None:
-    """Move the rectangle so that its point (px, py) goes by (dx, dy)."""
+    """Shift and turn the rectangle so that its point (px, py) moves by (dx, dy) [m]."""
     length = math.hypot(dx, dy)
     if length < 1e-12:
         return
@@ -47,7 +52,7 @@ def _within(x: float, y: float, cos: float, sin: float, a: float, b: float) -> b
 
 @numba.njit(cache=True)
 def rectangle_contact(state: Any, half: Any, row: Any) -> Any:
-    """Depth [m] to which the rectangle is in another, 0 for none; the way out of it, and where they touch."""
+    """Depth [m] of the overlap with another rectangle (0 for none), the direction out of it, and the contact point."""
     dx, dy = row[0] - state[0], row[1] - state[1]
     if math.hypot(dx, dy) > math.hypot(half[0], half[1]) + math.hypot(row[2], row[3]):
         return 0.0, 0.0, 0.0, 0.0, 0.0
@@ -86,7 +91,7 @@ def rectangle_contact(state: Any, half: Any, row: Any) -> Any:
 
 @numba.njit(cache=True)
 def disc_contact(state: Any, half: Any, disc: Any) -> Any:
-    """The same for a disc."""
+    """As `rectangle_contact`, for a disc."""
     cos, sin = math.cos(state[2]), math.sin(state[2])
     dx, dy = disc[0] - state[0], disc[1] - state[1]
     u, v = cos * dx + sin * dy, cos * dy - sin * dx
@@ -106,7 +111,7 @@ def disc_contact(state: Any, half: Any, disc: Any) -> Any:
 
 @numba.njit(cache=True)
 def deepest_contacts(state: Any, half: Any, rows: Any, discs: Any) -> Any:
-    """How deep [m] the rectangle is in the rectangles, and in the discs, at most."""
+    """The greatest depth [m] to which the rectangle overlaps the rectangles, and the discs."""
     wall, body = 0.0, 0.0
     for k in range(len(rows)):
         wall = max(wall, rectangle_contact(state, half, rows[k])[0])
@@ -117,12 +122,13 @@ def deepest_contacts(state: Any, half: Any, rows: Any, discs: Any) -> Any:
 
 @numba.njit(cache=True)
 def relax(state: Any, half: Any, ends: Any, hands: Any, ropes: Any, pulls: Any, rows: Any, discs: Any) -> Any:
-    """The rectangle's state after it was drawn to the hands and pushed out of everything.
+    """The rectangle's state after it was pulled to the hands and pushed out of all obstacles.
 
     Args:
-        ends: (N,) where the handles are [m] along its length. hands: (N, 2) [m] who draws at each. ropes: (N,) [m] how
-            far each may be from its handle. pulls: (N,) [m] how far at most each draws at a time, so that it slides
-            along what it meets rather than into it.
+        ends: (N,) positions of the handles along its length [m]. hands: (N, 2) [m] the point that each is pulled to.
+        ropes: (N,) [m] how far each hand may be from its handle. pulls: (N,) [m] the most by which each pulls at a
+            time, so that the rectangle slides along obstacles.
+        rows: (M, 5) rectangles, discs: (K, 3) discs in the way.
     """
     out = state.copy()
     for turn in range(_PULL_ROUNDS + _PUSH_ROUNDS):
@@ -156,7 +162,7 @@ def relax(state: Any, half: Any, ends: Any, hands: Any, ropes: Any, pulls: Any, 
 
 @numba.njit(cache=True)
 def nearby_rectangles(state: Any, reach: float, rows: Any) -> Any:
-    """Those of the rectangles that come nearer than ``reach`` [m] to the middle of it."""
+    """The rectangles that come nearer than ``reach`` [m] to its centre."""
     keep = np.zeros(len(rows), np.bool_)
     for k in range(len(rows)):
         cx, cy, hw, hd, yaw = rows[k]
@@ -169,9 +175,9 @@ def nearby_rectangles(state: Any, reach: float, rows: Any) -> Any:
 
 @numba.njit(cache=True)
 def is_line_blocked(ax: float, ay: float, bx: float, by: float, rows: Any, margin: float) -> bool:
-    """Whether a line between two points [m] comes nearer than ``margin`` [m] to any of the rectangles.
+    """Whether a line between two points [m] comes nearer than ``margin`` [m] to any rectangle.
 
-    Coming as near as one of its ends is does not count.
+    Coming as near as one of its own ends does not count.
     """
     for k in range(len(rows)):
         cx, cy, hw, hd, yaw = rows[k]

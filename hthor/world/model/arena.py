@@ -6,12 +6,12 @@ All of it is geoms of the world body, so that the engine has no bodies to sort t
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from typing import Any
 
 from hthor import catalog
 from hthor.geometry import plane
-from hthor.types import HouseSpec, Room, Thing
+from hthor.types import HouseSpec, Thing
 from hthor.world.model import colors, geoms, walls
 from hthor.world.model.engine import Arena
 
@@ -80,7 +80,7 @@ class HouseArena(Arena):
         lawn: dict[str, Any] = {"pos": (0, 0, -2 * _SLAB_M), "rgba": colors.GROUND, "group": geoms.FURNITURE}
         world.add("geom", name=self._name("outdoors"), type="plane", size=(50, 50, 1), **geoms.GHOST, **lawn)
         for room in house.rooms:
-            for x0, y0, x1, y1 in _rectangles(room):
+            for x0, y0, x1, y1 in plane.rectangular_strips(room.polygon):
                 centre, half = ((x0 + x1) / 2, (y0 + y1) / 2), ((x1 - x0) / 2, (y1 - y0) / 2, _SLAB_M / 2)
                 floor = {"rgba": colors.floor(room.floor), "group": geoms.FURNITURE}
                 ceiling = {"material": "ceiling", "group": geoms.CEILINGS}
@@ -110,17 +110,3 @@ class HouseArena(Arena):
                 geoms.add_part(
                     self.mjcf_model.worldbody, name, part, thing.centre, thing.yaw, group=geoms.FURNITURE, **bits
                 )
-
-
-def _rectangles(room: Room) -> Iterator[tuple[float, float, float, float]]:
-    """The room's floor in strips from west to east; exact for rooms with square corners."""
-    xs, ys = (sorted({round(corner[axis], 4) for corner in room.polygon}) for axis in (0, 1))
-    for y0, y1 in itertools.pairwise(ys):
-        begin = None
-        for x0, x1 in [*itertools.pairwise(xs), (xs[-1], xs[-1])]:
-            covered = x1 > x0 and plane.inside(((x0 + x1) / 2, (y0 + y1) / 2), room.polygon)
-            if covered and begin is None:
-                begin = x0
-            elif not covered and begin is not None:
-                yield (begin, y0, x0, y1)
-                begin = None

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hthor.types import BodySpec, Camera, CameraSpec, Pose, Vec2
 from hthor.world import numbers
@@ -17,6 +18,14 @@ NEAR_M, FAR_M = 0.02, 80.0
 """Nothing nearer or farther is in a picture."""
 _UP_M = 1.0e5
 """A camera so far up that its rays are parallel: over a house they part by less than a hundredth of a millimetre."""
+
+
+class Images(NamedTuple):
+    """What a camera takes at one moment, all (H, W): colours with 3 channels, depth [m], numbers of owners."""
+
+    rgb: NDArray[np.uint8]
+    depth: NDArray[np.float32]
+    segmentation: NDArray[np.int32]
 
 
 def image_size(spec: BodySpec, chosen: CameraSpec = OWN) -> tuple[int, int]:

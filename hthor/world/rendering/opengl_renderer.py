@@ -9,7 +9,7 @@ import atexit
 import math
 import weakref
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,14 +36,6 @@ _SUPERSAMPLING = 2
 """Colour is drawn finer and averaged: the engine's own smoothing leaves dotted edges where shadows are."""
 _FAR_AWAY = (0.0, 0.0, -200.0)
 _MODES = ("rgb", "depth", "segmentation")
-
-
-class Glance(NamedTuple):
-    """One glance: rgb (H, W, 3) uint8, depth (H, W) float32 [m], segmentation (H, W) int32."""
-
-    rgb: NDArray[np.uint8]
-    depth: NDArray[np.float32]
-    segmentation: NDArray[np.int32]
 
 
 class OpenGLRenderer:
@@ -84,9 +76,11 @@ class OpenGLRenderer:
         self.close.atexit = False
         atexit.register(self.close)  # registered after the back end's own farewell, so it runs before it
 
-    def look(self, moment: PoseSnapshot, seat: str, size: tuple[int, int], by: CameraSpec = projection.OWN) -> Glance:
+    def look(
+        self, moment: PoseSnapshot, seat: str, size: tuple[int, int], by: CameraSpec = projection.OWN
+    ) -> projection.Images:
         """What ``seat`` sees in every way."""
-        return Glance(*(self.view(moment, seat, mode, size, by) for mode in _MODES))
+        return projection.Images(*(self.view(moment, seat, mode, size, by) for mode in _MODES))
 
     def view(
         self, moment: PoseSnapshot, seat: str, mode: str, size: tuple[int, int], by: CameraSpec = projection.OWN

@@ -6,7 +6,7 @@ It draws copied moments on a copy of the model, so a picture never touches the w
 from __future__ import annotations
 
 import copy
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,14 +27,6 @@ _CLEAR = 0.5
 _HIDDEN_GROUP = 5
 _UNSET = (0.5, 0.5, 0.5, 1.0)
 """The engine's own colour, which says that a geom has that of its material."""
-
-
-class Trace(NamedTuple):
-    """One glance: rgb (H, W, 3) uint8, depth (H, W) float32 [m], segmentation (H, W) int32."""
-
-    rgb: NDArray[np.uint8]
-    depth: NDArray[np.float32]
-    segmentation: NDArray[np.int32]
 
 
 class RayRenderer:
@@ -61,10 +53,12 @@ class RayRenderer:
         self._solid, self._glass = order[(shown & ~clear)[order]], order[(shown & clear)[order]]
         self._roofless = self._solid[model.geom_group[self._solid] != geoms.CEILINGS]
 
-    def look(self, moment: PoseSnapshot, seat: str, size: tuple[int, int], by: CameraSpec = camera.OWN) -> Trace:
+    def look(
+        self, moment: PoseSnapshot, seat: str, size: tuple[int, int], by: CameraSpec = camera.OWN
+    ) -> camera.Images:
         """What ``seat`` sees in every way at once; its own body is not in it."""
         view, w, hit = self._fill(moment, seat, size, by)
-        return Trace(self._shade(view, w, hit), _depth(w), self._numbers(hit))
+        return camera.Images(self._shade(view, w, hit), _depth(w), self._numbers(hit))
 
     def view(
         self, moment: PoseSnapshot, seat: str, mode: str, size: tuple[int, int], by: CameraSpec = camera.OWN

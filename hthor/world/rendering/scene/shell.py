@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Iterator
 
@@ -34,13 +33,17 @@ def shell(house: HouseSpec) -> Iterator[SceneMesh]:
 def _floor(room: Room) -> Mesh:
     scale = materials.repeat(materials.floor(room.floor))
     strips = [
-        facet((x0, y0, 0.0), (x1 - x0, 0.0, 0.0), (0.0, y1 - y0, 0.0), (x0, y0)) for x0, y0, x1, y1 in strips_of(room)
+        facet((x0, y0, 0.0), (x1 - x0, 0.0, 0.0), (0.0, y1 - y0, 0.0), (x0, y0))
+        for x0, y0, x1, y1 in plane.rectangular_strips(room.polygon)
     ]
     return scaled(join(strips), scale)
 
 
 def _ceiling(room: Room, height: float) -> Mesh:
-    return join(facet((x0, y1, height), (x1 - x0, 0.0, 0.0), (0.0, y0 - y1, 0.0)) for x0, y0, x1, y1 in strips_of(room))
+    return join(
+        facet((x0, y1, height), (x1 - x0, 0.0, 0.0), (0.0, y0 - y1, 0.0))
+        for x0, y0, x1, y1 in plane.rectangular_strips(room.polygon)
+    )
 
 
 def scaled(mesh: Mesh, repeat: float) -> Mesh:
@@ -75,17 +78,3 @@ def _baseboard(piece: WallSlab) -> Mesh:
 def _cap(piece: WallSlab) -> Mesh:
     (x, y, _), (a, b, _) = piece.centre, piece.half
     return slab((x, y, piece.top + _CAP_M / 2), (a, b, _CAP_M / 2), piece.yaw)
-
-
-def strips_of(room: Room) -> Iterator[tuple[float, float, float, float]]:
-    """The room's floor as rectangles x0, y0, x1, y1 [m], from south to north; exact for rooms with square corners."""
-    xs, ys = (sorted({round(corner[axis], 4) for corner in room.polygon}) for axis in (0, 1))
-    for y0, y1 in itertools.pairwise(ys):
-        begin = None
-        for x0, x1 in [*itertools.pairwise(xs), (xs[-1], xs[-1])]:
-            covered = x1 > x0 and plane.inside(((x0 + x1) / 2, (y0 + y1) / 2), room.polygon)
-            if covered and begin is None:
-                begin = x0
-            elif not covered and begin is not None:
-                yield (begin, y0, x0, y1)
-                begin = None
