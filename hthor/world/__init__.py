@@ -1,4 +1,7 @@
-"""The only room with the physics engine: a house, its bodies and objects, what they can do and see."""
+"""The simulator: a house with bodies and objects, what they can do and what they see; the only user of MuJoCo.
+
+Begin with `world` (for scripts) or `simulation` (one tick at a time, for trials).
+"""
 
 from __future__ import annotations
 

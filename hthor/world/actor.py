@@ -1,7 +1,7 @@
-"""A hand on one body: calls that take as long as they take, and what the body sees and says.
+"""Control of one body by hand, for notebooks and scripts: motions, perception and messages.
 
-Each call here starts motions and lets ticks pass until the body is free again; the other bodies stand meanwhile, unless
-something else moves them. An umpire, which moves all bodies at once, uses `hthor.world.simulation.Simulation` instead.
+Each call starts motions and lets ticks pass until the body is free again; meanwhile the other bodies stand still unless
+something else moves them. A trial, in which all bodies move at once, uses `hthor.world.simulation.Simulation` instead.
 """
 
 from __future__ import annotations
@@ -43,14 +43,14 @@ _EPS = 1e-9
 _LENGTH_MIN_M, _TURN_MIN_RAD = 1e-6, 1e-3
 """On a route, a shorter leg [m] needs no turn, and a smaller turn [rad] is left out."""
 MOVE_CALL_MAX_M = 1000.0
-"""The longest way of one call."""
+"""[m] The longest distance of one call of `Actor.move`."""
 
 
 class Actor:
     """One seat of a `World`: the person, or a robot.
 
-    Calls that move return the `Outcome`: ``ok``, or the ``reason`` why not. None of them raises because of what the
-    house or a law forbids; wrong arguments, such as a name that does not exist, do.
+    Calls that move return the `Outcome`: ``ok``, or the ``reason`` why not. What the house or a rule forbids
+    never raises; wrong arguments do, such as a name that does not exist.
     """
 
     def __init__(self, world: InteractiveSimulation, seat: str) -> None:
@@ -189,7 +189,7 @@ class Actor:
     # -------------------------------------------------------------------------------------------------- perception
 
     def look(self, size: Size = None, profile: str | None = None) -> View:
-        """Colour, depth, segmentation and the camera of one glance.
+        """Colour, depth and segmentation of this moment, and the camera that took them.
 
         Args:
             size: (width, height) [pixels], None for the camera's own. profile: fast, nice, or None for the world's.
@@ -250,7 +250,7 @@ class Actor:
         return messages
 
     def reply(self, accept: bool, message: int | None = None) -> None:
-        """Confirm or decline a message by its number, or the one that waits when None.
+        """Accept or decline a message by its number, or the open one when None.
 
         Raises:
             HthorError: when nothing waits, or this seat may not reply.

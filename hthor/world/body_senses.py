@@ -1,4 +1,4 @@
-"""What a seat perceives at one tick, worked out when asked and then kept."""
+"""A seat's sensor readings at one tick, computed when first asked for and then kept."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class SeatSenses:
         return self._detections
 
     def sighting(self, id: str) -> Sighting:
-        """How well an object is to be seen; nothing of it for what is not in view."""
+        """How visible an object is; a share of 0 for what is not in view."""
         self._check()
         return self._world.sighting(self._seat, id)
 
@@ -78,7 +78,7 @@ class SeatSenses:
         return self._world.camera(self._seat)
 
     def _picture(self, mode: str) -> Any:
-        """Kept; where that is cheap, from one glance, so that the three pictures cost little more than one."""
+        """A picture; in the profile "fast" all three are drawn at once, which costs little more than one."""
         self._check()
         if self._world.profile == "fast":
             if self._view is None:

@@ -1,4 +1,4 @@
-"""The whole truth of a world, worked out anew only where something changed."""
+"""The true state of a world, recomputed only where something changed."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from hthor.world.state.objects import Objects
 
 
 class GroundTruth:
-    """States of all objects and of all things that open, and what the person has in view."""
+    """The states of all objects and all things that open, and what the person has in view."""
 
     def __init__(self, objects: Objects, doors: Doors, visibility: Visibility, seats: Sequence[BodyState]) -> None:
         self._objects, self._doors, self._visibility, self._seats = objects, doors, visibility, seats

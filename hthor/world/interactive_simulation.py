@@ -26,11 +26,9 @@ from hthor.world.motion import spawn
 from hthor.world.sensing_simulation import SensingSimulation
 
 _MOTION_TICKS_MAX = 36_000
-"""An hour: a call that is not done by then never will be."""
-
-
+"""[ticks] An hour: a motion that has not ended by then never will."""
 _STEP_TICKS_MAX = 864_000
-"""A day: more than any study, and not yet without end."""
+"""[ticks] A day: the longest `step` at once."""
 
 
 class InteractiveSimulation(SensingSimulation):
@@ -42,7 +40,7 @@ class InteractiveSimulation(SensingSimulation):
     """
 
     def reset(self, task: TaskSpec | None = None, seed: int = 0) -> None:
-        """Begin anew: as a task says, or, without one, with the house as it is and everyone at the house's start."""
+        """Begin an episode of a task, or, without one, with the house as it is and every body at the house's start."""
         if task is not None:
             super().reset(task, seed)
             return
@@ -159,6 +157,6 @@ class InteractiveSimulation(SensingSimulation):
 
 
 def _check_kind(kind: str) -> None:
-    """Complain of a kind that does not exist; "" stands for all."""
+    """Raise UnknownName for a kind that does not exist; "" stands for all."""
     if kind:
         catalog.kind(kind)

@@ -1,4 +1,4 @@
-"""Numbers that callers give, checked before anything is done with them."""
+"""Checks on numbers that callers pass in, and how messages show them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is seen of a house tick by tick: senses, detections, ranges, pictures."""
+"""A simulation with sensors: detections, range scans and pictures for every seat."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from hthor.world.simulation import Simulation
 
 
 class SensingSimulation(Simulation):
-    """A `Simulation` with eyes.
+    """A `Simulation` with the sensors of every seat.
 
     Args:
         house, robots, objects, detectors: see `Simulation`.
@@ -78,7 +78,7 @@ class SensingSimulation(Simulation):
         return found if noise is None else noise.report(found, self._objects, self._seed, self.tick)
 
     def sighting(self, seat: str, id: str) -> Sighting:
-        """How well the seat sees an object now; nothing of it when it is not in view, or when it is no object."""
+        """How visible an object is to the seat now; a share of 0 if it is not in view or is no object."""
         return self._visibility.sighting(self._seats[seat], id)
 
     def hidden(self, id: str, eye: Vec3) -> bool:
@@ -103,7 +103,7 @@ class SensingSimulation(Simulation):
     def names(self) -> tuple[str, ...]:
         """What the numbers of a segmentation stand for: things, seats, rooms, walls and openings.
 
-        Every episode deals them anew, by its seed.
+        Every episode shuffles them, by its seed.
         """
         return self._pictures.names(self._seed)
 
@@ -129,7 +129,7 @@ class SensingSimulation(Simulation):
         return self._pictures.view(seat, mode, size, profile, self._seed)
 
     def look(self, seat: str, size: Size = None, profile: str | None = None) -> View:
-        """All pictures of one glance and the camera they were taken with; see `picture`."""
+        """All three pictures of this moment and the camera they were taken with; see `picture`."""
         return self._pictures.look(seat, size, profile, self._seed)
 
     def camera(self, seat: str, size: Size = None) -> Camera:
@@ -145,7 +145,7 @@ class SensingSimulation(Simulation):
         return self._pictures.top_view(pixels_per_metre, profile)
 
     def _studio(self) -> Any:
-        """What draws the profile nice; its module wakes OpenGL, so it is loaded only now."""
+        """The renderer of the profile "nice"; its module loads OpenGL, so it is imported only now."""
         from hthor.world.rendering.opengl_renderer import OpenGLRenderer
 
         return OpenGLRenderer(self.house, self._contents, self.bodies, self._env.model, self._geoms, self._pack)

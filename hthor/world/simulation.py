@@ -86,7 +86,7 @@ class Simulation:
 
     @property
     def model(self) -> Any:
-        """The compiled `mujoco.MjModel`, for whoever wants the engine itself; changing it voids every promise here."""
+        """The compiled `mujoco.MjModel`; changing it makes results undefined."""
         return self._env.model
 
     # ------------------------------------------------------------------------------------------------------- episodes
@@ -105,7 +105,9 @@ class Simulation:
             TaskError: when the task belongs to another house or places an object that this world does not have.
         """
         if task.house_sha256 and self.house.sha256 and task.house_sha256 != self.house.sha256:
-            raise TaskError(task.id, "house_sha256", f"made for another version of house '{task.house}'; make it anew")
+            raise TaskError(
+                task.id, "house_sha256", f"made for another version of house '{task.house}'; generate it again"
+            )
         spawn.check_numbers(task)
         self._begin({placement.id: placement for placement in task.objects}, task.id)
         self._seed = seed
@@ -142,7 +144,7 @@ class Simulation:
         return self._seats[seat].activity is None
 
     def start(self, seat: str, action: Motion) -> None:
-        """Begin a motion. One that a law forbids is refused: see `outcome`, and the next `advance` reports it."""
+        """Begin a motion. One that a rule forbids is refused: see `outcome`, and the next `advance` reports it."""
         body = self._seats[seat]
         reason = (
             f"{seat} is busy with another motion" if body.activity is not None else self._dispatch.refusal(body, action)
@@ -285,7 +287,7 @@ class Simulation:
 
     @property
     def still(self) -> bool:
-        """Whether every object and door is at rest, but for what someone carries."""
+        """Whether every object and door is at rest, apart from what is carried."""
         return self._env.still
 
     @property
@@ -314,5 +316,5 @@ class Simulation:
         return tuple(self._truth.states().values())
 
     def snapshot(self) -> Snapshot:
-        """The truth at this tick, for the umpire and the log."""
+        """The true state at this tick, for judging and logging."""
         return self._truth.snapshot(self.tick)

@@ -1,4 +1,4 @@
-"""Going and turning with something that several hold by its handles, tick by tick."""
+"""Moving and turning with a thing that is held by its handles, tick by tick."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from hthor.world.state.body_state import BodyState
 
 _EPS = 1e-9
 _SLIDE_SHARE_MIN = 0.05
-"""Sliding slower than this share of the pace counts as standing still."""
+"""A body slides only if at least this share of the step lies along the axis; our choice."""
 
 
 class CarryMotion:
-    """Moving with a load along a straight line, as far as the house, the others and the load let.
+    """Moving with a load along a straight line, as far as the house, the other bodies and the load allow.
 
     Args:
         culprit: names what blocks a place, for the outcome.
@@ -57,7 +57,7 @@ class CarryMotion:
 
 
 class CarryRotation:
-    """Turning the body and tilting the camera while others may draw the body along."""
+    """Turning the body and tilting the camera while other bearers may draw the body along."""
 
     def __init__(self, seat: BodyState, motion: Rotate) -> None:
         self._seat, self._yaw, self._pitch = seat, motion.yaw, motion.pitch

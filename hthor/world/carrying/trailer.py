@@ -250,9 +250,9 @@ class TrailerLoad(Load):
             place, pose = places[seat.name], seat.pose
             path = (self._handle(seat, state), *paths[seat.name], place)
             if seat is leader:
-                paths[seat.name] = way[follow_paths.aim_index(way, obstacles) : -1]
+                paths[seat.name] = path[follow_paths.aim_index(path, obstacles) : -1]
             else:
-                paths[seat.name] = way[::-1][follow_paths.aim_index(way[::-1], obstacles) : -1][::-1]
+                paths[seat.name] = path[::-1][follow_paths.aim_index(path[::-1], obstacles) : -1][::-1]
             if place != (pose.x, pose.y) or seat is leader:  # a new record tells the world that something has moved
                 seat.pose = Pose(x=float(place[0]), y=float(place[1]), yaw=pose.yaw, pitch=pose.pitch)
         self.state, self._paths = state, paths

@@ -1,4 +1,4 @@
-"""From a motion's record to a body at it, or the reason why not: which law, which activity."""
+"""Which rules decide on an action, and which activity carries it out."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from hthor.world.state.doors import Doors
 
 
 class ActionDispatch:
-    """What every body of a world can begin to do."""
+    """Checks actions of one world's bodies and starts them."""
 
     def __init__(self, house: HouseSpec, manipulation: Manipulation, doors: Doors, seats: Sequence[BodyState]) -> None:
         self._manipulation, self._doors, self._obstacles = manipulation, doors, ObstacleFootprints(house)

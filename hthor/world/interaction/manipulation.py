@@ -1,8 +1,8 @@
-"""Laws of the hand: what a body may pick, place and drop, and why not.
+"""Rules of the hand: what a body may pick, place and drop, and the reasons for refusals.
 
-Every law is checked when a motion starts and once more when it ends, and takes effect only then. A hand reaches what
-lies in front of the body (within a quarter turn of its heading), within its reach and height, in a straight line of
-sight of its eye. The camera need not point there. Opening and closing have laws of their own, see `hinges`.
+The rules are checked when a motion starts and again when it ends; it takes effect only then. A hand reaches what lies
+in front of the body (within a quarter turn of its heading), within its reach and height, in a straight line of sight of
+its eye; the camera need not point there. For opening and closing see `hthor.world.interaction.opening`.
 """
 
 from __future__ import annotations
@@ -33,12 +33,12 @@ HandAction = Pick | Place | Drop | Open | Close
 
 _EVENT_KINDS = {"pick": "picked", "place": "placed", "drop": "dropped", "open": "opened", "close": "closed"}
 _SPOT_TRIES = 60
-"""Free spots of one surface that are looked at before it counts as out of sight."""
+"""Free spots of one surface that are tried before it counts as out of sight."""
 _NO_POSE: QPose = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
 
 
 class HandMotion:
-    """A hand at work for as long as its body's ``handling`` says."""
+    """A hand at work, for its body's ``handling`` time."""
 
     def __init__(self, seat: BodyState, motion: HandAction, hands: Manipulation) -> None:
         self._seat, self._motion, self._hands = seat, motion, hands
@@ -46,7 +46,7 @@ class HandMotion:
         hands.begin(seat, motion)
 
     def advance(self, tick: int) -> TickResult:
-        """One tick of it; at the last one it takes effect."""
+        """Carry it on by one tick; it takes effect at the last one."""
         self._done += 1
         self._hands.during(self._motion, self._done / self._ticks)
         if self._done < self._ticks:
@@ -86,7 +86,7 @@ class Manipulation:
         self._news: EventList = ()
 
     def news(self) -> EventList:
-        """What became of the last motion that ended, where that has words of its own; tells it once."""
+        """The events of the last motion that ended, if it has any of its own; returned once."""
         news, self._news = self._news, ()
         return news
 
@@ -111,7 +111,7 @@ class Manipulation:
             self._door_handling.during(motion, share)
 
     def finish(self, seat: BodyState, motion: HandAction) -> str:
-        """Do it, unless a law forbids it by now; the reason then."""
+        """Do it, unless a rule forbids it by now; returns the reason then."""
         if isinstance(motion, (Open, Close)):
             return self._door_handling.finish(motion)
         if isinstance(motion, Pick):
@@ -172,7 +172,7 @@ class Manipulation:
 
     @staticmethod
     def _refused(seat: BodyState, motion: Place | Drop) -> str:
-        """What is held by its handles goes to the floor below it and nowhere else."""
+        """What is held by its handles can only be put on the floor below it."""
         if isinstance(motion, Drop) or motion.on == FLOOR:
             return ""
         return f"{seat.holding} is held by its handles; drop it, or place it on '{FLOOR}': it is put down where it is"

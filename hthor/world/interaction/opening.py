@@ -1,7 +1,7 @@
-"""Laws of opening and closing: of doors, drawers and the leaves of doorways.
+"""Rules of opening and closing the doors and drawers of furniture, and doors in doorways.
 
-A hinged leaf on its way sweeps through whatever is there; it only has to fit where it stops. A drawer takes along what
-lies in it and needs its way free.
+A hinged door passes through what is in its way; it only has to fit where it stops. A drawer carries what lies in it and
+needs its way free.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from hthor.world.state.overlap_test import OVERLAP_M
 from hthor.world.state.support_surfaces import SupportSurfaces
 
 _DOOR_HANDLE_M = 1.0
-"""Height at which a doorway's leaf is taken hold of."""
+"""[m] Height at which a hand takes hold of a door in a doorway."""
 
 
 class DoorHandling:
@@ -72,7 +72,7 @@ class DoorHandling:
         self._move(self._leaf(motion), share if isinstance(motion, Open) else 1.0 - share)
 
     def finish(self, motion: Open | Close) -> str:
-        """The door is where it goes; if something has got in its way, it goes back, and that is the reason."""
+        """Finish the motion; if something has got in the way, the door goes back and the reason is returned."""
         leaf, wanted = self._leaf(motion), isinstance(motion, Open)
         leaf.user = ""
         reason = self._in_the_way(leaf, wanted)
@@ -90,7 +90,7 @@ class DoorHandling:
         self._rest(leaf, wanted)
 
     def release(self, seat: str) -> None:
-        """A body leaves off: what it was opening or closing goes back."""
+        """Return what a body was opening or closing to where it was."""
         for leaf in self._doors:
             if leaf.user == seat:
                 leaf.user = ""
@@ -112,7 +112,7 @@ class DoorHandling:
         for place in self._surfaces.of(leaf.thing.id):
             if place.slides:
                 riders = [item.id for item in self._objects.lying(place)]
-                x, y, z = (step * way for way in place.way)
+                x, y, z = (step * way for way in place.pull)
                 self._objects.ride(riders, (x, y, z))
         self._doors.swing(leaf, share)
 
@@ -130,7 +130,7 @@ class DoorHandling:
         eye, name = view_frustum.eye_position(seat.pose, seat.spec), leaf.thing.id
         x, y, _ = point
         top = leaf.thing.centre[2] + 0.45 * leaf.thing.size[2]
-        ways = [place.way for place in self._surfaces.of(name) if place.slides]
+        ways = [place.pull for place in self._surfaces.of(name) if place.slides]
         points = [point, (x, y, top), *((x + leaf.share * way[0], y + leaf.share * way[1], top) for way in ways)]
         return any(not self._geoms.hidden(eye, place, name) for place in points)
 

@@ -1,4 +1,4 @@
-"""Setting and removing objects without a hand, as whoever prepares a scene does."""
+"""Setting and removing objects directly, to prepare a scene."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from hthor.world.state.support_surfaces import SupportSurfaces
 
 
 class SceneEditor:
-    """Moves the objects of one world about."""
+    """Puts and removes the objects of one world."""
 
     def __init__(
         self,
@@ -91,7 +91,7 @@ class SceneEditor:
         raise HthorError(f"no room on {on} for {item.id}, which needs {w:.2f} x {d:.2f} m; remove something first")
 
     def _at(self, item: MovableObject, pose: QPose, velocity: Vec3) -> None:
-        """There and nowhere else; back to where it was if something is there already."""
+        """Put it exactly there; raises, with the object back in its old place, if something is there already."""
         indoors = any(plane.inside(pose[:2], room.polygon) for room in self._house.rooms)
         if not indoors or pose[2] > self._house.height:
             at = ", ".join(numbers.format_number(value) for value in pose[:3])

@@ -1,6 +1,6 @@
-"""The empty stage: floors, walls, openings and everything in a house that never moves.
+"""The static part of a house's model: floors, walls, openings and everything that never moves.
 
-All of it is geoms of the world body, so that the engine has no bodies to sort through for what stands still.
+All of it is geoms of the world body, so that the engine has no bodies to process for what stands still.
 """
 
 from __future__ import annotations
@@ -16,11 +16,12 @@ from hthor.world.model import colors, geoms, walls
 from hthor.world.model.engine import Arena
 
 _SLAB_M = 0.01
+"""[m] Thickness of the drawn floors and ceilings."""
 _ROOF_M = 1.0
-"""So thick that nothing flies through it between two steps. It is not drawn; the ceilings are."""
+"""[m] Thickness of an invisible roof: nothing thrown passes through it between two steps."""
 _TILT = (1.0, 5e-6, 5e-6, 0.0)
-"""Off level by a tenth of a millimetre in ten metres: an upright cylinder on a plane that is exactly level meets it
-in points that the engine works out from rounding errors.
+"""Quaternion of the ground, off level by 0.1 mm in 10 m: on an exactly level plane the contact points of an upright
+cylinder would depend on rounding errors.
 """
 _LIGHT = {"ambient": (0.50, 0.50, 0.50), "diffuse": (0.34, 0.34, 0.33), "specular": (0.04, 0.04, 0.04)}
 _SKY = {"rgb1": (0.80, 0.88, 0.94), "rgb2": (0.93, 0.94, 0.93)}

@@ -1,4 +1,4 @@
-"""Doors and drawers as composer entities, without motors: whoever opens them writes their joints."""
+"""Doors and drawers as composer entities without motors: their joints are written directly."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from hthor.world.model.door_geometry import Openable
 from hthor.world.model.engine import Entity, mjcf
 
 _MASS_KG = 4.0
+"""[kg] of all moving parts of one joint; our choice."""
 _STIFF = {"damping": 50.0, "frictionloss": 500.0, "armature": 1000.0}
-"""Nothing that falls or rolls against a door or into a drawer moves it; only hands do."""
+"""So stiff that what falls or rolls against a door or drawer does not move it; only hands do."""
 
 
 class Door(Entity):

@@ -21,18 +21,18 @@ from hthor.world.model.engine import Environment, mujoco
 QPose = tuple[float, float, float, float, float, float, float]
 """Position [m] and unit quaternion (w, x, y, z) of a free object."""
 STEP_TRAVEL_MAX_M = 0.003
-"""The way that nothing may go beyond in one step of the engine: a fifth of the thinnest board."""
+"""[m] The longest travel in one step of the engine: a fifth of the thinnest board."""
 STEP_TURN_MAX_RAD = 0.2
-"""Nor may anything turn farther in one step: thin things would spin up without end."""
+"""[rad] The largest turn in one step: beyond it thin things would spin up without end."""
 RESTLESS_TICKS, _RESTLESS_PARTS = 20, 4
-"""After so many ticks without rest every step is made in so many parts: some long things tremble at the long step."""
+"""After this many ticks without rest every step is split into this many parts: some long things tremble otherwise."""
 DAMP_TICKS, DAMP_TOLERANCE = 50, 0.5
-"""After so many ticks without rest, what only trembles is laid to rest: the sleep tolerance is this."""
+"""After this many ticks without rest the engine's sleep tolerance is raised to this value, so that trembling ends."""
 _PARTS_MAX = 64
-"""Parts that a step is split into at most."""
+"""The most parts that a step is split into."""
 SPEED_MAX_M_S, SPIN_MAX_RAD_S = 20.0, 300.0
-"""Nothing moves or turns faster, along or about any axis: such things would pass through boards, or spin up without
-end.
+"""[m/s, rad/s] Limits on speed along and spin about any axis: beyond them things would pass through boards, or spin up
+without end.
 """
 
 

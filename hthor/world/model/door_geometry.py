@@ -1,4 +1,4 @@
-"""Everything that opens, as geometry: doors and drawers of things, and the leaves that hang in doorways."""
+"""The geometry of everything that opens: doors and drawers of furniture, and doors in doorways."""
 
 from __future__ import annotations
 
@@ -13,15 +13,17 @@ from hthor.types import HouseSpec, Joint, Opening, Part, Thing, Vec3
 from hthor.world.model import colors
 
 LEAF_M = 0.04
-"""Thickness of a door's leaf."""
+"""[m] Thickness of a door."""
 GAP_M = 0.02
-"""Free width between a leaf and the wall beside and above it, where the frame is."""
+"""[m] Gap between a door and the wall at its sides and top, for the frame."""
 DOUBLE_M = 1.3
-"""Wider doorways have two leaves."""
+"""[m] Wider doorways have two doors."""
 TURN_RAD = math.pi / 2
+"""[rad] by which doors open."""
 _SOLE_M = 0.008
+"""[m] Gap below a door."""
 _HANDLE_M = 1.02
-"""Height of a handle."""
+"""[m] Height of a door handle."""
 
 
 class Openable(Struct, frozen=True, kw_only=True):

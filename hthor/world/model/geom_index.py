@@ -14,7 +14,7 @@ from hthor.world.model.composer_task import HouseTask
 from hthor.world.model.engine import mujoco
 
 _OPAQUE_ALPHA = 0.5
-"""What is less opaque than this, glass, hides nothing."""
+"""[0..1] What is less opaque than this, such as glass, hides nothing."""
 
 
 class GeomIndex:

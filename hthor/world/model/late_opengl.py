@@ -1,8 +1,8 @@
 """MuJoCo and dm_control choose their OpenGL back end when a program first draws with it, not when they are imported.
 
 Both choose at import, by MUJOCO_GL, and complain where there is no display. `engine` imports them with OpenGL switched
-off; what is here lets them choose after all, by the environment as it is then, for programs that draw with them beside
-hthor. Our own pictures do without, see `opengl`.
+off; what is here lets them choose after all, by the environment as it is then, for programs that use them
+together with hthor. Our own pictures do without, see `opengl`.
 """
 
 from __future__ import annotations

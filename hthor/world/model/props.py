@@ -8,10 +8,11 @@ from hthor.world.model import geoms
 from hthor.world.model.engine import Entity, mjcf
 
 GRIP = {"friction": (0.8, 0.01, 0.001)}
+"""Sliding, torsional [m] and rolling [m] friction of flat things, as MuJoCo counts them; our choice."""
 ROLLING = {"friction": (0.8, 0.01, 0.003), "condim": 6}
-"""Rolling friction is what lets balls and cups come to rest."""
+"""The same for round things: rolling friction lets balls and cups come to rest."""
 THIN_M = 0.006
-"""What is thinner is there for its looks: a key, a screen. A thing that fell on it would come to rest inside it."""
+"""[m] Thinner parts, such as a key or a screen, are only drawn: what fell on them would come to rest inside."""
 
 
 class Prop(Entity):

@@ -1,4 +1,4 @@
-"""Naming what a body ran into: the thing or wall nearest to a place."""
+"""Names what a body ran into: the thing, wall or shut door nearest to a place."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from hthor.world.state import doorways
 
 WALL = "wall"
 _JAMB_M = 0.05
-"""A wall beside a shut door sticks out this much farther."""
+"""[m] by which a wall next to a shut door may be nearer and the door still be named."""
 
 
 class ObstacleFootprints:

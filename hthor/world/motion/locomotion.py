@@ -1,8 +1,8 @@
-"""Going, turning and waiting, tick by tick.
+"""Moving, turning and waiting, tick by tick.
 
-A body goes in the direction it faced when it started. Where the way ahead is not free it slides along x or along y;
-where neither is free it stops. Other bodies are discs: nobody may come closer to one than both radii, but whoever is
-too close already may always move away.
+A body moves relative to the heading that it had at the start. Where the way ahead is blocked it slides along x or y;
+where both are blocked it stops. Other bodies are discs: no body may come closer to another than the sum of their radii,
+but one that is too close already may always move away.
 """
 
 from __future__ import annotations
@@ -17,12 +17,13 @@ from hthor.world import numbers
 from hthor.world.state.body_state import BodyState
 
 _EPS = 1e-9
+"""[m, rad, ticks] Tolerance for rounding."""
 WAIT_MAX_S = 3600.0
-"""The longest that a body waits at once."""
+"""[s] The longest single wait."""
 _SLIDE_SHARE_MIN = 0.05
-"""Sliding slower than this share of the speed counts as standing still."""
+"""A body slides only if at least this share of the step lies along the axis; our choice."""
 _FREE, _BLOCKED = "", "*"
-"""What a trial step meets: nothing, the house, or else the name of the seat in the way."""
+"""What a step meets: nothing, the house, or else the seat in the way."""
 
 _MOVED, _ROTATED, _WAITED = (Outcome(motion=motion, ok=True) for motion in ("move", "rotate", "wait"))
 
@@ -98,10 +99,10 @@ class RotateMotion:
 
 
 class MoveMotion:
-    """Moving along a straight line, as far as the house and the others let.
+    """Moving along a straight line, as far as the house and the other bodies allow.
 
     Args:
-        others: all other seats. culprit: names what blocks a place, for the outcome.
+        others: all other bodies. culprit: names what blocks a place, for the outcome.
     """
 
     def __init__(
@@ -126,7 +127,7 @@ class MoveMotion:
         return (None if self._left > _EPS else _MOVED), events
 
     def _try(self, dx: float, dy: float) -> str:
-        """Go there if it is free; what was met otherwise."""
+        """Go there if it is free; returns what was met otherwise."""
         pose = self._seat.pose
         x, y = pose.x + dx, pose.y + dy
         for other in self._others:
@@ -142,9 +143,9 @@ class MoveMotion:
         return self._try(dx, dy) if abs(dx + dy) > _SLIDE_SHARE_MIN * step else _BLOCKED
 
     def _in_way(self, tick: int, met: str) -> tuple[Event, ...]:
-        """A hindered body says so once a move.
+        """The event of being hindered by another body, once in a move.
 
-        The tick is the one at which the other stood in the way, before the step: up to it, all went as without them.
+        Its tick is that before the step: until then everything went as it would have without the other.
         """
         if met in (_FREE, _BLOCKED) or self._hindered:
             return ()

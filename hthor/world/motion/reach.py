@@ -1,4 +1,4 @@
-"""How far a hand gets, what an arm lifts, where a held thing is."""
+"""What a hand can reach, what an arm can lift, and where a held object is."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Putting bodies where an episode begins: on free floor and clear of each other."""
+"""Placing bodies, at the start of an episode or by hand: on free floor and clear of each other."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """The errors of a detector: objects overlooked, objects seen where they are not.
 
-What it makes of a look depends on the trial's seed, the seat, the second of time (a *glimpse*) and the object, never on
-how often anyone looked before. Within a glimpse:
+The errors depend on the trial's seed, the seat, the second of time (a *glimpse*) and the object, never on how often the
+detector was read before. Within a glimpse:
 
 - an object in view is overlooked with the chance ``miss``, on its own, for the whole glimpse; looking again a second
   later is a new chance. Furniture, doorways, people, robots and what the seat itself holds are never overlooked.
@@ -30,7 +30,7 @@ from hthor.world.state.movable_object import MovableObject
 from hthor.world.state.support_surfaces import SupportSurface, SupportSurfaces
 
 GLIMPSE_TICKS = round(1.0 / rules.TICK_S)
-"""How long one draw holds: a detector that errs on a frame errs on the next one too."""
+"""[ticks] for which an error persists: a detector that errs on one frame errs on the next one too. Our choice: 1 s."""
 _POSITION_TRIES = 4
 _SURFACE_SHARE = 0.8
 

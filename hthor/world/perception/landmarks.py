@@ -1,4 +1,4 @@
-"""What never moves and can be looked for, and where it is looked for."""
+"""Furniture and doorways as targets of sight: what never moves, and the points at which it is looked for."""
 
 from __future__ import annotations
 
@@ -15,13 +15,14 @@ from hthor.houses.space.solids import WALL_M
 from hthor.types import Opening, Thing, Vec3
 
 _DOORWAY_HEIGHT_M = 1.0
+"""[m] Height of the point at which a doorway is looked for."""
 _ROUNDING_M = 1e-6
 _CORNER_SHARE, _ABOVE_SURFACE_M = 0.85, 0.02
-"""A piece of furniture is looked for at its upper corners, pulled in to this share, and just off its surfaces."""
+"""Furniture is looked for at its upper corners, pulled in to this share, and this far [m] off its surfaces."""
 
 
 class Landmark(Struct, frozen=True):
-    """What stays the same about a thing that never moves: the detection's fields but for distance and state.
+    """The constant part of a detection of a thing that never moves: all fields except distance and state.
 
     ``points`` [m], house frame, are where it is looked for.
     """
@@ -46,7 +47,7 @@ def landmarks(statics: Iterable[Thing], openings: Iterable[Opening]) -> tuple[La
 
 
 def pack_targets(found: Sequence[Landmark], span: Mapping[str, tuple[int, int]]) -> tuple[Any, Any]:
-    """Landmarks as `glance.see` takes them, ``balls`` and ``spots``; ``span`` tells the geoms of each."""
+    """``balls`` and ``spots`` for `visibility_kernel.visible_targets`; ``span`` gives the geoms of each landmark."""
     balls, begin = np.zeros((7, len(found) + 1)), 0
     for number, landmark in enumerate(found):
         balls[:, number] = (*_bounding_sphere(landmark.points), *span.get(landmark.id, (0, 0)), begin)
@@ -64,7 +65,7 @@ def _bounding_sphere(points: Sequence[Vec3]) -> tuple[float, float, float, float
 
 
 def _is_furniture(thing: Thing) -> bool:
-    """Small things that lie about are scenery, not furniture."""
+    """Whether a thing counts as furniture; small things that lie on others are scenery."""
     return not thing.parent or catalog.kind(thing.kind).receptacle
 
 

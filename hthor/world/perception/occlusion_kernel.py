@@ -65,16 +65,16 @@ def occlusion_leeway(box: Any, px: float, py: float, pz: float, ux: float, uy: f
 
 
 @numba.njit(cache=True, error_model="numpy")
-def nearby_occluders(view: Any, farthest: float, groups: Any, spheres: Any, firm: int, count: int) -> tuple[Any, Any]:
+def nearby_occluders(view: Any, farthest: float, groups: Any, spheres: Any, fixed: int, count: int) -> tuple[Any, Any]:
     """The solids that reach into the field of view, no farther away than ``farthest``.
 
     Returns:
         (N,) their indices, in order, and (N, 5) where their middles are from the eye, and the squares of the distances
         and of the radii.
     """
-    some, loose = np.empty(groups.shape[1] - 1, dtype=np.bool_), np.empty(count - firm, dtype=np.bool_)
+    some, loose = np.empty(groups.shape[1] - 1, dtype=np.bool_), np.empty(count - fixed, dtype=np.bool_)
     mark_spheres_in_view(view, farthest, groups, some)
-    mark_spheres_in_view(view, farthest, spheres[:, firm:count], loose)
+    mark_spheres_in_view(view, farthest, spheres[:, fixed:count], loose)
     ids, n = np.empty(count + 1, dtype=np.int64), 0
     for c in range(len(some)):
         if some[c]:
@@ -82,7 +82,7 @@ def nearby_occluders(view: Any, farthest: float, groups: Any, spheres: Any, firm
                 ids[n] = g
                 n += sphere_in_view(view, farthest, spheres, g)
     for c in range(len(loose)):
-        ids[n] = firm + c
+        ids[n] = fixed + c
         n += loose[c]
     rel = np.empty((n, 5))
     for c in range(n):

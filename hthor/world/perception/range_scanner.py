@@ -62,7 +62,7 @@ def _march(
     over: float,
 ) -> Any:
     """Ranges, tops and what lies beyond (N,) [m]: each beam goes from cell edge to cell edge until it enters a cell
-    that is not clear, and on over all that is lower than ``over`` [m].
+    that is not clear, and then on over everything that is lower than ``over`` [m].
     """
     ny, nx = raw.shape
     out, met, beyond = np.empty(len(bearings)), np.full(len(bearings), np.inf), np.full(len(bearings), limit)

@@ -1,4 +1,4 @@
-"""Where an eye is, where it looks and what it looks for."""
+"""An eye's position, axes and field of view, and which points and balls are within it."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""What an eye sees: range first, then the field of view, then rays.
+"""Which targets an eye sees, compiled: tests range first, then the field of view, then lines of sight.
 
-All candidates of one look go through one compiled call, which takes a few microseconds. Whatever can be is done for
-many balls, points or solids at once, row by row and without branches, so that it becomes vector instructions.
+One call handles all targets and takes a few microseconds. Loops over balls, points and solids avoid branches where they
+can, so that they compile to vector instructions.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ def visible_targets(
     groups: Any,
     spheres: Any,
     boxes: Any,
-    firm: int,
+    fixed: int,
     count: int,
     order: Any,
 ) -> Any:
@@ -103,7 +103,7 @@ def visible_targets(
         spots: (6, Q) their points [m]; and, in and out, zeros at first, where this eye was, x and y [m], when a point
             turned out to be hidden, and how far [m] from there it is sure to be hidden still: the eye always has the
             same height.
-        groups, spheres, boxes, firm, count: see `hthor.world.perception.occluders.Occluders`.
+        groups, spheres, boxes, fixed, count: `hthor.world.perception.occluders.Occluders.arrays`.
         order: (M + S,) in which order to name the targets, those that may move counted first.
 
     Returns:
@@ -123,7 +123,7 @@ def visible_targets(
             farthest = max(farthest, most)
     if farthest == 0.0:
         return seen[:0]
-    ids, rel = nearby_occluders(view, math.sqrt(farthest), groups, spheres, firm, count)
+    ids, rel = nearby_occluders(view, math.sqrt(farthest), groups, spheres, fixed, count)
     last = -1  # what hid one point probably hides the next
     for k in range(moving):
         if not out[k]:
@@ -149,7 +149,7 @@ def visible_targets(
                     out[moving + k] = True
                     break
                 last = by
-                if ids[by] < firm:
+                if ids[by] < fixed:
                     leeway = occlusion_leeway(boxes[ids[by]], rel[by, 0], rel[by, 1], rel[by, 2], ux, uy, uz)
                     spots[3, p], spots[4, p], spots[5, p] = x, y, leeway
     for k in order:

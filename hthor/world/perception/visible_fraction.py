@@ -1,4 +1,4 @@
-"""A second look at one thing in view: how much of it is to be seen, and what is close beside it."""
+"""How much of one object in view is visible, and how many others appear close to it."""
 
 from __future__ import annotations
 
@@ -13,14 +13,15 @@ from hthor.world.perception.occlusion_kernel import first_occluder, nearby_occlu
 from hthor.world.perception.view_frustum import in_frame, view_axes
 
 BESIDE_RAD = 0.15
-"""What appears this close to a thing is beside it: the angle between the two as seen by the eye."""
+"""[rad] Objects whose directions from the eye differ by no more than this appear beside one another; our choice."""
 _CORNERS = tuple((x, y, z) for x in (-0.8, 0.8) for y in (-0.8, 0.8) for z in (-0.8, 0.8))
-"""Of a box, pulled in a little so that what it lies on hides none of them."""
+"""Corners of a box in half extents, pulled in so that what it lies on does not hide them."""
 _MARGIN = 1.05
+"""Factor by which the cone that is searched for occluders is widened, against rounding."""
 
 
 def sample_points(position: Vec3, size: Vec3, yaw: float, looked_for: tuple[Vec3, ...]) -> Any:
-    """(N, 3) points [m] all over an upright box; those that it is ``looked_for`` at are among them."""
+    """(N, 3) points [m] all over an upright box, with those that it is ``looked_for`` at in front."""
     (x, y, z), (w, d, h), cos, sin = position, (extent / 2.0 for extent in size), math.cos(yaw), math.sin(yaw)
     corners = [(x + w * a * cos - d * b * sin, y + w * a * sin + d * b * cos, z + h * c) for a, b, c in _CORNERS]
     return np.array([*looked_for, *corners])
@@ -42,17 +43,17 @@ def measure(
     groups: Any,
     spheres: Any,
     boxes: Any,
-    firm: int,
+    fixed: int,
     count: int,
 ) -> Any:
     """Share of the points of one target that are in view, and how many others in view appear beside it.
 
     Args:
-        x, y, z, yaw, pitch, wide, high: the eye, as in `glance.see`.
+        x, y, z, yaw, pitch, wide, high: the eye, see `visibility_kernel.visible_targets`.
         points: (N, 3) [m], all over the target; the first is its middle. index: its row in ``wanted``.
         others: (M, 3) middles [m] of what may be beside it. wanted: (M, 3) 0 or less for what does not count, and the
             range of each one's own geoms, which do not hide it.
-        groups, spheres, boxes, firm, count: see `hthor.world.perception.occluders.Occluders`.
+        groups, spheres, boxes, fixed, count: `hthor.world.perception.occluders.Occluders.arrays`.
 
     Returns:
         (2,) the share, 0 to 1, and the number.
@@ -78,7 +79,7 @@ def measure(
     # only what stands in a narrow cone around the target can hide any of this
     half = math.tan(min(1.5, max(BESIDE_RAD, math.asin(min(1.0, size / max(apart, 1e-9)))) * _MARGIN))
     cone = view_axes(x, y, z, math.atan2(ty, tx), math.asin(max(-1.0, min(1.0, tz / max(apart, 1e-9)))), half, half)
-    ids, rel = nearby_occluders(cone, farthest + size, groups, spheres, firm, count)
+    ids, rel = nearby_occluders(cone, farthest + size, groups, spheres, fixed, count)
     seen, beside, last = 0, 0, -1
     for p in range(len(points)):
         ux, uy, uz = points[p, 0] - x, points[p, 1] - y, points[p, 2] - z

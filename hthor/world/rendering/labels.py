@@ -1,7 +1,7 @@
-"""Which number stands for whom in a segmentation: dealt anew for every episode, so that a number alone says nothing.
+"""The numbers of owners in a segmentation, shuffled for every episode so that a number alone carries no information.
 
-Numbers in the order of the names would tell an agent that counts its pixels what a thing is called, and a number that
-stayed would be an id from one trial to the next. Neither is anything that a camera sees.
+Numbers in alphabetic order would reveal names, and constant numbers would identify a thing from one trial to the next;
+a camera sees neither.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class SegmentationLabels:
         self._shown = np.zeros(0, np.int32)
 
     def draw(self, seed: int) -> None:
-        """Deal the numbers of an episode; equal seeds deal equally."""
+        """Shuffle the numbers for an episode; equal seeds give equal numbers."""
         if self.names and seed == self._seed:
             return
         root = seeds.derive(seed, "segmentation")

@@ -1,4 +1,4 @@
-"""Pictures of a world, put off until someone looks at them.
+"""Pictures of a world, drawn only when they are read.
 
 The profile ``fast`` traces the engine's own solids, in a millisecond and with nothing but the processor. ``nice`` draws
 what they stand for, with textures and shadows, through OpenGL; it is loaded when it is first asked for.
@@ -27,13 +27,14 @@ MODES = ("rgb", "depth", "segmentation")
 Size = tuple[int, int] | None
 """Width and height [pixels], None for the camera's own."""
 _MARGIN_M = 0.3
+"""[m] shown around the rooms in the view from above."""
 
 
 class LazyImages:
-    """Copies moments now and draws them when asked.
+    """Copies poses now and draws pictures of them when asked.
 
     Args:
-        studio: makes what draws the profile ``nice``; called at most once, when first needed.
+        opengl: makes the renderer of the profile ``nice``; called at most once, when first needed.
         profile: the profile of every picture for which a call names none.
         cameras: of the seats that do not have their bodies' own.
     """
@@ -42,23 +43,23 @@ class LazyImages:
         self,
         house: HouseSpec,
         env: LazyComposerEnv,
-        scene: GeomIndex,
+        geoms: GeomIndex,
         seats: Mapping[str, BodyState],
-        studio: Callable[[], OpenGLRenderer],
+        opengl: Callable[[], OpenGLRenderer],
         profile: str = "fast",
         cameras: Mapping[str, CameraSpec] | None = None,
     ) -> None:
         _check(PROFILES, profile=profile)
         self.profile = profile
-        self._house, self._env, self._scene, self._seats = house, env, scene, seats
+        self._house, self._env, self._geoms, self._seats = house, env, geoms, seats
         self._cameras = dict(cameras or {})
-        self._make = studio
-        self._studio: OpenGLRenderer | None = None
-        self._tracer: RayRenderer | None = None
-        self._labels = SegmentationLabels(scene.names)
+        self._make_opengl = opengl
+        self._opengl_renderer: OpenGLRenderer | None = None
+        self._ray_renderer: RayRenderer | None = None
+        self._labels = SegmentationLabels(geoms.names)
 
     def names(self, seed: int) -> tuple[str, ...]:
-        """Whom each number of a segmentation stands for in the episode of that seed."""
+        """The owners that the numbers of a segmentation stand for in the episode of that seed."""
         self._labels.draw(seed)
         return self._labels.names
 
@@ -70,13 +71,13 @@ class LazyImages:
         return self._labelled(picture, seed) if mode == "segmentation" else picture
 
     def look(self, seat: str, size: Size, profile: str | None, seed: int) -> View:
-        """Colour, depth and segmentation of one glance."""
+        """Colour, depth and segmentation of this moment."""
         size = self._size(seat, size)
-        glance = self._draw(profile).look(self._moment(), seat, size, self._by(seat))
+        images = self._draw(profile).look(self._moment(), seat, size, self._by(seat))
         return View(
-            rgb=glance.rgb,
-            depth=glance.depth,
-            segmentation=self._labelled(glance.segmentation, seed),
+            rgb=images.rgb,
+            depth=images.depth,
+            segmentation=self._labelled(images.segmentation, seed),
             camera=self.camera(seat, size),
         )
 
@@ -131,16 +132,16 @@ class LazyImages:
         return self._fast() if wanted == "fast" else self._nice()
 
     def _fast(self) -> RayRenderer:
-        if self._tracer is None:
+        if self._ray_renderer is None:
             from hthor.world.rendering.ray_renderer import RayRenderer
 
-            self._tracer = RayRenderer(self._env.model, self._scene, self._house)
-        return self._tracer
+            self._ray_renderer = RayRenderer(self._env.model, self._geoms, self._house)
+        return self._ray_renderer
 
     def _nice(self) -> OpenGLRenderer:
-        if self._studio is None:
-            self._studio = self._make()
-        return self._studio
+        if self._opengl_renderer is None:
+            self._opengl_renderer = self._make_opengl()
+        return self._opengl_renderer
 
 
 def _check(valid: tuple[str, ...], **given: str) -> None:

@@ -1,7 +1,7 @@
 """Finding an OpenGL back end that works, with or without a display.
 
-Where Mesa draws without a graphics card it starts a thread for every core. Whoever runs one process a core does well to
-set ``LP_NUM_THREADS=0`` before: the same work, without threads that get in each other's way.
+Without a graphics card, Mesa starts a drawing thread for every core. With one process per core, set
+``LP_NUM_THREADS=0`` so that these threads do not compete.
 """
 
 from __future__ import annotations

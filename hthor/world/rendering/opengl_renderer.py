@@ -22,6 +22,7 @@ from hthor.world.model.geom_index import GeomIndex
 from hthor.world.model.inventory import Contents
 from hthor.world.rendering import camera as projection
 from hthor.world.rendering import opengl_context
+from hthor.world.rendering.camera import Images
 from hthor.world.rendering.scene import scene_camera
 from hthor.world.rendering.scene.asset_source import AssetSource, Pack
 from hthor.world.rendering.scene.compile_scene import SceneBuilder
@@ -76,11 +77,9 @@ class OpenGLRenderer:
         self.close.atexit = False
         atexit.register(self.close)  # registered after the back end's own farewell, so it runs before it
 
-    def look(
-        self, moment: PoseSnapshot, seat: str, size: tuple[int, int], by: CameraSpec = projection.OWN
-    ) -> projection.Images:
+    def look(self, moment: PoseSnapshot, seat: str, size: tuple[int, int], by: CameraSpec = projection.OWN) -> Images:
         """What ``seat`` sees in every way."""
-        return projection.Images(*(self.view(moment, seat, mode, size, by) for mode in _MODES))
+        return Images(*(self.view(moment, seat, mode, size, by) for mode in _MODES))
 
     def view(
         self, moment: PoseSnapshot, seat: str, mode: str, size: tuple[int, int], by: CameraSpec = projection.OWN

@@ -18,19 +18,20 @@ from hthor.world.model.bodies.primitives import HEAD
 from hthor.world.model.engine import mujoco
 from hthor.world.model.geom_index import GeomIndex
 from hthor.world.rendering import camera, rasterizer, shading, surface_patterns
+from hthor.world.rendering.camera import Images
 from hthor.world.state.pose_snapshot import PoseSnapshot
 
 CODE_PART = "pictures"
 
 _CLEAR = 0.5
-"""What is less opaque is seen through: it tints the colours, and depth and segmentation pass it by."""
+"""[0..1] What is less opaque is transparent: it tints the colours but is left out of depth and segmentation."""
 _HIDDEN_GROUP = 5
 _UNSET = (0.5, 0.5, 0.5, 1.0)
 """The engine's own colour, which says that a geom has that of its material."""
 
 
 class RayRenderer:
-    """Draws moments of one world."""
+    """Draws snapshots of one world."""
 
     def __init__(self, model: Any, scene: GeomIndex, house: HouseSpec) -> None:
         self._model = copy.copy(model)
@@ -53,12 +54,10 @@ class RayRenderer:
         self._solid, self._glass = order[(shown & ~clear)[order]], order[(shown & clear)[order]]
         self._roofless = self._solid[model.geom_group[self._solid] != geoms.CEILINGS]
 
-    def look(
-        self, moment: PoseSnapshot, seat: str, size: tuple[int, int], by: CameraSpec = camera.OWN
-    ) -> camera.Images:
+    def look(self, moment: PoseSnapshot, seat: str, size: tuple[int, int], by: CameraSpec = camera.OWN) -> Images:
         """What ``seat`` sees in every way at once; its own body is not in it."""
         view, w, hit = self._fill(moment, seat, size, by)
-        return camera.Images(self._shade(view, w, hit), _depth(w), self._numbers(hit))
+        return Images(self._shade(view, w, hit), _depth(w), self._numbers(hit))
 
     def view(
         self, moment: PoseSnapshot, seat: str, mode: str, size: tuple[int, int], by: CameraSpec = camera.OWN

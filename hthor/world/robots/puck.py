@@ -1,4 +1,4 @@
-"""A flat disc on the floor, in the manner of a robot vacuum: it can only go, look up from below, and tell."""
+"""A flat disc on the floor, in the manner of a robot vacuum: it can only move, look up from below, and report."""
 
 from __future__ import annotations
 

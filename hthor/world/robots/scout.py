@@ -1,4 +1,4 @@
-"""A low two-wheeled base with a camera on a mast, in the manner of a LoCoBot: it looks and tells, it cannot grasp."""
+"""A low two-wheeled base with a camera on a mast, in the manner of a LoCoBot: it looks and reports, it cannot grasp."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A body's state in one episode: where it is, what it does, what it holds."""
+"""The state of each body in an episode: where it is, what it is doing, what it holds."""
 
 from __future__ import annotations
 
@@ -13,11 +13,18 @@ class Activity(Protocol):
     """A motion under way."""
 
     def advance(self, tick: int) -> tuple[Outcome | None, tuple[Event, ...]]:
-        """One tick of it; the outcome is None while it goes on."""
+        """Carry it on by one tick; the outcome is None while it goes on."""
 
 
 class BodyState:
-    """One body. ``x``, ``y`` [m] and ``yaw``, ``pitch`` [rad] change through `put` only, which renews ``pose``."""
+    """One body in an episode.
+
+    Attributes:
+        name: its seat. spec: what it can do. space: the free floor for it now, with shut doorways taken out.
+        pose: where it is; replaced by a new record whenever the body moves, never changed in place.
+        activity: the motion under way, None while idle. outcome: how the last one ended.
+        holding: id of the object in hand or held by a handle, empty for none.
+    """
 
     __slots__ = ("activity", "holding", "name", "outcome", "pose", "space", "spec")
 
@@ -34,7 +41,7 @@ class BodyState:
 
 
 class BodyStates(dict[str, BodyState]):
-    """The bodies of one world by name; asking for one that is not there says which are."""
+    """The bodies of one world by seat; an unknown seat raises UnknownName, which lists the seats."""
 
     def __missing__(self, name: str) -> BodyState:
         raise UnknownName("seat", name, self)

@@ -31,7 +31,7 @@ class DoorState:
         self.clear()
 
     def clear(self) -> None:
-        """As an episode begins: things are closed, doorways open."""
+        """The state at the start of an episode: things closed, doorways open."""
         self.open, self.user = self.opening is not None, ""
         self.share = 1.0 if self.open else 0.0
 
@@ -62,7 +62,7 @@ class Doors:
         return self._leaves.get(thing)
 
     def reset(self) -> None:
-        """Things closed, doorways open, the engine having been reset."""
+        """Begin an episode, after the engine was reset: things closed, doorways open."""
         for id in sorted(self._moved):
             leaf = self._leaves[id]
             leaf.clear()
@@ -85,7 +85,7 @@ class Doors:
         self.changes += 1
 
     def _firm(self, leaf: DoorState) -> None:
-        """A hinged leaf stops objects while it is closed, and only then; a drawer always does."""
+        """A hinged door stops objects only while it is closed; a drawer always does."""
         self._env.model.geom_contype[leaf.geoms] = geoms.SWUNG if leaf.share > 0.0 else geoms.SHUT
 
     def states(self) -> Iterator[ThingState]:

@@ -1,7 +1,6 @@
-"""Doorways that are shut: where nobody can pass and no scan looks through.
+"""Shut doorways, which stop bodies and range scans: each body's free-space grid with them taken out.
 
-Nothing is worked out before a door is shut for the first time. The grids of a world whose doorways are all open are
-those of the house itself.
+Grids are computed when a door is first shut, and kept. While all doorways are open they are those of the house.
 """
 
 from __future__ import annotations
@@ -34,7 +33,7 @@ class Doorways:
         self._known: dict[tuple[str, frozenset[str]], FreeSpace] = {}
 
     def update(self, shut: Mapping[str, Opening]) -> None:
-        """These doorways are shut, all others open."""
+        """Take over which doorways are shut; all others are open."""
         names = frozenset(shut)
         if names == self._shut:
             return
@@ -50,7 +49,7 @@ class Doorways:
 
 
 def leaf_rectangle(opening: Opening) -> tuple[float, float, float, float, float]:
-    """A shut leaf on the plan: centre x, y, half width, half depth [m], yaw."""
+    """A shut door on the floor plan: centre x, y, half width, half depth [m], yaw [rad]."""
     (ax, ay), (bx, by) = opening.a, opening.b
     yaw, half = np.arctan2(by - ay, bx - ax), np.hypot(bx - ax, by - ay) / 2
     return ((ax + bx) / 2, (ay + by) / 2, float(half), LEAF_M / 2, float(yaw))
@@ -64,7 +63,7 @@ def in_doorway(seat: BodyState, opening: Opening) -> bool:
 
 
 def with_obstacles(space: FreeSpace, rectangles: list[tuple[float, float, float, float, float]]) -> FreeSpace:
-    """A copy of a grid in which these rectangles are in the way as well."""
+    """A copy of a grid with these rectangles as further obstacles."""
     rows = np.array(rectangles, dtype=float).reshape(-1, 5)
     cut: Any = copy.copy(space)
     cut.__dict__.pop("components", None)

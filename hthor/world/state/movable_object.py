@@ -11,13 +11,13 @@ from hthor.types import ThingState, Vec3
 from hthor.world.model.inventory import MovableSpec
 
 ABSENT_POSITION: Vec3 = (-500.0, 0.0, 0.0)
-"""Where objects are that are not in the episode, for whoever asks."""
+"""[m] The position reported for objects that are not in the episode."""
 
 
 class MovableObject:
-    """One object. ``present`` is false for what this episode does not use.
+    """One object. ``present`` is false if this episode does not use it.
 
-    ``held_by`` is whose hand it is in, ``bearers`` all who hold it by its handles, whether it is off the floor or not.
+    ``held_by`` is the seat that has it in hand, ``bearers`` all seats that hold it by a handle, lifted or not.
     ``number`` is its row in `Objects.positions`.
     """
 
@@ -32,14 +32,14 @@ class MovableObject:
         self.clear()
 
     def clear(self) -> None:
-        """Out of the world until placed."""
+        """Take it out of the episode."""
         self.present, self.held_by, self.support = False, "", ""
         self.bearers: tuple[str, ...] = ()
         self.position, self.yaw = ABSENT_POSITION, 0.0
         self._state: ThingState | None = None
 
     def at(self, qpos: Sequence[float]) -> None:
-        """Read position and heading from a pose, position and quaternion."""
+        """Take over position and heading from a pose (x, y, z, quaternion)."""
         x, y, z, w, _, _, k = qpos
         self.position, self.yaw = (x, y, z), wrap(2.0 * math.atan2(k, w))
         self._state = None

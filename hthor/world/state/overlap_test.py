@@ -1,4 +1,4 @@
-"""What an object would be inside of, exactly as the engine's shapes are."""
+"""Which solids an object touches or overlaps, by the engine's exact shapes."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from hthor.world.model.geom_index import GeomIndex
 from hthor.world.state.movable_object import MovableObject
 
 OVERLAP_M = 0.005
-"""Two things that are deeper in one another than this are in the same place."""
+"""[m] Solids that overlap by more than this cannot both be there."""
 CONTACT_M = 0.003
-"""Two things that are no farther apart touch."""
+"""[m] Solids that are no farther apart than this touch."""
 FLOOR = "floor"
 _MEETS = geoms.MOVABLE["conaffinity"]
 

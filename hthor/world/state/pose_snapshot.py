@@ -1,4 +1,4 @@
-"""Everything a picture of one moment needs, copied so cheaply that every message can carry it; draws nothing."""
+"""The poses that a picture of one moment needs, cheap enough to be kept with every message."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from hthor.world.model import geoms
 from hthor.world.model.engine import mujoco
 
 FAR_AWAY = (0.0, 0.0, -100.0)
-"""Where a viewer's own body is while a picture is taken through its eyes [m]."""
+"""[m] Where a viewer's own body is put while a picture is taken through its eyes."""
 
 
 class PoseSnapshot(NamedTuple):
@@ -20,7 +20,7 @@ class PoseSnapshot(NamedTuple):
     seats: Mapping[str, tuple[Pose, BodySpec]]
 
     def restore(self, model: Any, data: Any, without: str = "") -> None:
-        """Put everything in ``data``, a copy that nobody steps, where it was; the body ``without`` far away."""
+        """Set ``data``, a copy that is never stepped, to these poses, with the body ``without`` far away."""
         data.qpos[:] = self.qpos
         for index, (name, (pose, _)) in enumerate(self.seats.items()):
             data.mocap_pos[index] = FAR_AWAY if name == without else (pose.x, pose.y, 0.0)

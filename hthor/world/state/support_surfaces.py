@@ -1,6 +1,6 @@
-"""Surfaces of a house in the house frame: what lies on which, and where one more thing fits.
+"""Surfaces of furniture in the house frame: what lies on which, and where one more object fits.
 
-What lies in a drawer rides along, because its surface does: `Places.pull` says how far the drawer is out.
+The surface of a drawer moves with it; see `SupportSurfaces.pull`.
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ from hthor.geometry import plane
 from hthor.types import Joint, Thing, Vec2, Vec3
 
 _SINK_M = 0.03
-"""How far below a surface the underside of what lies on it may be."""
+"""[m] by which the underside of an object may be below the surface that it lies on, as round or tilted ones are."""
 _GAP_M = 0.005
-"""Free air kept on every side of what is put down, and the height from which it is let go."""
+"""[m] kept free on every side of what is put down, and the height from which it is released."""
 
 
 class SupportSurface(Struct, frozen=True, kw_only=True):
     """A surface of ``thing``: ``centre`` [m] house frame, ``half`` [m] along local axes that are turned by ``yaw``.
 
-    ``way`` [m] is how far and where to it goes, house frame, when its drawer is pulled out.
+    ``pull`` [m], house frame, is the displacement of its drawer when fully open; zero for a fixed surface.
     """
 
     thing: str
@@ -35,12 +35,12 @@ class SupportSurface(Struct, frozen=True, kw_only=True):
     yaw: float
     clearance: float
     inside: bool
-    way: Vec3 = (0.0, 0.0, 0.0)
+    pull: Vec3 = (0.0, 0.0, 0.0)
 
     @property
     def slides(self) -> bool:
-        """Whether it is a drawer's."""
-        return self.way != (0.0, 0.0, 0.0)
+        """Whether it is in a drawer."""
+        return self.pull != (0.0, 0.0, 0.0)
 
     def distance(self, x: float, y: float) -> float:
         """Horizontal distance [m] from a point of the house to the nearest point of the surface."""
@@ -54,7 +54,7 @@ class SupportSurface(Struct, frozen=True, kw_only=True):
 
 
 class SupportSurfaces:
-    """Every surface of the things given, in their order."""
+    """Every surface of the given things, in their order."""
 
     def __init__(self, things: Iterable[Thing]) -> None:
         self._closed: dict[str, tuple[SupportSurface, ...]] = {}
@@ -65,7 +65,7 @@ class SupportSurfaces:
         self.reset()
 
     def reset(self) -> None:
-        """All drawers are closed."""
+        """Close all drawers."""
         self._by_thing = dict(self._closed)
         rows = [(*p.centre, *p.half, math.cos(p.yaw), math.sin(p.yaw), p.clearance) for p in self.all()]
         self._rows = np.array(rows).reshape(-1, 8)
@@ -76,11 +76,11 @@ class SupportSurfaces:
         return (place for places in self._by_thing.values() for place in places)
 
     def of(self, thing: str) -> tuple[SupportSurface, ...]:
-        """The thing's surfaces, none for what is no receptacle."""
+        """The thing's surfaces; none for what is no receptacle."""
         return self._by_thing.get(thing, ())
 
     def pull(self, thing: str, share: float) -> None:
-        """The thing's drawers are out by that share of their way, 0 to 1."""
+        """Move the thing's drawers out by a share of their travel, 0 to 1."""
         pulled = tuple(_pulled_out(place, share) for place in self._closed.get(thing, ()))
         if any(place.slides for place in pulled):
             self._by_thing[thing] = pulled
@@ -134,7 +134,7 @@ def _surfaces_of(thing: Thing) -> Iterator[SupportSurface]:
             yaw=thing.yaw,
             clearance=surface.clearance,
             inside=surface.inside,
-            way=_pull_vector(slides.get(surface.moves), thing.yaw),
+            pull=_pull_vector(slides.get(surface.moves), thing.yaw),
         )
 
 
@@ -148,7 +148,7 @@ def _pull_vector(joint: Joint | None, yaw: float) -> Vec3:
 def _pulled_out(place: SupportSurface, share: float) -> SupportSurface:
     if not place.slides:
         return place
-    x, y, z = (at + share * way for at, way in zip(place.centre, place.way, strict=True))
+    x, y, z = (at + share * pull for at, pull in zip(place.centre, place.pull, strict=True))
     return msgspec.structs.replace(place, centre=(x, y, z))
 
 

@@ -23,10 +23,11 @@ from hthor.world.state.support_surfaces import SupportSurface, SupportSurfaces, 
 from hthor.world.validation import static_model
 
 STAYS_M = 0.02
-"""How far from where it was put an object may come to rest."""
+"""[m] by which an object may move from where it was put."""
 WATCHED_S = 2.0
-"""How long it is watched."""
+"""[s] for which it is watched."""
 _LOOKS = 10
+"""How often its position is read in that time."""
 _SOLID = {"contype": 1, "conaffinity": 0}
 _ALONE = {"contype": 2, "conaffinity": 1}
 

@@ -1,4 +1,4 @@
-"""Homes that are generated until one is proved sound."""
+"""Generates homes until one passes all checks."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from hthor.types import HouseSpec
 from hthor.world.validation.house_soundness import check_soundness
 
 RADIUS_M = 0.25
-"""Of the broadest body that a home is proved for."""
+"""[m] Radius of the broadest body that a home is checked for."""
 ATTEMPTS = 20
 """How many homes of one seed are tried."""
 
@@ -21,7 +21,7 @@ ATTEMPTS = 20
 class ValidHome(Struct, frozen=True, kw_only=True):
     """A home that is sound: its ``document`` in ProcTHOR's schema, and the same as a ``house``.
 
-    ``attempt`` counts from 0: how many homes of this seed came to nothing before it. ``refused`` holds the errors of
+    ``attempt`` counts from 0: how many homes of this seed were rejected before it. ``refused`` holds the errors of
     those that the generator had passed and the proof refused, ``findings`` what is left to say of this one.
     """
 

@@ -1,4 +1,4 @@
-"""Proof that a house is one to live in: every rule, the engine's among them."""
+"""All checks of a house: the rules on its plan, and those that need the physics engine."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from hthor.world.validation.penetration import penetration_findings
 
 
 def check_soundness(house: HouseSpec, radius: float = 0.25) -> tuple[Finding, ...]:
-    """Everything that is wrong with a house of our own for bodies up to this radius [m]; errors come first.
+    """All faults of a generated house for bodies up to this radius [m]; errors come first.
 
     The rules of `hthor.houses.checks.house_checks`, applied strictly, ``swing-free`` for the leaves in its doorways
     too, then ``penetration`` and ``surface-takes``.

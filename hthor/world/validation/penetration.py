@@ -10,7 +10,7 @@ from hthor.world.model.engine import mujoco
 from hthor.world.validation import static_model
 
 PENETRATION_MAX_M = 0.005
-"""How deep parts may be in one another: what a solver leaves of a contact, and what nobody sees."""
+"""[m] by which parts may overlap: what a solver leaves of a contact, and too little to be seen."""
 _TOUCHING = {"contype": 1, "conaffinity": 1}
 
 

@@ -1,8 +1,8 @@
-"""Bodies of robots and of the person: moved like puppets, without degrees of freedom.
+"""The bodies of robots and of the person: their poses are written directly, they have no degrees of freedom.
 
-A body meets nothing in the engine. Walls, furniture and other bodies stop it on the free-space grid (see `motion`),
-which is exactly what planners see. Its head turns with the camera: solids and meshes that move with "head" are given
-as they are while the camera looks straight ahead.
+A body collides with nothing in the engine. Walls, furniture and other bodies stop it on the free-space grid, the one
+that planners use (see `hthor.world.motion`). Its head turns with the camera: solids and meshes that move with "head"
+are given as they are while the camera looks straight ahead.
 """
 
 from __future__ import annotations
@@ -29,7 +29,9 @@ from hthor.world.model.engine import Entity, mjcf
 _HAND_HEIGHT = 0.60
 """Height of the hand as a share of the body's height, where its file does not say."""
 _HAND_AHEAD_M = 0.14
+"""[m] from the body's rim to the hand, where its file does not say."""
 _NECK_HEIGHT = 0.93
+"""Height of the neck as a share of the body's height, where its file does not say."""
 _SHELL: Rgba = (0.80, 0.82, 0.84, 1.0)
 _LENS: Rgba = (0.10, 0.11, 0.13, 1.0)
 

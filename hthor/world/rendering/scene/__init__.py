@@ -1,7 +1,6 @@
-"""The stage of the ``nice`` pictures: a house dressed, with lamps and sky.
+"""The visual model for pictures in the profile ``nice``: the house with furniture meshes, lamps and sky.
 
-Nothing of it takes part in the physics: it is compiled apart, from the house, the looks and the bodies, when someone
-asks for the first picture.
+It takes no part in the physics; it is compiled when the first such picture is asked for. Begin with `compile_scene`.
 """
 
 CODE_PART = "pictures"

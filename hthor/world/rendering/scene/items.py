@@ -1,4 +1,4 @@
-"""What stands on the stage, one mesh with its owner and material at a time."""
+"""One mesh of the visual model with its owner and material."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ ALWAYS, INSIDE, ABOVE = 0, 4, 5
 
 
 class SceneMesh(NamedTuple):
-    """A mesh in the house frame. ``owner`` is whose number it bears in a segmentation."""
+    """A mesh in the house frame. ``owner`` is what it counts as in a segmentation."""
 
     owner: str
     mesh: Mesh

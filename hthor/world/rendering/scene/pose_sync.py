@@ -1,4 +1,4 @@
-"""Poses of everything that moves at a moment, read off a private copy of the physics.
+"""Poses of everything that moves, computed on a private copy of the physics model.
 
 A mover's *rest* is its pose with every door and drawer closed; what is drawn there follows it from then on.
 """

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from hthor.geometry import plane
+from hthor.geometry.plane import rectangular_strips
 from hthor.looks import Material, Mesh
 from hthor.types import HouseSpec, Room
 from hthor.world.rendering.scene import materials, wall_meshes
@@ -34,7 +34,7 @@ def _floor(room: Room) -> Mesh:
     scale = materials.repeat(materials.floor(room.floor))
     strips = [
         facet((x0, y0, 0.0), (x1 - x0, 0.0, 0.0), (0.0, y1 - y0, 0.0), (x0, y0))
-        for x0, y0, x1, y1 in plane.rectangular_strips(room.polygon)
+        for x0, y0, x1, y1 in rectangular_strips(room.polygon)
     ]
     return scaled(join(strips), scale)
 
@@ -42,7 +42,7 @@ def _floor(room: Room) -> Mesh:
 def _ceiling(room: Room, height: float) -> Mesh:
     return join(
         facet((x0, y1, height), (x1 - x0, 0.0, 0.0), (0.0, y0 - y1, 0.0))
-        for x0, y0, x1, y1 in plane.rectangular_strips(room.polygon)
+        for x0, y0, x1, y1 in rectangular_strips(room.polygon)
     )
 
 
