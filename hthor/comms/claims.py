@@ -1,4 +1,4 @@
-"""How far a message is from the truth."""
+"""How far the claim of a message is from the truth."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from hthor.geometry import plane
 from hthor.types import HouseSpec, Send, Snapshot, Thing, Vec3
 
 OFF_M = 1.0
-"""A claim is false when what it is about is farther than this from where the message says it is."""
+"""[m] A claim is false if what it is about is farther than this from the claimed position; our choice."""
 
 
 def claim_error(send: Send, position: Vec3 | None, snapshot: Snapshot, house: HouseSpec) -> dict[str, float | None]:

@@ -1,24 +1,26 @@
-"""The one mailbox of a trial: robots send, the person confirms or declines.
+"""The mailbox of a trial: robots send messages, the person accepts or declines them.
 
-A message lives as sent, then shown, and ends as confirmed, declined or covered; one that nobody answers stays sent or
-shown. At most one message is open: a new one, from whichever robot, covers it.
+A message is first "sent", then "shown" to the person, and ends as "confirmed" (accepted), "declined" or "covered"; one
+that is never answered stays sent or shown. At most one message is open: a new one, from any robot, covers it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from hthor import rules
 from hthor.comms import text
 from hthor.types import HUMAN, Event, Message, Receipt, Reply, Send, Status, Vec3
+from hthor.types.observations import ImageSource
 
 _OPEN = ("sent", "shown")
 _NAME_MAX = 80
+"""Characters of the name of an object that a message may be about."""
 
 
 class Mailbox:
-    """Keeps every message of a trial. Nothing that a mind can say makes it raise: what it cannot take, it refuses.
+    """Keeps every message of a trial. It never raises: an invalid message or reply is refused, with a reason.
 
     Args:
         robots: the seats that may send.
@@ -29,10 +31,10 @@ class Mailbox:
         self._messages: list[Message] = []
         self._status: list[Receipt] = []
         self._last: dict[str, int] = {}
-        self._news: set[str] = set()
+        self._changed: set[str] = set()
 
-    def send(self, tick: int, sender: str, send: Send, image: Callable[[], Any] | None = None) -> tuple[Event, ...]:
-        """Put a message in the person's inbox, over the one that is open.
+    def send(self, tick: int, sender: str, send: Send, image: ImageSource = None) -> tuple[Event, ...]:
+        """Put a message in the person's inbox; it covers the open one.
 
         Args:
             image: renders the sender's own frame of this tick when called; it is not called here.
@@ -40,7 +42,7 @@ class Mailbox:
         Returns:
             "covered" for the message that was open, then "sent"; or one "refused" with its reason.
         """
-        reason = self._objection(sender, send)
+        reason = self._send_refusal(sender, send)
         if reason:
             return (self._refused(tick, sender, reason),)
         events = self._cover(tick, sender)
@@ -53,49 +55,49 @@ class Mailbox:
         )
         self._status.append(Receipt(message=number, status="sent", tick=tick))
         self._last[sender] = number
-        self._news.update((HUMAN, sender))
+        self._changed.update((HUMAN, sender))
         data: dict[str, Any] = {"message": number, "text": written, "object": name, "position": _plain(position)}
         if cut:
             data["cut"] = cut
         return (*events, Event(tick=tick, seat=sender, kind="sent", data=data))
 
     def inbox(self, seat: str) -> tuple[Message, ...]:
-        """The open message, for the person; empty for robots. Reading it settles `changed`."""
+        """The open message, for the person; empty for robots. Reading it resets `changed`."""
         if seat != HUMAN:
             return ()
-        self._news.discard(seat)
+        self._changed.discard(seat)
         number = self._open()
         return () if number is None else (self._messages[number],)
 
     def shown(self, tick: int) -> tuple[Event, ...]:
-        """The person was shown the inbox."""
+        """Record that the person was shown the inbox."""
         number = self._open()
         if number is None or self._status[number].status != "sent":
             return ()
-        return (self._turn(tick, number, "shown", HUMAN),)
+        return (self._set_status(tick, number, "shown", HUMAN),)
 
     def reply(self, tick: int, seat: str, reply: Reply) -> tuple[Event, ...]:
-        """The person's answer to the open message: "confirmed" or "declined", or "refused" with its reason."""
-        reason = self._protest(seat, reply)
+        """Record the person's answer: "confirmed" (accepted) or "declined"; or "refused", with a reason."""
+        reason = self._reply_refusal(seat, reply)
         if reason:
             return (self._refused(tick, seat, reason, message=reply.message),)
-        return (self._turn(tick, reply.message, "confirmed" if reply.accept else "declined", seat),)
+        return (self._set_status(tick, reply.message, "confirmed" if reply.accept else "declined", seat),)
 
     def receipt(self, seat: str) -> Receipt | None:
-        """What became of the last message of this robot, None before its first. Reading it settles `changed`."""
+        """The status of this robot's last message, None before its first. Reading it resets `changed`."""
         number = self._last.get(seat)
         if number is None:
             return None
-        self._news.discard(seat)
+        self._changed.discard(seat)
         return self._status[number]
 
     def changed(self, seat: str) -> bool:
-        """Whether the person's inbox, or the robot's receipt, is news to this seat since it last read it."""
-        return seat in self._news
+        """Whether the person's inbox, or the robot's receipt, has changed since this seat last read it."""
+        return seat in self._changed
 
     @property
     def messages(self) -> tuple[tuple[Message, Receipt], ...]:
-        """Every message sent so far, with what became of it."""
+        """Every message sent so far, with its status."""
         return tuple(zip(self._messages, self._status, strict=True))
 
     def _open(self) -> int | None:
@@ -106,17 +108,17 @@ class Mailbox:
         number = self._open()
         if number is None:
             return ()
-        return (self._turn(tick, number, "covered", sender, by=number + 1),)
+        return (self._set_status(tick, number, "covered", sender, by=number + 1),)
 
-    def _turn(self, tick: int, number: int, status: Status, seat: str, **more: int) -> Event:
+    def _set_status(self, tick: int, number: int, status: Status, seat: str, **more: int) -> Event:
         """Move a message on to its next status."""
         self._status[number] = Receipt(message=number, status=status, tick=tick)
         sender = self._messages[number].sender
         if self._last[sender] == number:
-            self._news.add(sender)
+            self._changed.add(sender)
         return Event(tick=tick, seat=seat, kind=status, data={"message": number, "sender": sender, **more})
 
-    def _objection(self, sender: str, send: Send) -> str:
+    def _send_refusal(self, sender: str, send: Send) -> str:
         if sender not in self._robots:
             return f"only robots send messages, this trial's are: {', '.join(self._robots) or 'none'}"
         written: tuple[Any, Any] = (send.text, send.object)
@@ -126,7 +128,7 @@ class Mailbox:
             return "position must be None or three finite numbers x, y, z in metres of the house frame"
         return ""
 
-    def _protest(self, seat: str, reply: Reply) -> str:
+    def _reply_refusal(self, seat: str, reply: Reply) -> str:
         if seat != HUMAN:
             return "only the person replies"
         number: Any = reply.message
@@ -145,5 +147,5 @@ class Mailbox:
 
 
 def _plain(position: Vec3 | None) -> list[float] | None:
-    """Millimetres are all that a log needs of a belief."""
+    """A position for the log, to the millimetre."""
     return None if position is None else [round(number, 3) for number in position]

@@ -1,4 +1,4 @@
-"""What a robot may write, made fit to be shown and logged."""
+"""Cleans what agents write, so that it can be shown and logged."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 from hthor.types import Vec3
 
 _READ_FACTOR = 8
-"""Times the limit: what a text has beyond that is not even looked at, so that a long one costs no more."""
+"""A text is read only up to this many times the limit, so that a very long one costs no more."""
 
 
 def clean_text(text: str, limit: int) -> tuple[str, int]:

@@ -1,23 +1,31 @@
 """Line of sight through boxes, compiled.
 
-Every solid is handled as an oriented box: a cylinder or a sphere by the box around it, so round things hide a little
-more than they should. Arrays are laid out as MuJoCo lays out geoms, so that its own arrays can be passed as they are.
+Every solid is treated as an oriented box, a cylinder or a sphere as the box around it, so round things hide slightly
+more than they should. Arrays have the layout of MuJoCo's geoms, so that its own arrays can be passed.
 """
 
 from __future__ import annotations
-
-from typing import Any
 
 import numba
 import numpy as np
 from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Bools = NDArray[np.bool_]
 
 
 @numba.njit(cache=True)  # type: ignore[misc, unused-ignore]
 def is_blocked(
-    eye: Floats, point: Floats, half: Any, pos: Any, mat: Any, radius: Any, ids: Any, skip0: int, skip1: int
+    eye: Floats,
+    point: Floats,
+    half: Floats,
+    pos: Floats,
+    mat: Floats,
+    radius: Floats,
+    ids: Ints,
+    skip0: int,
+    skip1: int,
 ) -> bool:
     """Whether the segment from ``eye`` to ``point`` (3,) [m] meets any box of ``ids``.
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
-from typing import Any
 
+from hthor.geometry.ray_casting import Floats
 from hthor.types import Vec2
 from hthor.world.carrying import trailer_kernel
 
@@ -18,7 +18,7 @@ TAUT_MARGIN_M = 0.05
 """[m] clear of corners at which a path is pulled taut."""
 
 
-def aim_index(path: Sequence[Vec2], obstacles: Any) -> int:
+def aim_index(path: Sequence[Vec2], obstacles: Floats) -> int:
     """Index of the last point of a path that can be reached in a straight line from its first, clear of corners.
 
     The clearance is the largest of `MARGINS_M` with which there is such a point at least `AHEAD_M` away.
@@ -32,7 +32,7 @@ def aim_index(path: Sequence[Vec2], obstacles: Any) -> int:
     return next((k for k in range(1, len(path)) if math.dist(path[0], path[k]) >= AHEAD_M), len(path) - 1)
 
 
-def taut_length(path: Sequence[Vec2], obstacles: Any) -> float:
+def taut_length(path: Sequence[Vec2], obstacles: Floats) -> float:
     """Length [m] of the path when it is pulled taut around walls and furniture."""
     total, here = 0.0, 0
     while here < len(path) - 1:

@@ -17,6 +17,8 @@ from typing import Any
 import numba
 import numpy as np
 
+from hthor.geometry.ray_casting import Floats
+
 _END_SLACK_M, _TOLERANCE_M = 0.005, 1e-6
 """[m] A line may start or end this much closer to a rectangle than its margin; errors below the second count as 0."""
 _PULL_ROUNDS, _PUSH_ROUNDS, _WALL_PASSES = 12, 6, 2
@@ -24,7 +26,7 @@ _PULL_ROUNDS, _PUSH_ROUNDS, _WALL_PASSES = 12, 6, 2
 
 
 @numba.njit(cache=True)
-def _displace(state: Any, half: Any, px: float, py: float, dx: float, dy: float) -> None:
+def _displace(state: Floats, half: Floats, px: float, py: float, dx: float, dy: float) -> None:
     """Shift and turn the rectangle so that its point (px, py) moves by (dx, dy) [m]."""
     length = math.hypot(dx, dy)
     if length < 1e-12:
@@ -51,7 +53,7 @@ def _within(x: float, y: float, cos: float, sin: float, a: float, b: float) -> b
 
 
 @numba.njit(cache=True)
-def rectangle_contact(state: Any, half: Any, row: Any) -> Any:
+def rectangle_contact(state: Floats, half: Floats, row: Floats) -> Any:
     """Depth [m] of the overlap with another rectangle (0 for none), the direction out of it, and the contact point."""
     dx, dy = row[0] - state[0], row[1] - state[1]
     if math.hypot(dx, dy) > math.hypot(half[0], half[1]) + math.hypot(row[2], row[3]):
@@ -90,7 +92,7 @@ def rectangle_contact(state: Any, half: Any, row: Any) -> Any:
 
 
 @numba.njit(cache=True)
-def disc_contact(state: Any, half: Any, disc: Any) -> Any:
+def disc_contact(state: Floats, half: Floats, disc: Floats) -> Any:
     """As `rectangle_contact`, for a disc."""
     cos, sin = math.cos(state[2]), math.sin(state[2])
     dx, dy = disc[0] - state[0], disc[1] - state[1]
@@ -110,7 +112,7 @@ def disc_contact(state: Any, half: Any, disc: Any) -> Any:
 
 
 @numba.njit(cache=True)
-def deepest_contacts(state: Any, half: Any, rows: Any, discs: Any) -> Any:
+def deepest_contacts(state: Floats, half: Floats, rows: Floats, discs: Floats) -> Any:
     """The greatest depth [m] to which the rectangle overlaps the rectangles, and the discs."""
     wall, body = 0.0, 0.0
     for k in range(len(rows)):
@@ -121,7 +123,9 @@ def deepest_contacts(state: Any, half: Any, rows: Any, discs: Any) -> Any:
 
 
 @numba.njit(cache=True)
-def relax(state: Any, half: Any, ends: Any, hands: Any, ropes: Any, pulls: Any, rows: Any, discs: Any) -> Any:
+def relax(
+    state: Floats, half: Floats, ends: Floats, hands: Floats, ropes: Floats, pulls: Floats, rows: Floats, discs: Floats
+) -> Any:
     """The rectangle's state after it was pulled to the hands and pushed out of all obstacles.
 
     Args:
@@ -161,7 +165,7 @@ def relax(state: Any, half: Any, ends: Any, hands: Any, ropes: Any, pulls: Any, 
 
 
 @numba.njit(cache=True)
-def nearby_rectangles(state: Any, reach: float, rows: Any) -> Any:
+def nearby_rectangles(state: Floats, reach: float, rows: Floats) -> Any:
     """The rectangles that come nearer than ``reach`` [m] to its centre."""
     keep = np.zeros(len(rows), np.bool_)
     for k in range(len(rows)):
@@ -174,7 +178,7 @@ def nearby_rectangles(state: Any, reach: float, rows: Any) -> Any:
 
 
 @numba.njit(cache=True)
-def is_line_blocked(ax: float, ay: float, bx: float, by: float, rows: Any, margin: float) -> bool:
+def is_line_blocked(ax: float, ay: float, bx: float, by: float, rows: Floats, margin: float) -> bool:
     """Whether a line between two points [m] comes nearer than ``margin`` [m] to any rectangle.
 
     Coming as near as one of its own ends does not count.

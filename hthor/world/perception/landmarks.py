@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
 
 import numpy as np
 from msgspec import Struct
 
 from hthor import catalog
 from hthor.geometry.plane import to_house
+from hthor.geometry.ray_casting import Floats
 from hthor.houses.space.solids import WALL_M
 from hthor.types import Opening, Thing, Vec3
 
@@ -46,7 +46,7 @@ def landmarks(statics: Iterable[Thing], openings: Iterable[Opening]) -> tuple[La
     )
 
 
-def pack_targets(found: Sequence[Landmark], span: Mapping[str, tuple[int, int]]) -> tuple[Any, Any]:
+def pack_targets(found: Sequence[Landmark], span: Mapping[str, tuple[int, int]]) -> tuple[Floats, Floats]:
     """``balls`` and ``spots`` for `visibility_kernel.visible_targets`; ``span`` gives the geoms of each landmark."""
     balls, begin = np.zeros((7, len(found) + 1)), 0
     for number, landmark in enumerate(found):

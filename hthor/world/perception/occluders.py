@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 import numba
 import numpy as np
-from numpy.typing import NDArray
 
+from hthor.geometry.ray_casting import Floats, Ints
 from hthor.world.model.geom_index import GeomIndex
 
 _GROUP_MAX = 8
@@ -16,8 +15,6 @@ _GROUP_MAX = 8
 _GROUPED_RADIUS_MAX_M = 0.8
 """A larger solid [m] is a group of its own: it would make any other group large."""
 
-Floats = NDArray[np.float64]
-Ints = NDArray[np.int64]
 OccluderArrays = tuple[Floats, Floats, Floats, int, int]
 """``groups, spheres, boxes, fixed, count`` of `Occluders`, in the order in which kernels take them."""
 
@@ -95,7 +92,9 @@ def _boxes(index: GeomIndex, geoms: Ints) -> Floats:
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _copy_solids(pos: Any, radius: Any, half: Any, mat: Any, loose: Any, spheres: Any, boxes: Any, begin: int) -> None:
+def _copy_solids(
+    pos: Floats, radius: Floats, half: Floats, mat: Floats, loose: Ints, spheres: Floats, boxes: Floats, begin: int
+) -> None:
     """Write the ``loose`` solids to ``spheres`` and ``boxes``, from column and row ``begin`` on."""
     for at in range(len(loose)):
         g, to = loose[at], begin + at

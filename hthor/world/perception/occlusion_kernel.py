@@ -8,11 +8,12 @@ from typing import Any
 import numba
 import numpy as np
 
-from hthor.world.perception.view_frustum import mark_spheres_in_view, sphere_in_view
+from hthor.geometry.ray_casting import Floats, Ints
+from hthor.world.perception.view_frustum import ViewAxes, mark_spheres_in_view, sphere_in_view
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _box_blocks(box: Any, px: float, py: float, pz: float, ux: float, uy: float, uz: float) -> bool:
+def _box_blocks(box: Floats, px: float, py: float, pz: float, ux: float, uy: float, uz: float) -> bool:
     """Whether a solid whose middle is at (px, py, pz) from the eye meets the line of sight; as
     `hthor.geometry.ray_casting` has it.
     """
@@ -33,7 +34,7 @@ def _box_blocks(box: Any, px: float, py: float, pz: float, ux: float, uy: float,
 
 
 @numba.njit(cache=True, error_model="numpy")
-def occlusion_leeway(box: Any, px: float, py: float, pz: float, ux: float, uy: float, uz: float) -> float:
+def occlusion_leeway(box: Floats, px: float, py: float, pz: float, ux: float, uy: float, uz: float) -> float:
     """How far [m] the eye may go, at the same height, before the line of sight (ux, uy, uz) can miss a solid it meets.
 
     The line crosses the solid's middle plane, across its thinnest side with the normal n, at a point c. On an axis a of
@@ -65,7 +66,9 @@ def occlusion_leeway(box: Any, px: float, py: float, pz: float, ux: float, uy: f
 
 
 @numba.njit(cache=True, error_model="numpy")
-def nearby_occluders(view: Any, farthest: float, groups: Any, spheres: Any, fixed: int, count: int) -> tuple[Any, Any]:
+def nearby_occluders(
+    view: ViewAxes, farthest: float, groups: Floats, spheres: Floats, fixed: int, count: int
+) -> tuple[Any, Any]:
     """The solids that reach into the field of view, no farther away than ``farthest``.
 
     Returns:
@@ -95,7 +98,7 @@ def nearby_occluders(view: Any, farthest: float, groups: Any, spheres: Any, fixe
 
 @numba.njit(cache=True, error_model="numpy")
 def first_occluder(
-    ux: float, uy: float, uz: float, first: float, end: float, last: int, ids: Any, rel: Any, boxes: Any
+    ux: float, uy: float, uz: float, first: float, end: float, last: int, ids: Ints, rel: Floats, boxes: Floats
 ) -> int:
     """What hides the point at (ux, uy, uz) from the eye, -1 for nothing; the test is that of
     `hthor.geometry.ray_casting`.

@@ -8,6 +8,7 @@ from typing import Any
 import numba
 import numpy as np
 
+from hthor.geometry.ray_casting import Bools, Floats
 from hthor.houses.space import grid_kernel, solids
 from hthor.houses.space.free_space import FreeSpace
 from hthor.types import BodySpec, HouseSpec, Pose, RobotSpec, Scan
@@ -49,15 +50,15 @@ def _tops(house: HouseSpec, space: FreeSpace, height: float) -> np.ndarray:
 
 @numba.njit(cache=True)
 def _march(
-    raw: Any,
-    tops: Any,
+    raw: Bools,
+    tops: Floats,
     ox: float,
     oy: float,
     cell: float,
     x: float,
     y: float,
     yaw: float,
-    bearings: Any,
+    bearings: Floats,
     limit: float,
     over: float,
 ) -> Any:

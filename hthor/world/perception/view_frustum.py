@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import functools
 import math
-from typing import Any
 
 import numba
 import numpy as np
 
+from hthor.geometry.ray_casting import Bools, Floats
 from hthor.types import BodySpec, Pose, Vec2, Vec3
 
+ViewAxes = tuple[float, ...]
+"""An eye [m], its forward, left and up axes, and the tangents of half its fields of view: 14 numbers."""
 
-def view_vector(pose: Pose, spec: BodySpec) -> Any:
+
+def view_vector(pose: Pose, spec: BodySpec) -> Floats:
     """(14,) float64: eye [m], forward, left and up axes (house frame), tangents of half the fields of view."""
     cy, sy, cp, sp = (
         math.cos(pose.yaw),
@@ -59,7 +62,7 @@ def look_points(position: Vec3, size: Vec3) -> tuple[Vec3, Vec3]:
 
 
 @numba.njit(cache=True, error_model="numpy")
-def nearest_distance(x: float, y: float, z: float, positions: Any) -> float:
+def nearest_distance(x: float, y: float, z: float, positions: Floats) -> float:
     """Distance [m] from an eye to the nearest of ``positions`` (N, 3), infinite when there is none."""
     best = math.inf
     for k in range(len(positions)):
@@ -69,14 +72,14 @@ def nearest_distance(x: float, y: float, z: float, positions: Any) -> float:
 
 
 @numba.njit(cache=True, error_model="numpy")
-def view_axes(x: float, y: float, z: float, yaw: float, pitch: float, wide: float, high: float) -> Any:
+def view_axes(x: float, y: float, z: float, yaw: float, pitch: float, wide: float, high: float) -> ViewAxes:
     """An eye [m], its forward, left and up axes, and the tangents of half its fields of view: 14 numbers."""
     cy, sy, cp, sp = math.cos(yaw), math.sin(yaw), math.cos(pitch), math.sin(pitch)
     return x, y, z, cp * cy, cp * sy, sp, -sy, cy, 0.0, -sp * cy, -sp * sy, cp, wide, high
 
 
 @numba.njit(cache=True, error_model="numpy")
-def in_frame(view: Any, dx: float, dy: float, dz: float) -> bool:
+def in_frame(view: ViewAxes, dx: float, dy: float, dz: float) -> bool:
     """Whether a point at (dx, dy, dz) [m] from the eye is in the field of view."""
     ahead = dx * view[3] + dy * view[4] + dz * view[5]
     left = dx * view[6] + dy * view[7] + dz * view[8]
@@ -85,7 +88,7 @@ def in_frame(view: Any, dx: float, dy: float, dz: float) -> bool:
 
 
 @numba.njit(cache=True, error_model="numpy")
-def sphere_in_view(view: Any, reach: float, balls: Any, i: int) -> bool:
+def sphere_in_view(view: ViewAxes, reach: float, balls: Floats, i: int) -> bool:
     """Whether ball ``i`` of (4, N), middles and radii [m], is, in part, within reach and in the field of view."""
     ex, ey, ez, fx, fy, fz = view[0], view[1], view[2], view[3], view[4], view[5]
     lx, ly, lz, ux, uy, uz, w, h = view[6], view[7], view[8], view[9], view[10], view[11], view[12], view[13]
@@ -100,7 +103,7 @@ def sphere_in_view(view: Any, reach: float, balls: Any, i: int) -> bool:
 
 
 @numba.njit(cache=True, error_model="numpy")
-def mark_spheres_in_view(view: Any, reach: float, balls: Any, out: Any) -> None:
+def mark_spheres_in_view(view: ViewAxes, reach: float, balls: Floats, out: Bools) -> None:
     """Mark the balls of which this is so."""
     for i in range(len(out)):
         out[i] = sphere_in_view(view, reach, balls, i)

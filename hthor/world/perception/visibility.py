@@ -10,11 +10,12 @@ import numpy as np
 from msgspec.structs import force_setattr
 
 from hthor import rules
+from hthor.geometry.ray_casting import Floats, Ints
 from hthor.types import HUMAN, Detection, Opening, Pose, Sighting, Thing, Vec2, Vec3
 from hthor.world.model.geom_index import GeomIndex
 from hthor.world.perception import view_frustum, visibility_kernel, visible_fraction
 from hthor.world.perception.landmarks import Landmark, landmarks, pack_targets
-from hthor.world.perception.occluders import Floats, Ints, Occluders
+from hthor.world.perception.occluders import Occluders
 from hthor.world.state.body_state import BodyState
 from hthor.world.state.doors import Doors
 from hthor.world.state.movable_object import MovableObject

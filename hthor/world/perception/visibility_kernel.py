@@ -12,12 +12,15 @@ from typing import Any
 import numba
 import numpy as np
 
+from hthor.geometry.ray_casting import Bools, Floats, Ints
 from hthor.world.perception.occlusion_kernel import first_occluder, nearby_occluders, occlusion_leeway
-from hthor.world.perception.view_frustum import in_frame, mark_spheres_in_view, view_axes
+from hthor.world.perception.view_frustum import ViewAxes, in_frame, mark_spheres_in_view, view_axes
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _mark_fixed_targets(view: Any, reach: float, balls: Any, points: Any, out: Any, marked: Any) -> float:
+def _mark_fixed_targets(
+    view: ViewAxes, reach: float, balls: Floats, points: Floats, out: Bools, marked: Bools
+) -> float:
     """Of targets that never move, mark those in reach that have points to look at, and these; the farthest, squared.
 
     A point is looked at when it is in the field of view and not sure to be hidden still.
@@ -48,7 +51,7 @@ def _mark_fixed_targets(view: Any, reach: float, balls: Any, points: Any, out: A
 
 
 @numba.njit(cache=True, error_model="numpy")
-def _mark_moving_target(view: Any, reach: float, small: bool, points: Any, k: int, marked: Any) -> float:
+def _mark_moving_target(view: ViewAxes, reach: float, small: bool, points: Floats, k: int, marked: Bools) -> float:
     """Mark the points of a target in reach that are in the field of view; the squared distance of the farther, or 0.
 
     A target is in reach by either of its points, a small one only by its first.
@@ -77,17 +80,17 @@ def visible_targets(
     wide: float,
     high: float,
     small: int,
-    points: Any,
-    wanted: Any,
+    points: Floats,
+    wanted: Floats,
     reach: float,
-    balls: Any,
-    spots: Any,
-    groups: Any,
-    spheres: Any,
-    boxes: Any,
+    balls: Floats,
+    spots: Floats,
+    groups: Floats,
+    spheres: Floats,
+    boxes: Floats,
     fixed: int,
     count: int,
-    order: Any,
+    order: Ints,
 ) -> Any:
     """Which targets are in view: within reach by any of their points, and any point in the field of view and unhidden.
 

@@ -8,6 +8,7 @@ from typing import Any
 import numba
 import numpy as np
 
+from hthor.geometry.ray_casting import Floats
 from hthor.types import Vec3
 from hthor.world.perception.occlusion_kernel import first_occluder, nearby_occluders
 from hthor.world.perception.view_frustum import in_frame, view_axes
@@ -36,13 +37,13 @@ def measure(
     pitch: float,
     wide: float,
     high: float,
-    points: Any,
+    points: Floats,
     index: int,
-    others: Any,
-    wanted: Any,
-    groups: Any,
-    spheres: Any,
-    boxes: Any,
+    others: Floats,
+    wanted: Floats,
+    groups: Floats,
+    spheres: Floats,
+    boxes: Floats,
     fixed: int,
     count: int,
 ) -> Any:
