@@ -1,4 +1,4 @@
-"""The records that rooms hand to one another.
+"""The records that rooms pass to one another; begin with `events` (`Mind`) and `observations`.
 
 Frames and units, everywhere in hthor: metres, radians, seconds; the *house frame* is MuJoCo's world frame (x right,
 y forward, z up). A body's ``yaw`` is its heading, counter-clockwise from +x. A thing's ``yaw`` turns its *local
@@ -10,23 +10,8 @@ from __future__ import annotations
 from hthor.types.actions import Action, Close, Drop, Motion, Move, Open, Pick, Place, Reply, Rotate, Send, Wait
 from hthor.types.events import Event, Mind, Snapshot
 from hthor.types.house import HUMAN, HouseSpec, Joint, Opening, Part, Pose, Rgba, Room, Surface, Thing, Vec2, Vec3, Wall
-from hthor.types.observations import (
-    Briefing,
-    Camera,
-    CameraSpec,
-    Detection,
-    DetectorSpec,
-    Message,
-    Observation,
-    Outcome,
-    Receipt,
-    Scan,
-    Senses,
-    Sighting,
-    Status,
-    ThingState,
-    View,
-)
+from hthor.types.observations import Briefing, Message, Observation, Outcome, Receipt, Status, ThingState
+from hthor.types.sensors import Camera, CameraSpec, Detection, DetectorSpec, Scan, Senses, Sighting, View
 from hthor.types.specs import AgentRef, BodySpec, Goal, Job, Placement, RobotSeat, RobotSpec, TaskSpec, TrialSpec
 
 __all__ = [

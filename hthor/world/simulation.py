@@ -39,16 +39,15 @@ from hthor.world.state.body_state import BodyState
 class Simulation:
     """A house, one person and any number of robots.
 
-    The model is compiled once, here; `reset` only writes poses. After it a world gives the same states for the same
-    motions, bit for bit, however often it was reset before.
+    The model is compiled once, here; `reset` only writes poses. After a reset, the same motions give the same states,
+    bit for bit.
 
     Args:
         house: a floor plan, or the name of one.
         robots: the robots' bodies or their names; they sit at "robot", "robot2", ...
         objects: (id, kind) pairs of the movable objects that tasks may place, besides the house's own.
-        detectors: how the robots' detectors err, in their order: a record, or what
-            `hthor.types.detector_specs.parse` reads; "own",
-            and where there is none, stands for what the body declares.
+        detectors: how the robots' detectors err, in their order: records, or what `hthor.types.detector_specs.parse`
+            takes; "own", the default, is what the body declares.
 
     Attributes:
         house: the floor plan. seats: names of all seats, the person's first. bodies: what each seat's body can do.
@@ -73,13 +72,12 @@ class Simulation:
         self._contents = inventory.split_things(self.house, objects)
         with collection_paused():
             parts = SimulationParts(self.house, self._contents, self.bodies, self.space, self.detectors)
-        self._task, self._env = parts.task, parts.env
+        self._task, self._env, self._truth = parts.task, parts.env, parts.truth
         self._geoms, self._objects, self._seats = parts.geoms, parts.objects, parts.seats
         self._rooms, self._doorways, self._doors = parts.rooms, parts.doorways, parts.doors
         self._door_handling, self._joint_carrying = parts.door_handling, parts.joint_carrying
         self._manipulation, self._dispatch, self._editor = parts.manipulation, parts.dispatch, parts.editor
         self._scanners, self._visibility, self._detectors = parts.scanners, parts.visibility, parts.detectors
-        self._truth = parts.truth
         self.tick, self._episode = 0, 0
         spawn.place_bodies(tuple(self._seats.values()), self.house.start, ())
         self._begin({})
@@ -89,26 +87,17 @@ class Simulation:
         """The compiled `mujoco.MjModel`; changing it makes results undefined."""
         return self._env.model
 
-    # ------------------------------------------------------------------------------------------------------- episodes
-
     def reset(self, task: TaskSpec, seed: int = 0) -> None:
-        """Begin a task: its objects in place and asleep, the house's own where the house has them, what opens closed,
-        all doorways open.
+        """Begin a task: all objects in place and asleep, things closed, doorways open.
 
-        A body whose start is not free stands at the nearest free place; a robot for which the task gives no start,
-        at the nearest place to the first robot's start that keeps clear of the others.
-
-        Args:
-            seed: of all chance in the episode: the errors of noisy detectors.
+        A body whose start is not free stands at the nearest free place; a robot without a start in the task, at the
+        nearest place to the first robot's start that is clear of the others. ``seed`` decides all chance in the
+        episode, which is the errors of noisy detectors.
 
         Raises:
             TaskError: when the task belongs to another house or places an object that this world does not have.
         """
-        if task.house_sha256 and self.house.sha256 and task.house_sha256 != self.house.sha256:
-            raise TaskError(
-                task.id, "house_sha256", f"made for another version of house '{task.house}'; generate it again"
-            )
-        spawn.check_numbers(task)
+        spawn.check_task(task, self.house)
         self._begin({placement.id: placement for placement in task.objects}, task.id)
         self._seed = seed
         spawn.place_bodies(tuple(self._seats.values()), task.human_start, task.robot_starts)
@@ -136,8 +125,6 @@ class Simulation:
         self.tick = 0
         self._episode += 1
         self._events: list[Event] = []
-
-    # -------------------------------------------------------------------------------------------------------- motions
 
     def idle(self, seat: str) -> bool:
         """Whether the seat's body is free for a new motion."""
@@ -227,8 +214,7 @@ class Simulation:
         """Put a body somewhere at once; what it was doing ends.
 
         Raises:
-            HthorError: when its body does not fit there, somebody is there, or the pose is none: numbers that are not
-                finite, or a camera pitch beyond the body's limit.
+            HthorError: when the body does not fit there, another is there, or a number is not finite or out of range.
         """
         body, pose = self._seats[seat], numbers.pose(pose)
         spawn.check_fits(body, pose, self._seats.values())
@@ -237,8 +223,6 @@ class Simulation:
         self._joint_carrying.release(body)
         if body.holding:
             self._objects.follow(body.holding)
-
-    # -------------------------------------------------------------------------------------------------------- objects
 
     def put_object(
         self,
@@ -269,8 +253,7 @@ class Simulation:
         """Take an object out of the episode; `put_object` brings it back.
 
         Raises:
-            UnknownName: when there is no such object.
-            HthorError: when it is in someone's hand.
+            UnknownName: when there is no such object. HthorError: when it is in a hand.
         """
         self._editor.remove(id)
 
@@ -278,12 +261,9 @@ class Simulation:
         """Open or close a fridge, a drawer or a door at once.
 
         Raises:
-            UnknownName: when no such thing opens.
-            HthorError: when something is in its way.
+            UnknownName: when no such thing opens. HthorError: when something is in its way.
         """
         self._door_handling.put(thing, wanted)
-
-    # ---------------------------------------------------------------------------------------------------------- truth
 
     @property
     def still(self) -> bool:

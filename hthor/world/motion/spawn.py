@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from hthor.errors import HthorError, TaskError
 from hthor.geometry.plane import wrap
-from hthor.types import Pose, TaskSpec, Vec2
+from hthor.types import HouseSpec, Pose, TaskSpec, Vec2
 from hthor.world import numbers
 from hthor.world.state.body_state import BodyState
 
@@ -76,8 +76,11 @@ def check_fits(body: BodyState, pose: Pose, seats: Iterable[BodyState]) -> None:
             )
 
 
-def check_numbers(task: TaskSpec) -> None:
-    """Raise TaskError for a task with a position, heading or pose that is not a finite number."""
+def check_task(task: TaskSpec, house: HouseSpec) -> None:
+    """Raise TaskError for a task of another version of the house, or with a number that is not finite."""
+    if task.house_sha256 and house.sha256 and task.house_sha256 != house.sha256:
+        problem = f"made for another version of house '{task.house}'; generate the task again"
+        raise TaskError(task.id, "house_sha256", problem)
     try:
         for placement in task.objects:
             numbers.point3(f"position of {placement.id}", placement.position)

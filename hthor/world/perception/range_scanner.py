@@ -50,18 +50,9 @@ def _tops(house: HouseSpec, space: FreeSpace, height: float) -> np.ndarray:
 
 @numba.njit(cache=True)
 def _march(
-    raw: Bools,
-    tops: Floats,
-    ox: float,
-    oy: float,
-    cell: float,
-    x: float,
-    y: float,
-    yaw: float,
-    bearings: Floats,
-    limit: float,
-    over: float,
-) -> Any:
+    raw: Bools, tops: Floats, ox: float, oy: float, cell: float, x: float, y: float, yaw: float, bearings: Floats,
+    limit: float, over: float,
+) -> Any:  # fmt: skip
     """Ranges, tops and what lies beyond (N,) [m]: each beam goes from cell edge to cell edge until it enters a cell
     that is not clear, and then on over everything that is lower than ``over`` [m].
     """

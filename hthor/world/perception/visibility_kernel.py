@@ -72,26 +72,10 @@ def _mark_moving_target(view: ViewAxes, reach: float, small: bool, points: Float
 
 @numba.njit(cache=True, error_model="numpy")
 def visible_targets(
-    x: float,
-    y: float,
-    z: float,
-    yaw: float,
-    pitch: float,
-    wide: float,
-    high: float,
-    small: int,
-    points: Floats,
-    wanted: Floats,
-    reach: float,
-    balls: Floats,
-    spots: Floats,
-    groups: Floats,
-    spheres: Floats,
-    boxes: Floats,
-    fixed: int,
-    count: int,
-    order: Ints,
-) -> Any:
+    x: float, y: float, z: float, yaw: float, pitch: float, wide: float, high: float,
+    small: int, points: Floats, wanted: Floats, reach: float, balls: Floats, spots: Floats,
+    groups: Floats, spheres: Floats, boxes: Floats, fixed: int, count: int, order: Ints,
+) -> Any:  # fmt: skip
     """Which targets are in view: within reach by any of their points, and any point in the field of view and unhidden.
 
     There are targets that may move, with two points each, and others that never do.

@@ -30,23 +30,10 @@ def sample_points(position: Vec3, size: Vec3, yaw: float, looked_for: tuple[Vec3
 
 @numba.njit(cache=True, error_model="numpy")
 def measure(
-    x: float,
-    y: float,
-    z: float,
-    yaw: float,
-    pitch: float,
-    wide: float,
-    high: float,
-    points: Floats,
-    index: int,
-    others: Floats,
-    wanted: Floats,
-    groups: Floats,
-    spheres: Floats,
-    boxes: Floats,
-    fixed: int,
-    count: int,
-) -> Any:
+    x: float, y: float, z: float, yaw: float, pitch: float, wide: float, high: float,
+    points: Floats, index: int, others: Floats, wanted: Floats,
+    groups: Floats, spheres: Floats, boxes: Floats, fixed: int, count: int,
+) -> Any:  # fmt: skip
     """Share of the points of one target that are in view, and how many others in view appear beside it.
 
     Args:
