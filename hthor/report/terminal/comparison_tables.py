@@ -58,15 +58,6 @@ def comparison_lines(pair: Comparison) -> Iterator[str]:
     yield pair.sentence
 
 
-def difference_line(found: Difference, unit: Unit) -> str:
-    """A difference with its interval, in one line."""
-    value = f"{format_difference(found.difference, unit)} {unit.difference}".rstrip()
-    if found.ci95 is None:
-        return value
-    low, high = (format_difference(end, unit) for end in found.ci95)
-    return f"{value} (95 % interval {low} to {high}, {found.n} trials)"
-
-
 def _cells(found: Difference, unit: Unit) -> Iterator[str]:
     yield from (f"{unit.scale * value:.1f}" for value in (found.first, found.second))
     yield format_difference(found.difference, unit)
