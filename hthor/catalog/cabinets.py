@@ -98,7 +98,7 @@ def _cupboard(size: Vec3, body: Rgba, inner: Rgba, *, bottom: float, shelf: floa
 def _drawer(
     size: Vec3, lo: Vec3, hi: Vec3, depth: float, rgba: Rgba, front: Rgba
 ) -> tuple[tuple[Part, ...], Surface, Joint]:
-    """A drawer that fills the space from ``lo`` to ``hi`` but for a little air, its front the last of its parts."""
+    """A drawer that fills the space from ``lo`` to ``hi`` except for a small gap, its front the last of its parts."""
     wall, air = min(0.012, 0.1 * (hi[0] - lo[0]), 0.1 * (hi[2] - lo[2])), 0.03 * (hi[2] - lo[2])
     near, far = (lo[0] + air, lo[1] + air, lo[2] + air), (hi[0] - air, hi[1], hi[2] - air)
     parts = tray(size, "drawer", near, far, wall, rgba)

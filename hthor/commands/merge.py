@@ -23,8 +23,8 @@ def merge(
 ) -> None:
     """Join the shards of a run, played with 'hthor eval --shard I/N'.
 
-    The result is the one of an undivided run, byte for byte but for what it cost. Says what is missing, if anything,
-    and the commands that play it; merge again when they are done.
+    The result equals that of an undivided run byte for byte, except for its cost. If trials are missing, the command
+    prints the commands that play them; merge again afterwards.
     """
     from hthor.eval.merge import merge_shards as merging
 

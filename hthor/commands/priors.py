@@ -1,4 +1,4 @@
-"""`hthor priors`: the table of scene priors, shown or computed anew."""
+"""`hthor priors`: the table of scene priors, shown or computed again."""
 
 from __future__ import annotations
 

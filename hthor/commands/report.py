@@ -23,7 +23,7 @@ def report(
     """Write a report on runs of one suite: results against no robot and the paper, figures, best and worst trials.
 
     Writes report.html, which needs nothing else, report.json with every number, and figures/*.svg. Runs of several
-    peoples make a section by kind of person; the rest is of the first run's people. Nothing is simulated.
+    populations get a section by population; the rest is of the first run. Nothing is simulated.
     """
     from hthor.calibration import targets
     from hthor.report.analysis.document import Published, Share

@@ -49,7 +49,7 @@ def attach(app: typer.Typer, group: str = "") -> None:
         if command.callback is None:
             continue
         hints = typing.get_type_hints(command.callback, include_extras=True)
-        command.callback.__annotations__ = hints  # as words they would be read anew, and forget what is set here
+        command.callback.__annotations__ = hints  # as strings they would be evaluated again, without what is set here
         for name, hint in hints.items():
             offer = OFFERS.get(f"{group} {name}") or OFFERS.get(name)
             for info in getattr(hint, "__metadata__", ()) if offer else ():

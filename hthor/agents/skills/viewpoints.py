@@ -19,7 +19,7 @@ Floats = NDArray[np.float64]
 
 _MISS_M, _GRID_M = 0.3, 0.12
 _SLACK_M = 1e-6
-"""Lengths that differ by less may be equal but for rounding [m]."""
+"""Lengths that differ by less count as equal, because of rounding [m]."""
 
 
 class Routes(Protocol):

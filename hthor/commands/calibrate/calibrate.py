@@ -122,7 +122,7 @@ def _foretell(brief: dict[str, Any], json: bool) -> None:
     output.put_table(
         ("what", "value"), [(name, one if isinstance(one, list) else str(one)) for name, one in brief.items()]
     )
-    there = "goes on with what is there" if Path(brief["folder"]).exists() else "begins anew"
+    there = "continues from what is there" if Path(brief["folder"]).exists() else "starts from the beginning"
     output.put_line(f"it {there}; nothing was written.")
 
 

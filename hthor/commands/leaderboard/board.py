@@ -75,7 +75,7 @@ def add(
 ) -> None:
     """Add complete runs to the leaderboard, together with their runs without a robot.
 
-    Each is scored anew from its log. Adding a run again changes nothing.
+    Each run is scored again from its log. Adding a run again changes nothing.
     """
     from hthor.leaderboard import enter, publish
     from hthor.leaderboard.submission import submission as submissions

@@ -86,9 +86,7 @@ class TrialRunner:
             own = Path(self._sources.houses) if self._sources.houses else None
             pack = load_pack(self._sources.assets)
             if pack is not None and code_identity.pictures_sha256(pack.sha256) != trial.assets_sha256:
-                raise HthorError(
-                    f"the pack '{self._sources.assets}' was built anew while its run was going on; begin a new run."
-                )
+                raise HthorError(f"the pack '{self._sources.assets}' was rebuilt during its run; begin a new run.")
             self._worlds[key] = World(
                 HouseLibrary(folder=own).load(task.house),
                 robots=specs,

@@ -1,14 +1,14 @@
-"""Gather three apples, wherever they are, in one place: more than one person can carry in time.
+"""Gather three apples in one place: more than one person can carry in time.
 
-The goal's jobs, one for each of the objects ``apple``, ``apple_2`` and ``apple_3``, all the same but for that::
+The goal has one job for each of ``apple``, ``apple_2`` and ``apple_3``::
 
     Job(target="apple_2", relation="on", destinations=("dining_table",))
 
-where the destination is the id of a thing of whose kind the house has just one. Progress is the share of the apples
+The destination is the id of the only piece of furniture of its kind in the house. Progress is the share of apples
 that rest there; the goal is met when all three do.
 
 In half of the tasks one apple is in the closed fridge: a robot that cannot open it has to ask for help. The apples
-lie in different rooms, and so far apart that an all-knowing person who walks at `PACE_M_S` cannot bring all three in
+lie in different rooms, so far apart that an omniscient person who walks at `PACE_M_S` cannot bring all three in
 time (`alone`), while a person and a robot with hands who share them well can with time to spare (`team`).
 """
 

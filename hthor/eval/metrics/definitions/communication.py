@@ -72,7 +72,7 @@ def interruptions(trial: Trial) -> float | None:
 
 
 def useful(trial: Trial) -> int:
-    """Accepted messages that were true when they were sent and new to the human, whom they could still help."""
+    """Accepted messages that were true when they were sent and new to the human and could still help."""
     new = {
         event.data.get("message") for event in trial.log.journal if event.kind == "offer" and event.data.get("useful")
     }

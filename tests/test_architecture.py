@@ -1,0 +1,128 @@
+"""The shape of the house: no circles, few arrows, small files and folders, and words that are read once."""
+
+from __future__ import annotations
+
+import ast
+import re
+import statistics
+from collections import defaultdict
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+
+import grimp
+import pytest
+
+PACKAGE = Path(__file__).resolve().parents[1] / "hthor"
+FILES = sorted(PACKAGE.rglob("*.py"))
+ROOMS = ("eval", "world", "humans", "calibration", "guest")
+MOST_ARROWS, MOST_FILES, MOST_LINES, MEDIAN_FUNCTION = 200, 14, 300, 10
+PRIVATE_WORDS = (
+    "anew",
+    "but for",
+    "comes to nothing",
+    "foretell",
+    "foretells",
+    "foretold",
+    "hangs on what",
+    "is told of",
+    "knows nothing of",
+    "lies about",
+    "needful",
+    "thereof",
+    "whom",
+    "whosoever",
+)
+"""Words of a private language that once filled these files; docs/glossary.md has those that are used instead."""
+
+
+@cache
+def graph() -> grimp.ImportGraph:
+    return grimp.build_graph("hthor", cache_dir=None)
+
+
+def arrows(package: str) -> dict[str, set[str]]:
+    """Which children of a package import which others, with all that lies below them."""
+    found: dict[str, set[str]] = defaultdict(set)
+    owner = {child: child for child in graph().find_children(package)}
+    for child in list(owner):
+        owner |= dict.fromkeys(graph().find_descendants(child), child)
+    for module, mine in owner.items():
+        for other in graph().find_modules_directly_imported_by(module):
+            if owner.get(other, mine) != mine:
+                found[mine].add(owner[other])
+    return found
+
+
+def circle(edges: dict[str, set[str]]) -> list[str]:
+    """Some nodes that import one another in a circle; none in a graph without."""
+    done: set[str] = set()
+    path: list[str] = []
+
+    def visit(node: str) -> list[str]:
+        if node in path:
+            return path[path.index(node) :]
+        if node in done:
+            return []
+        path.append(node)
+        for other in sorted(edges.get(node, ())):
+            if found := visit(other):
+                return found
+        path.pop()
+        done.add(node)
+        return []
+
+    return next((found for node in sorted(edges) if (found := visit(node))), [])
+
+
+def packages() -> list[str]:
+    return sorted(name for name in graph().modules if graph().find_children(name))
+
+
+def test_no_modules_import_one_another_in_a_circle() -> None:
+    assert circle({name: set(graph().find_modules_directly_imported_by(name)) for name in graph().modules}) == []
+
+
+@pytest.mark.parametrize("package", packages())
+def test_no_parts_of_a_package_import_one_another_in_a_circle(package: str) -> None:
+    assert circle(arrows(package)) == []
+
+
+def test_rooms_have_few_inner_arrows() -> None:
+    counts = {room: sum(map(len, arrows(f"hthor.{room}").values())) for room in ROOMS}
+    assert sum(counts.values()) < MOST_ARROWS, counts
+
+
+def test_folders_and_files_are_small() -> None:
+    folders: dict[Path, int] = defaultdict(int)
+    for path in FILES:
+        folders[path.parent] += 1
+    assert not {str(folder) for folder, count in folders.items() if count > MOST_FILES}
+    lengths = {path: len(path.read_text(encoding="utf-8").splitlines()) for path in FILES}
+    assert not {str(path): count for path, count in lengths.items() if count > MOST_LINES}
+
+
+def test_the_median_function_is_short() -> None:
+    trees = [ast.parse(path.read_text(encoding="utf-8")) for path in FILES]
+    functions = [node for tree in trees for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]
+    assert statistics.median((node.end_lineno or 0) - node.lineno + 1 for node in functions) < MEDIAN_FUNCTION
+
+
+def texts(path: Path) -> Iterator[str]:
+    """What is written for people: the docstrings and other strings of a module, and its comments."""
+    source = path.read_text(encoding="utf-8")
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str):
+            yield node.value
+    yield from re.findall(r"(?<!['\"])#[^'\"\n]*$", source, flags=re.MULTILINE)
+
+
+def test_private_words_do_not_come_back() -> None:
+    pattern = re.compile(rf"\b({'|'.join(PRIVATE_WORDS)})\b", re.IGNORECASE)
+    found = [
+        f"{path.relative_to(PACKAGE)}: {match[0]}"
+        for path in FILES
+        for text in texts(path)
+        for match in pattern.finditer(" ".join(text.split()))
+    ]
+    assert not found
