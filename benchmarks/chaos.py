@@ -25,7 +25,7 @@ from pathlib import Path
 from benchmarks import family
 
 ROOT = Path(__file__).resolve().parents[1]
-FAKES = ROOT / "tests" / "eval_fakes.py"
+FAKES = ROOT / "tests" / "support" / "eval_fakes.py"
 MARK = "HTHOR_CHAOS"
 _PATIENCE_S = 300.0
 

@@ -19,6 +19,7 @@ from hthor.console import completion_values
 from hthor.errors import HthorError, UnknownName
 from hthor.eval.config import cli_command, robot_team, run_config, sessions, task_selection
 from hthor.eval.runner import run_options
+from hthor.guest.host.config import GuestConfig
 from hthor.leaderboard.entries import overrides
 from hthor.types import Pose, RobotSeat, cameras
 from hthor.world import World
@@ -173,12 +174,11 @@ def test_every_trial_s_key_knows_the_camera() -> None:
 
 def test_the_options_reach_the_seats() -> None:
     options = run_options.RunOptions(agents=("frontier",), camera="thor", camera_size="32x32")
-    chosen = task_selection.select_tasks("smoke", "")
-    (crew,) = run_options._crews(options, chosen, "own", cameras.canonical_name(options.camera, options.camera_size))
-    assert [seat.camera for seat in crew.seats] == ["thor:32x32"]
-    (crew,) = robot_team.parse_teams("tall:oracle,small:frontier", (), camera="square")
-    assert [seat.camera for seat in crew.seats] == ["square", "square"]
-    assert isinstance(crew.listed[0], RobotSeat)
+    (team,) = run_options._teams(options, task_selection.select_tasks("smoke", ""), GuestConfig())
+    assert [seat.camera for seat in team.seats] == ["thor:32x32"]
+    (team,) = robot_team.parse_teams("tall:oracle,small:frontier", (), camera="square")
+    assert [seat.camera for seat in team.seats] == ["square", "square"]
+    assert isinstance(team.listed[0], RobotSeat)
 
 
 # ----------------------------------------------------------------------------------------- numbers of a segmentation
