@@ -33,7 +33,7 @@ from hthor.types import TaskSpec
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "docs" / "images"
 MANIFEST = FOLDER / "pictures.json"
-_REFERENCE = "hthor/eval/health/reference.json"
+_REFERENCE = "hthor/eval/doctor/reference.json"
 _DRAWING = ("lettering", "picture", "plan", "text_fit", "timeline", "trace")
 _SHEETS = ("hthor/world/rendering/contact_sheet.py", "hthor/world/rendering/opengl_renderer.py")
 BY_HAND = ("robots.png",)

@@ -255,7 +255,7 @@ def test_everything_that_a_trial_runs_counts(sources: Sources, suite: str, agent
     roots += [plugins.module_name("metric", name) for name in plugins.names("metric")]
     own = (("human model", model), ("agent", agent), ("robot", robot), ("task kind", trial.task.kind))
     counted = set(sources.closure([*roots, *(plugins.module_name(sort, name) for sort, name in own)]))
-    assert called > {"hthor.episode", "hthor.world.world"}
+    assert called > {"hthor.episode.episode", "hthor.world.simulation"}
     assert called <= counted
 
 

@@ -77,6 +77,6 @@ def _official(folder: Path, suite: tasks.Suite) -> None:
 def _people(folder: Path) -> None:
     """A population, a kind of people, and what a calibration aims at."""
     base = Path(humans.__file__).parent
-    for name in ("populations/paper.json", "populations/paper.npz", "kinds/slow.json"):
+    for name in ("populations/paper.json", "populations/paper.npz", "population/kinds/slow.json"):
         shutil.copy(base / name, folder / Path(name).name)
     shutil.copy(Path(calibration.__file__).parent / "targets" / "paper.json", folder / "targets.json")

@@ -1,6 +1,6 @@
-"""Names that a user may type: of what ships, by the names of its files, and of runs that lie about.
+"""Values for shell completion: names of what ships, read from file names, and folders of runs.
 
-Imports nothing that computes: who presses the tab key must not wait.
+Imports nothing heavy, so that the tab key answers at once.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def houses() -> list[str]:
 
 def engines() -> list[str]:
     """Where trials can be played."""
-    return _stems("eval/engines", "py")
+    return _stems("eval/runner/engines", "py")
 
 
 def levels() -> list[str]:

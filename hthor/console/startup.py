@@ -6,9 +6,6 @@ import contextlib
 import os
 import sys
 
-from hthor.errors import HthorError
-from hthor.jsonio import is_text
-
 
 def open_streams() -> None:
     """Give a process that was started without standard streams, as some job runners do, empty ones."""
@@ -27,6 +24,9 @@ def check_arguments() -> None:
     Raises:
         HthorError: naming the argument or the working folder.
     """
+    from hthor.errors import HthorError
+    from hthor.jsonio import is_text
+
     for given in sys.argv[1:]:
         if not is_text(given):
             raise HthorError(f"{given!a} is not UTF-8. Rename the file or folder, or type the name again.")

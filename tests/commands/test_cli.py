@@ -340,14 +340,14 @@ def test_faults_of_several_robots_are_told_apart(hthor, tmp_path: Path, monkeypa
     assert "An agent failed in 2 of 20 trials (robot in 2); there the others continued without it." in said.out
     assert "robot (clumsy), after 7.0 s: raised: ValueError: no" in said.out
     brief, full = hthor("score", folder).out, hthor("score", folder, "--all").out
-    for row in ("person idle", "messages sent, a trial", "messages that were false", "share of the work: robot2"):
+    for row in ("human idle", "messages sent, a trial", "messages that were false", "share of the work: robot2"):
         assert row not in brief
         assert row in full
     assert "by kind of task" in full
 
 
 def test_score_says_whether_it_agrees(hthor, done: Path):
-    assert "the same as" in hthor("score", str(done)).err
+    assert "equal to" in hthor("score", str(done)).err
     document = json.loads((done / "result.json").read_bytes())
     document["metrics"]["sr"]["mean"] = 1.0
     (done / "result.json").write_text(json.dumps(document))
@@ -355,7 +355,7 @@ def test_score_says_whether_it_agrees(hthor, done: Path):
     assert "differs from" in said.err
     assert "in metrics" in said.err
     assert json.loads(said.out)["metrics"]["sr"]["mean"] < 1.0
-    assert "the same as" in hthor("score", str(done)).err
+    assert "equal to" in hthor("score", str(done)).err
 
 
 def test_score_of_a_part_is_shown_but_not_stored(hthor, done: Path):

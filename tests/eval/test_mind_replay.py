@@ -21,6 +21,7 @@ from hthor.eval.replay import human_trace, session_history
 from hthor.eval.replay.human_trace import HumanTrace
 from hthor.eval.replay.session_history import RunFiles
 from hthor.eval.runner import experiment, progress, run_options
+from hthor.guest.host.config import GuestConfig
 from hthor.report.drawing import human_trace_figure, human_trace_timeline, render_trial
 from hthor.report.page import camera_frames
 from hthor.tasks.suite import encode_suite, make_suite
@@ -149,7 +150,7 @@ def test_whose_agent_is_a_file_needs_the_file(run: Path) -> None:
     agent = msgspec.structs.replace(seat.agent, name="mine", source="my_agent.py")
     spec = msgspec.structs.replace(record.spec, robots=(msgspec.structs.replace(seat, agent=agent),))
     with pytest.raises(HthorError, match=r"came from the file my_agent\.py\. Give that file, unchanged, with --agent"):
-        session_history.replay_team(RunFolder(run), spec, RunFiles())
+        session_history.replay_team(RunFolder(run), spec, RunFiles(), GuestConfig())
 
 
 def test_a_trial_with_a_fault_repeats_itself_too(run: Path, tmp_path: Path) -> None:

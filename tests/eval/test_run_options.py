@@ -231,7 +231,7 @@ def test_runs_are_listed_even_beside_broken_ones(shelf: Path) -> None:
 
 def test_a_folder_without_runs_says_so(tmp_path: Path) -> None:
     assert "no run below" in CliRunner().invoke(app, ["runs", "list", str(tmp_path)]).stdout
-    with pytest.raises(RunError, match=r"none is no folder\."):
+    with pytest.raises(RunError, match=r"none is not a folder\."):
         CliRunner().invoke(app, ["runs", "list", str(tmp_path / "none")], catch_exceptions=False)
 
 

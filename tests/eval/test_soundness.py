@@ -99,7 +99,7 @@ def test_what_does_not_stay_is_told(monkeypatch: pytest.MonkeyPatch):
     def edge(place, size, solids, near):
         return [(place.centre[0] + place.half[0] + 0.05, place.centre[1], place.centre[2] + size[2] / 2 + 0.005)]
 
-    monkeypatch.setattr(drop_test, "candidates", edge)
+    monkeypatch.setattr(drop_test, "free_spots", edge)
     problems = [finding.problem for finding in drop_findings(house(table))]
     assert any("the apple put on the top of the side table strays" in problem for problem in problems)
 
@@ -126,11 +126,11 @@ def test_a_home_that_the_proof_refuses_is_followed_by_the_next_attempt(monkeypat
     verdicts = iter([(refusal,), ()])
     monkeypatch.setattr(generate_valid.generator, "generate", generate)
     monkeypatch.setattr(generate_valid.loader, "house_from_document", lambda document, name: house())
-    monkeypatch.setattr(generate_valid, "prove", lambda spec, radius: next(verdicts))
+    monkeypatch.setattr(generate_valid, "check_soundness", lambda spec, radius: next(verdicts))
     home = generate_valid.generate_valid_home(7, 5)
     assert tried == [(7, 5, 0, generate_valid.ATTEMPTS), (7, 5, 2, generate_valid.ATTEMPTS)]
     assert (home.attempt, home.refused) == (3, (refusal,))
-    monkeypatch.setattr(generate_valid, "prove", lambda spec, radius: (refusal,))
+    monkeypatch.setattr(generate_valid, "check_soundness", lambda spec, radius: (refusal,))
     with pytest.raises(HthorError, match=r"seed 7 gave no sound home of 5 rooms.*deep in the wall.*another seed"):
         generate_valid.generate_valid_home(7, 5)
 

@@ -56,7 +56,7 @@ def _alive(pid: int) -> bool:
 
 @pytest.mark.parametrize("level", [level for level, _ in PROCESS_CHAINS[:2]] + [pytest.param("L3", marks=needs_bwrap)])
 def test_one_killed_while_it_starts_costs_no_level(level: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    real: Callable[..., GuestProcess] = startup.process.start
+    real: Callable[..., GuestProcess] = startup.process.start_process
 
     def start(*words: object, **more: object) -> GuestProcess:
         one = real(*words, **more)
@@ -67,7 +67,7 @@ def test_one_killed_while_it_starts_costs_no_level(level: str, tmp_path: Path, m
 
     (tmp_path / "agent.py").write_text(HEAD + agent("return Action()"))
     with monkeypatch.context() as patch:
-        patch.setattr(startup.process, "start", start)
+        patch.setattr(startup.process, "start_process", start)
         with pytest.raises(AgentKilled, match=r"agent\.py: its process was killed by SIGKILL while it started"):
             Guest(tmp_path / "agent.py", config=GuestConfig(isolation=level)).load()
     with Guest(tmp_path / "agent.py", config=GuestConfig(isolation=level)) as guest:

@@ -418,7 +418,7 @@ class Quick(trial_runner.TrialRunner):
     """Trials of some dozen ticks in a world without an engine."""
 
     def enter(self, session: Any) -> trial_runner.Participants:
-        make = lambda seat: self._mind(seat, None)  # noqa: E731
+        make = lambda seat: self._make_agent(seat, None)  # noqa: E731
         return trial_runner.Participants(episode_fakes.Mind(), session.trials[0].robots, make)
 
     def world(self, trial: Any) -> Any:

@@ -17,7 +17,7 @@ from hthor.types import Action, Briefing, Event, Observation, TrialSpec
 PERCEIVED = ("detections", "scan", "sighting")
 """What a headset's wearer has of the senses: what is in view and how much of it, and what stops a walker."""
 TOLD = ("tick", "pose", "idle", "room", "holding", "outcome", "inbox", "receipt")
-BRIEFED = ("instruction", "body", "tick_s", "time_limit", "teammates", "kind", "jobs", "crew")
+BRIEFED = ("instruction", "body", "tick_s", "time_limit", "teammates", "kind", "jobs", "todo", "crew")
 BRIEFED_GOAL = ("seat", "target", "destination", "relation")
 
 

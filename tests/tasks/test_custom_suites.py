@@ -230,7 +230,7 @@ def test_a_house_of_ones_own_is_made_into_a_suite_once(
     home: Path, made: tuple[TaskSpec, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    monkeypatch.setattr(custom_houses.proved, "columns", lambda recipe, given, jobs: iter([(0, made)]))
+    monkeypatch.setattr(custom_houses.proved, "make_tasks", lambda recipe, given, jobs: iter([(0, made)]))
     told: list[str] = []
     options = run_options.RunOptions(agents=("frontier",), houses=(str(home),), jobs=1)
     first = custom_houses.resolve_houses(options, told.append)

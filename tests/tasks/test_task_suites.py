@@ -223,7 +223,7 @@ def test_list_narrows_down(hthor):
     assert {(row["target"], row["difficulty"]) for row in rows} == {("mug", "hard")}
     code, _, err = hthor("tasks", "list", "--house", "alder")
     assert code == 2
-    assert "name the suite" in err
+    assert "name a suite" in err
 
 
 def test_show_tells_all_about_a_task_and_guesses_names(hthor):

@@ -380,7 +380,7 @@ T1 = ("tasks", 1)
             "nor does it lie on",
         ),
         (at(*T1, "goal", "destination", value="rocking_horse"), "tasks[1].goal", "rocking_horse"),
-        (at(*T1, "goal", "target", value="pear"), "tasks[1].goal.target", "none of the task's objects"),
+        (at(*T1, "goal", "target", value="pear"), "tasks[1].goal.target", "not one of the task's objects"),
         (at(*T1, "human_start", "x", value=-50.0), "tasks[1].human_start", "in a wall"),
         (at(*T1, "robot_starts", 1, "y", value=-50.0), "tasks[1].robot_starts[1]", "in a wall"),
         (at(*T1, "t_star", value=0.0), "tasks[1].t_star", "positive"),

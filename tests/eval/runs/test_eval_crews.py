@@ -201,7 +201,7 @@ def test_a_run_of_several_robots_is_resumed_and_told_from_others(tmp_path: Path)
     with pytest.raises(RunError, match=r"robots\.0\.agent\.name is helper there and other here"):
         run.run_evaluation(other, dealt, fakes.player, folder=RunFolder(tmp_path), jobs=1, watcher=progress.Silent())
     (tmp_path / "run.json").unlink()
-    run.setup.write(tmp_path, other)
+    RunFolder(tmp_path).write_config(other)
     with pytest.raises(RunError, match=r"spec\.robots is not the one in run\.json"):
         aggregate.rescore(tmp_path)
 
