@@ -34,7 +34,7 @@ ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "docs" / "images"
 MANIFEST = FOLDER / "pictures.json"
 _REFERENCE = "hthor/eval/doctor/reference.json"
-_DRAWING = ("lettering", "picture", "plan", "text_fit", "timeline", "trace")
+_DRAWING = ("floor_plan", "lettering", "text_fit", "trial_figure", "trial_legend", "trial_timeline", "trial_trace")
 _SHEETS = ("hthor/world/rendering/contact_sheet.py", "hthor/world/rendering/opengl_renderer.py")
 BY_HAND = ("robots.png",)
 """Pictures that need a stage and a camera of their own."""
@@ -63,7 +63,7 @@ def origin(name: str) -> str:
     """Hash of all that decides what a picture shows."""
     if name in TRIALS:
         task = _task(TRIALS[name])
-        code = [f"hthor/eval/{part}.py" for part in _DRAWING]
+        code = [f"hthor/report/drawing/{part}.py" for part in _DRAWING]
         facts = [TRIALS[name], task, houses.load(task.house).sha256, rules.sha256(), _sha256(ROOT / _REFERENCE)]
         return jsonio.sha256([*facts, *(_sha256(ROOT / path) for path in code)])
     if name in _OF_RUNS:
@@ -118,8 +118,8 @@ def played(task_id: str) -> TrialRecord:
 
 def _code_of_pages() -> list[Path]:
     """The files that decide how a report and a case look, and the reference of how trials go."""
-    pages = sorted((ROOT / "hthor" / "eval" / "pages").rglob("*.py"))
-    return [*pages, *(ROOT / f"hthor/eval/{part}.py" for part in _DRAWING), ROOT / _REFERENCE]
+    pages = sorted((ROOT / "hthor" / "report").rglob("*.py"))
+    return [*pages, ROOT / _REFERENCE]
 
 
 def _maker(name: str) -> Callable[[Path], None]:

@@ -14,10 +14,12 @@ import sys
 import traceback
 from pathlib import Path
 from types import ModuleType
-from typing import Any, Literal, overload
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 from hthor.errors import HthorError, UnknownName
-from hthor.types import Mind, RobotSpec
+
+if TYPE_CHECKING:
+    from hthor.types import Mind, RobotSpec
 
 _PACKAGES = {
     "agent": ("hthor.agents", "Agent"),
