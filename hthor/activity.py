@@ -1,7 +1,5 @@
 """Reporting what a long operation is doing to a listener, if there is one."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar

@@ -1,7 +1,5 @@
 """The command line: every command of `hthor`, put together. A command's work is imported when it is called."""
 
-from __future__ import annotations
-
 import os
 import sys
 

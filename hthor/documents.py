@@ -3,8 +3,6 @@
 Any damage ends in that error: text that is not JSON, bytes that are not UTF-8, nesting too deep, the wrong record.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path

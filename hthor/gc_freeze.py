@@ -1,7 +1,5 @@
 """Keeping Python's garbage collector from scanning objects that stay, such as worlds."""
 
-from __future__ import annotations
-
 import gc
 import weakref
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """This installation of hthor: one hash of its files, its versions, and its cache."""
 
-from __future__ import annotations
-
 import functools
 import hashlib
 import os

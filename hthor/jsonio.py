@@ -1,7 +1,5 @@
 """Canonical JSON, hashes of content, and atomic writes."""
 
-from __future__ import annotations
-
 import contextlib
 import hashlib
 import os

@@ -3,8 +3,6 @@
 Changing any of them changes `sha256`, which is part of every trial's key.
 """
 
-from __future__ import annotations
-
 import math
 
 from hthor import jsonio

@@ -4,8 +4,6 @@ Two robots therefore meet the same person on the same day: a message that change
 the outcome of any other draw.
 """
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Sequence
 from statistics import NormalDist

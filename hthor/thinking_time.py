@@ -4,8 +4,6 @@ The time is measured while the agent decides, without what its sensors take. It 
 third of a tick each time is one tick late every third time, so that nothing is rounded away.
 """
 
-from __future__ import annotations
-
 import time
 from collections.abc import Callable, Iterable
 from typing import Any

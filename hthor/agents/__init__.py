@@ -6,8 +6,6 @@ are printed with every result), ``robots`` (names of the bodies it is made for; 
 no robot at all).
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from hthor import jsonio

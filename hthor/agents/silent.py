@@ -1,7 +1,5 @@
 """No robot: the control condition."""
 
-from __future__ import annotations
-
 from hthor.types import Action, Briefing, Observation, Wait
 
 

@@ -4,8 +4,6 @@ Figures are named ``sr none``, ``twsr oracle``, ``adoption frontier`` and so on,
 predicted figure is always that of one group of the published study: six people with ten tasks each.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, TypeVar

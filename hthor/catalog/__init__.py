@@ -1,7 +1,5 @@
 """Every kind of thing once: size, mass, affordances, form."""
 
-from __future__ import annotations
-
 import re
 
 from hthor.catalog import household, priors, receptacles, targets

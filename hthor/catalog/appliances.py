@@ -1,7 +1,5 @@
 """Parametric kitchen and laundry machines with doors: microwave ovens, stoves, washers."""
 
-from __future__ import annotations
-
 from hthor.catalog.colors import BLACK, IRON, STEEL
 from hthor.catalog.hollow import flap, hinge, inside, shell
 from hthor.catalog.kind import Form

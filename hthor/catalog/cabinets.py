@@ -4,8 +4,6 @@ Doors turn about the thing's outer edges and drawers slide to the front; of seve
 the others are drawn on. Fronts stand ``size[1]`` deep when closed, handles included.
 """
 
-from __future__ import annotations
-
 from hthor.catalog.colors import IRON, STEEL
 from hthor.catalog.hollow import PULL, hinge, inside, shell, slide, tray
 from hthor.catalog.kind import Form

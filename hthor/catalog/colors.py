@@ -1,7 +1,5 @@
 """The paint box: colors (red, green, blue, opacity), each 0 to 1."""
 
-from __future__ import annotations
-
 from hthor.types import Rgba
 
 OAK: Rgba = (0.72, 0.54, 0.35, 1.0)

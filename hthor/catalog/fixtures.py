@@ -1,7 +1,5 @@
 """Parametric fixtures: the fridge with its door, basins, and what stands in a bathroom."""
 
-from __future__ import annotations
-
 from hthor.catalog.colors import GLASS, GREY, STEEL, WHITE
 from hthor.catalog.hollow import hinge
 from hthor.catalog.kind import Form

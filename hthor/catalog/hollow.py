@@ -2,8 +2,6 @@
 and ``hi`` are as in ``solids``; a shell is open in front.
 """
 
-from __future__ import annotations
-
 import math
 
 from hthor.catalog.solids import box, rest

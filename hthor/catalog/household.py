@@ -3,8 +3,6 @@
 To add a kind, add a row: a look of its own (`hthor.looks.build`) is optional, and without one its solids are drawn.
 """
 
-from __future__ import annotations
-
 from functools import partial
 from typing import Any
 

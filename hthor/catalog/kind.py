@@ -1,7 +1,5 @@
 """What a kind of thing is: a record of its size, mass, affordances and form."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from functools import lru_cache
 from typing import Literal

@@ -1,7 +1,5 @@
 """Foreign assets: which of our kinds stands in for each ProcTHOR object type; ships no asset and knows no house."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Container
 from pathlib import Path

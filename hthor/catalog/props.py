@@ -1,7 +1,5 @@
 """Parametric small things of one to three parts, and what hangs on walls."""
 
-from __future__ import annotations
-
 from hthor.catalog.kind import Form
 from hthor.catalog.solids import box, pillar, rest, rounded
 from hthor.types import Part, Rgba, Vec3

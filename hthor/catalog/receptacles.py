@@ -1,7 +1,5 @@
 """The benchmark's eight receptacles."""
 
-from __future__ import annotations
-
 from functools import partial
 
 from hthor.catalog import cabinets, fixtures, shapes

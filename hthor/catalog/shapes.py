@@ -4,8 +4,6 @@ Every function builds a thing of any positive size [m] whose parts fill its boun
 y from the back to the front while building (see ``solids``).
 """
 
-from __future__ import annotations
-
 from hthor.catalog.colors import IRON, WHITE
 from hthor.catalog.kind import Form
 from hthor.catalog.solids import box, pillar, rest, rounded

@@ -4,8 +4,6 @@ Every function takes the thing's ``size`` (width, depth, height) [m] and corners
 origin is the left back bottom corner of the bounding box, and returns records in the thing's local frame.
 """
 
-from __future__ import annotations
-
 from typing import Literal
 
 from hthor.types import Part, Rgba, Surface, Vec2, Vec3

@@ -1,7 +1,5 @@
 """The benchmark's six target objects."""
 
-from __future__ import annotations
-
 from functools import partial
 
 from hthor.catalog import colors as c

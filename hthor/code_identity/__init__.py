@@ -7,8 +7,6 @@ a package speaks for everything in it. Modules in which trials begin say ``CODE_
 houses and tasks ``CODE_ROOT = "makers"``. Each hash says which parts it covers.
 """
 
-from __future__ import annotations
-
 from hthor.code_identity.compiled import compiled, keep_compiled
 from hthor.code_identity.hashes import (
     agent_sha256,

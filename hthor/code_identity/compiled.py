@@ -1,7 +1,5 @@
 """The folder in which numba caches compiled functions of exactly this code."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The hashes of code that a result depends on: of trials, agents, robots, pictures, and of what makes tasks."""
 
-from __future__ import annotations
-
 import contextlib
 from collections.abc import Iterable, Sequence
 

@@ -1,7 +1,5 @@
 """The modules of a package, and one hash of some of them with all that they import."""
 
-from __future__ import annotations
-
 import functools
 import hashlib
 from collections.abc import Callable, Iterable, Mapping, Sequence

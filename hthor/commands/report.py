@@ -1,7 +1,5 @@
 """`hthor report` and `hthor case`."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated
 

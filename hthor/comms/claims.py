@@ -1,7 +1,5 @@
 """How far the claim of a message is from the truth."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Mapping
 from typing import Any

@@ -4,8 +4,6 @@ A message is first "sent", then "shown" to the person, and ends as "confirmed" (
 that is never answered stays sent or shown. At most one message is open: a new one, from any robot, covers it.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Cleans what agents write, so that it can be shown and logged."""
 
-from __future__ import annotations
-
 import math
 import unicodedata
 from collections.abc import Sequence

@@ -3,8 +3,6 @@
 Imports nothing heavy, so that the tab key answers at once.
 """
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """How a command ends: its exit code, and its error as a message or a JSON document."""
 
-from __future__ import annotations
-
 import os
 import sys
 import traceback

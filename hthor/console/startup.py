@@ -1,7 +1,5 @@
 """Before a command runs: standard streams that exist, and arguments that are text."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import sys

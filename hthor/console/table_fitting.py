@@ -1,7 +1,5 @@
 """Tables on narrow screens: no number or name is split; columns are dropped, and at last rows become lists."""
 
-from __future__ import annotations
-
 import copy
 import re
 from collections.abc import Iterator

@@ -4,8 +4,6 @@ On a terminal this is a line that is redrawn and removed; in a pipe or a log it 
 that show their own progress are left alone.
 """
 
-from __future__ import annotations
-
 import sys
 import threading
 import time

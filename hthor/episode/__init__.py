@@ -1,7 +1,5 @@
 """One trial from reset to its end: one clock, one mailbox, one goal, one list of events. Begin with `episode`."""
 
-from __future__ import annotations
-
 from hthor.episode.episode import Episode, run_episode
 from hthor.episode.episode_log import EpisodeLog, Fault
 from hthor.episode.trial_world import TrialWorld

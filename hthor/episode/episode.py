@@ -1,7 +1,5 @@
 """A trial as a loop over ticks: who is asked, what is said and started, when the goal is met, what is logged."""
 
-from __future__ import annotations
-
 import time
 import traceback
 from collections.abc import Callable, Mapping, Sequence

@@ -1,7 +1,5 @@
 """What one trial leaves behind; a trial's record and its metrics are made from it."""
 
-from __future__ import annotations
-
 from msgspec import Struct
 
 from hthor.types import Event

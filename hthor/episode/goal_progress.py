@@ -1,7 +1,5 @@
 """How much of a trial's goal is met, tick by tick."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from hthor import rules

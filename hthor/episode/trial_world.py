@@ -1,7 +1,5 @@
 """The world's side of a trial: what an `Episode` asks of the world that it runs in."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Protocol
 

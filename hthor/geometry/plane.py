@@ -1,7 +1,5 @@
 """Plane geometry on plain floats: angles, polygons, turned rectangles."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Iterator, Sequence

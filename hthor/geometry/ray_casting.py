@@ -4,8 +4,6 @@ Every solid is treated as an oriented box, a cylinder or a sphere as the box aro
 more than they should. Arrays have the layout of MuJoCo's geoms, so that its own arrays can be passed.
 """
 
-from __future__ import annotations
-
 import numba
 import numpy as np
 from numpy.typing import NDArray

@@ -15,8 +15,6 @@ forks. Below them are `protocol` (messages and pipes, docs/wire.md), `agent` (wh
 `process_tools`, and `confinement` (levels of isolation, docs/isolation.md).
 """
 
-from __future__ import annotations
-
 from hthor.guest.agent.inputs import AgentInputs
 from hthor.guest.agent.manifest import File, Manifest
 from hthor.guest.agent.reference import AgentReference, is_served

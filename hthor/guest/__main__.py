@@ -1,7 +1,5 @@
 """Starts a guest's supervisor: ``python -m hthor.guest SOCKET PARENT``."""
 
-from __future__ import annotations
-
 import sys
 
 from hthor.guest.supervisor.supervisor import main

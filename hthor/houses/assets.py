@@ -1,7 +1,5 @@
 """From an asset's id to its kind and size, ours or out of an asset database."""
 
-from __future__ import annotations
-
 import importlib.util
 import os
 from collections.abc import Iterable, Iterator

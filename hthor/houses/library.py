@@ -1,7 +1,5 @@
 """Houses by name: those that come with hthor, and those that a suite or a run brings along."""
 
-from __future__ import annotations
-
 from importlib import resources
 from pathlib import Path
 from typing import Literal

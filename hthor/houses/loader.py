@@ -3,8 +3,6 @@
 Unity's (x, y up, z) becomes the house frame's (x, z, y), and its clockwise yaw a counter-clockwise one.
 """
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from pathlib import Path

@@ -4,8 +4,6 @@ ProcTHOR's database gives such a worktop one bounding box, up to 3 m square. Mad
 own with its front to the inside, it is as deep as a worktop everywhere: for who walks, reaches, looks and searches.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 

@@ -14,8 +14,6 @@ Optional parts of the file and the class:
 - ``journal``, a property of the class: what a recorder holds of the trial (`hthor.humans.core.behaviour_log`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Protocol
 

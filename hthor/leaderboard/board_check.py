@@ -1,7 +1,5 @@
 """Checks a board's entries against their form and the rules of `invariants`, and lists everything that is wrong."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The form of an entry's file: its schema, and its canonical spelling of white space and order of keys."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 

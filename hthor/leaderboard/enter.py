@@ -1,7 +1,5 @@
 """Makes an entry from a run's folder, scored from the run's log."""
 
-from __future__ import annotations
-
 import itertools
 import re
 import subprocess

@@ -1,7 +1,5 @@
 """Builds the list, the schema and the page from the entries; the same entries give the same bytes."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from hthor import jsonio

@@ -1,7 +1,5 @@
 """Recomputes entries' numbers from their trials, after the statistics have changed."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import msgspec

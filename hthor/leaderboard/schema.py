@@ -3,8 +3,6 @@
 What records cannot express, such as that a share lies between 0 and 1, is in a table here.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from typing import Any

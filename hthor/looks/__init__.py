@@ -1,7 +1,5 @@
 """What things look like: meshes, textures, materials, made by numbers alone."""
 
-from __future__ import annotations
-
 import importlib
 from functools import lru_cache
 from typing import Any

@@ -1,7 +1,5 @@
 """From a kind to its pieces: who builds what, and how the pieces are put together."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping
 
 from hthor.catalog import Kind

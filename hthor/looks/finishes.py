@@ -1,7 +1,5 @@
 """What the names that houses give floors and walls stand for, a texture and a color."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 from hthor.types import Vec3

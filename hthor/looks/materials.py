@@ -1,7 +1,5 @@
 """What surfaces are made of: wood, cloth, metal, glass; floors and walls by the names that houses use; no shapes."""
 
-from __future__ import annotations
-
 from functools import lru_cache
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Shortest paths from one place of a map, computed only as far as they are asked for."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 

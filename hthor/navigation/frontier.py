@@ -1,7 +1,5 @@
 """Frontiers: where a map could be extended, and furniture that was never seen from close by."""
 
-from __future__ import annotations
-
 import heapq
 import math
 from collections.abc import Callable, Iterator

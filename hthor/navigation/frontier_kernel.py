@@ -1,7 +1,5 @@
 """Compiled: cells worth a visit, and groups of them (see `marching`, `searching`)."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numba

@@ -1,7 +1,5 @@
 """A grid map that grows with every range scan."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -5,8 +5,6 @@ window of the map with a closed border of one cell, laid out flat, so that no st
 Indices are unsigned in the inner loops, so that none has to be looked at for whether it counts from the end.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Turns a path into motions of a body."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

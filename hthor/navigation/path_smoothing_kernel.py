@@ -1,7 +1,5 @@
 """Compiled: smooths lattice paths (see `grid_search_kernel`)."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

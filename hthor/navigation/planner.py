@@ -1,7 +1,5 @@
 """Shortest paths of a round body on a map that still grows."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from itertools import pairwise

@@ -4,8 +4,6 @@ Cells are (ny, nx) uint8: 0 unknown, 1 free, 2 occupied. Levels are (ny, nx) uin
 body. Signatures are explicit, so that loading a module loads its loops, from the cache when there is one.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """One search over a window of a map, and its result."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """At which of many places a body can stand with nothing between it and what it faces."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """Where a body can stand without cutting anybody's way."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Makes way for the person."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

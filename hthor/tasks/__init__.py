@@ -3,8 +3,6 @@
 Begin with `kind` (the contract of a kind of task) and `suites.library` (how a suite is read).
 """
 
-from __future__ import annotations
-
 from hthor.tasks.suite import Suite
 from hthor.tasks.suites.library import load_suite, suite_names
 

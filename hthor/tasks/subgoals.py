@@ -12,8 +12,6 @@ what the object lies shut in. Several who carry something go at `rules.HANDLE_PA
 done meanwhile. From where the person cannot walk to every object, T* is infinite.
 """
 
-from __future__ import annotations
-
 import functools
 import math
 from abc import abstractmethod

@@ -3,8 +3,6 @@
 `hthor tasks check` also proves tasks in the simulated world.
 """
 
-from __future__ import annotations
-
 import math
 import shlex
 from collections.abc import Iterator, Sequence

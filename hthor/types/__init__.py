@@ -5,8 +5,6 @@ y forward, z up). A body's ``yaw`` is its heading, counter-clockwise from +x. A 
 frame* (origin at the centre of its bounding box, front towards +y) counter-clockwise about z.
 """
 
-from __future__ import annotations
-
 from hthor.types.actions import Action, Close, Drop, Motion, Move, Open, Pick, Place, Reply, Rotate, Send, Wait
 from hthor.types.events import Event, Mind, Snapshot
 from hthor.types.house import HUMAN, HouseSpec, Joint, Opening, Part, Pose, Rgba, Room, Surface, Thing, Vec2, Vec3, Wall

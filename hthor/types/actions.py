@@ -1,7 +1,5 @@
 """What an agent or a human model may do and say: one motion and one utterance at a time."""
 
-from __future__ import annotations
-
 from msgspec import Struct
 
 from hthor.types.house import Vec3

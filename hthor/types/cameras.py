@@ -1,7 +1,5 @@
 """The names and sizes by which users choose a robot's camera."""
 
-from __future__ import annotations
-
 import math
 import re
 

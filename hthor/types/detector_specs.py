@@ -1,7 +1,5 @@
 """The names and rates by which users choose a robot's detector."""
 
-from __future__ import annotations
-
 import math
 
 from hthor.errors import HthorError, UnknownName

@@ -1,7 +1,5 @@
 """What has happened, what is true, and the contract of agents and human models."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any, Protocol
 

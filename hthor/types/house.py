@@ -1,7 +1,5 @@
 """Houses as data: rooms, walls, openings and things, with their frames and units."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 from msgspec import Struct

@@ -1,7 +1,5 @@
 """Bodies, tasks and trials as data."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 import msgspec

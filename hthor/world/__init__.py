@@ -3,8 +3,6 @@
 Begin with `world` (for scripts) or `simulation` (one tick at a time, for trials).
 """
 
-from __future__ import annotations
-
 from hthor.world.world import World
 
 __all__ = ["World"]

@@ -4,8 +4,6 @@ Each call starts motions and lets ticks pass until the body is free again; meanw
 something else moves them. A trial, in which all bodies move at once, uses `hthor.world.simulation.Simulation` instead.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A seat's sensor readings at one tick, computed when first asked for and then kept."""
 
-from __future__ import annotations
-
 from typing import Any, Protocol
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A simulation to use by hand: what is where, motions that run until they end, and the mailbox."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 from hthor import catalog, rules

@@ -1,7 +1,5 @@
 """Checks on numbers that callers pass in, and how messages show them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from typing import Any

@@ -1,7 +1,5 @@
 """A simulation with sensors: detections, range scans and pictures for every seat."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from typing import Any
 

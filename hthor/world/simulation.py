@@ -1,7 +1,5 @@
 """A house with bodies and objects in it, one tick at a time."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """The parts of a simulation, made in the order in which they need one another."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from hthor.houses.space.free_space import FreeSpace

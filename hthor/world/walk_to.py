@@ -1,7 +1,5 @@
 """Routes for `Actor.go_to` on the house's own plan: which way to walk, and where to stand."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -6,8 +6,6 @@ world = World("hazel", robots=["tender"])
 world.robot.go_to("fridge")
 """
 
-from __future__ import annotations
-
 from hthor import houses
 from hthor.errors import UnknownName
 from hthor.types import HUMAN

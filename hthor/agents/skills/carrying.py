@@ -4,8 +4,6 @@ They hold it by the handles at its ends. Once they are strong enough together, t
 others along like a trailer. It is put down as soon as one lets go.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Protocol
 

@@ -1,7 +1,5 @@
 """Exploration of an unknown house with a map that grows."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from functools import partial

@@ -1,7 +1,5 @@
 """What a robot knows about objects and furniture, and which jobs are done."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping
 

@@ -1,7 +1,5 @@
 """Fetches objects and puts them where they belong, motion by motion."""
 
-from __future__ import annotations
-
 import functools
 import math
 

@@ -1,7 +1,5 @@
 """When to send a message, again or not at all, and its text."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 from hthor.types import Briefing, Detection, Observation, Receipt

@@ -1,7 +1,5 @@
 """The frontier robot with more to do than to find one object: explores, carries what it can, tells the rest."""
 
-from __future__ import annotations
-
 import math
 
 from hthor import rules

@@ -1,7 +1,5 @@
 """Shortest paths of a body through a known house."""
 
-from __future__ import annotations
-
 import functools
 import itertools
 import math

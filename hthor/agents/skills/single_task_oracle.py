@@ -3,8 +3,6 @@
 With an arm it does the job itself; else it goes where the target is and tells the person.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from hthor.agents.skills.carrying import Carrier

@@ -1,7 +1,5 @@
 """Task allocation that every robot computes identically from the same observations."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Collection, Sequence
 

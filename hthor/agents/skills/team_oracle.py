@@ -1,7 +1,5 @@
 """The oracle where there are several jobs or robots: it shares them out, tells about the rest, and makes way."""
 
-from __future__ import annotations
-
 from hthor.agents.skills.message_timing import ASIDE_M
 from hthor.agents.skills.single_task_oracle import SingleTaskOracle
 from hthor.types import HUMAN, Briefing, Job, Motion, Observation, Send, Wait

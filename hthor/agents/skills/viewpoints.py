@@ -1,7 +1,5 @@
 """Where a body can stand to have something in reach, and the shortest path there."""
 
-from __future__ import annotations
-
 import functools
 import itertools
 import math

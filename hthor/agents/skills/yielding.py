@@ -1,7 +1,5 @@
 """Getting past other robots: which one makes room, and which way round."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 

@@ -8,8 +8,6 @@ is off by half its width. What this cannot see: whether the study tells more tha
 tails.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

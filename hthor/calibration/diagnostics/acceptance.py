@@ -4,8 +4,6 @@ A small calibration has wider ones: with ten studies, a coverage of .90 is estim
 emulator has seen a thirtieth of the trials, and there are too few studies for the ABC check.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

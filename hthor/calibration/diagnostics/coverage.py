@@ -1,7 +1,5 @@
 """Whether intervals hold the truth as often as they claim: simulated studies, whose truth is known, are fitted."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """How well two conditions predict the third, compared with the prior and with simple models."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 import numpy as np

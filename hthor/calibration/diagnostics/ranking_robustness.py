@@ -1,7 +1,5 @@
 """Whether robots keep their order over all populations that fit, and which parameters could change it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

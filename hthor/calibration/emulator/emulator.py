@@ -6,8 +6,6 @@ the prediction; how far they disagree says how good it is, up to a factor that i
 has seen (`hthor.calibration.inference.design_effects`).
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

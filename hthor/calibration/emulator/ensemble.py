@@ -4,8 +4,6 @@ Their mean predicts better than one, and their disagreement says how sure it is.
 parameters matter; the others are scaled down, so that they are not mistaken for causes.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

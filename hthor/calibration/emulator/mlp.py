@@ -1,7 +1,5 @@
 """Small networks that predict several yes-or-no outcomes at once."""
 
-from __future__ import annotations
-
 import warnings
 from typing import Any
 

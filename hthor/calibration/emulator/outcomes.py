@@ -4,8 +4,6 @@ A mean is the integral of chances to exceed a level, so chances of levels are en
 learn from all levels at once.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

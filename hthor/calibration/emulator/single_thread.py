@@ -1,7 +1,5 @@
 """Sums on one thread, so that their last bits do not depend on the number of cores."""
 
-from __future__ import annotations
-
 from contextlib import AbstractContextManager
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Collects estimates of parameters and of the spread between people, one estimator after the other."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """One parameter estimated from logs: value, error, amount of data, method."""
 
-from __future__ import annotations
-
 from msgspec import Struct
 
 from hthor.calibration.from_logs.models.mixed_effects import Fit

@@ -4,8 +4,6 @@ Later estimators use earlier estimates: the trust at which a message was answere
 from the pace.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

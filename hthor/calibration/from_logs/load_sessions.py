@@ -1,7 +1,5 @@
 """Reads logs as people and their trials in order."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 

@@ -4,8 +4,6 @@ Each dataset is one population drawn from the prior and some of its people, a th
 with the frontier robot, a third with the oracle; each of them does ten simulated tasks that are logged as usual.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 
 import numpy as np

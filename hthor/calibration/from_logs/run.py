@@ -1,7 +1,5 @@
 """Estimates parameters from logs and updates a population with them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from pathlib import Path
 

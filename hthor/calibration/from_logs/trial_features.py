@@ -1,7 +1,5 @@
 """Everything that the estimators use of one trial's log, in one record."""
 
-from __future__ import annotations
-
 import math
 
 from msgspec import Struct

@@ -7,8 +7,6 @@ noise. Estimates are often far more precise than draws are dense, so their error
 as leaves enough draws.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """How likely a study's results are at given rates: beta-binomial counts, normal ratios."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -6,8 +6,6 @@ normal distribution around those that do, and all points of both rounds are weig
 the weights stay exact.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

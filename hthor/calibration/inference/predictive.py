@@ -1,7 +1,5 @@
 """What studies of the published design to expect of populations, with all their noise."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

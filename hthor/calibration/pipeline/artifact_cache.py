@@ -3,8 +3,6 @@
 A product is stored with the hash of everything that it was made from; when that has changed, it is made again.
 """
 
-from __future__ import annotations
-
 import pickle
 from collections.abc import Callable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The evidence that a calibration's stages give."""
 
-from __future__ import annotations
-
 import msgspec
 import numpy as np
 

@@ -1,7 +1,5 @@
 """What a calibration does: the user's options, and the configuration that follows from them."""
 
-from __future__ import annotations
-
 import os
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Writes what the stages of a calibration give: the population, the evidence, the summary and the simulated trials."""
 
-from __future__ import annotations
-
 import msgspec
 import numpy as np
 

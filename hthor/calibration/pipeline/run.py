@@ -1,7 +1,5 @@
 """`hthor calibrate` on published numbers as one function: runs the stages and writes the result."""
 
-from __future__ import annotations
-
 import importlib
 
 from hthor.calibration.pipeline import finalize

@@ -1,7 +1,5 @@
 """The stages of a calibration on published numbers, each computed once and stored."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from functools import cached_property

@@ -1,7 +1,5 @@
 """A calibration's result as data for programs."""
 
-from __future__ import annotations
-
 from msgspec import Struct
 
 from hthor.calibration.diagnostics.acceptance import Gate

@@ -1,7 +1,5 @@
 """Where in the prior to simulate: points of the unit cube."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hthor import seeds

@@ -4,8 +4,6 @@ A person is drawn from the population at a point of the prior's cube, as `hthor.
 people, and does ten tasks one after the other with the robot of a condition, or without one.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Sessions simulated by several worker processes, resumed where an earlier command ended."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Mapping, Sequence
 from contextlib import closing

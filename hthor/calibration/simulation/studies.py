@@ -4,8 +4,6 @@ A study has as many people in each condition as the published one, assigned thei
 and loses as many trials, drawn at random.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The runs of a validation: which people, on which suite, in which folder."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterator
 from pathlib import Path

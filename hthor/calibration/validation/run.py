@@ -3,8 +3,6 @@
 Any people can be validated: a population, a kind of people, a human model in a file.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from pathlib import Path
 

@@ -6,8 +6,6 @@ family encoder, which stands for what texts know. `weighed` makes weights of the
 `hthor.catalog.priors.making` computes it.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from functools import cache

@@ -5,8 +5,6 @@ bathrooms and 75 of RoboTHOR, each a list of objects as the simulator reported t
 needs Unity and is never imported.
 """
 
-from __future__ import annotations
-
 import hashlib
 import importlib.metadata
 import math

@@ -1,7 +1,5 @@
 """`hthor agents`, `hthor agent` and `hthor robots`."""
 
-from __future__ import annotations
-
 import shlex
 import sys
 from collections.abc import Sequence

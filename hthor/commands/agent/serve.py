@@ -1,7 +1,5 @@
 """`hthor agent serve`."""
 
-from __future__ import annotations
-
 import os
 import signal
 import sys

@@ -4,8 +4,6 @@ Each finding says what was wrong and what to do next. What is broken would cost 
 what its author would want to know.
 """
 
-from __future__ import annotations
-
 import time
 
 from msgspec import Struct

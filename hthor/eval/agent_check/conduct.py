@@ -3,8 +3,6 @@
 Pure functions of a trial's log.
 """
 
-from __future__ import annotations
-
 import math
 
 from hthor import rules

@@ -1,7 +1,5 @@
 """The points of an agent's contract, each judged by the results of its probe trials."""
 
-from __future__ import annotations
-
 import math
 import statistics
 from collections.abc import Sequence

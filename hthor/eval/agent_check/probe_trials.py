@@ -1,7 +1,5 @@
 """Runs short real trials with one submitted agent and records what it did, saw and spent."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """The runs below a folder, each with its progress and its success rate."""
 
-from __future__ import annotations
-
 import datetime
 import os
 from collections.abc import Iterator

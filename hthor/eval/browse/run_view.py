@@ -1,7 +1,5 @@
 """One run: its result, its trials one by one, and commands that continue from it."""
 
-from __future__ import annotations
-
 import shlex
 from collections.abc import Iterator, Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Two or more runs compared trial by trial: which is better, by how much, and in which kinds of trials."""
 
-from __future__ import annotations
-
 import contextlib
 import itertools
 from collections.abc import Callable, Sequence

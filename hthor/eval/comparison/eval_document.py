@@ -1,7 +1,5 @@
 """The JSON document of one `hthor eval` command, the same for one run and for many."""
 
-from __future__ import annotations
-
 from msgspec import Struct
 
 from hthor.eval.comparison.population_matrix import PopulationMatrix

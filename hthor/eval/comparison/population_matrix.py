@@ -1,7 +1,5 @@
 """Agents evaluated with several human populations: every score, and the worst population for each agent."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from msgspec import Struct

@@ -4,8 +4,6 @@ All agents have played the same trials. An agent's rank is one more than the num
 better, as `hthor compare` finds it: paired, over tasks and people, adjusted by Holm for all pairs at once.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Sequence

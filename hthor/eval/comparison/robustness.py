@@ -5,8 +5,6 @@ assumed to lie between them (`hthor.humans.models.greedy`, `hthor.humans.models.
 is better than frontier", that changes its sign at one extreme depends on how humans are modelled, and is flagged.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Iterable, Mapping, Sequence

@@ -1,7 +1,5 @@
 """How large a study must be, from two success rates or from two runs."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

@@ -3,8 +3,6 @@
 `hthor compare` and `hthor report` judge with it; ranks use the same test and the same adjustment.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from msgspec import Struct

@@ -1,7 +1,5 @@
 """The command that runs or resumes a run, as a user would type it."""
 
-from __future__ import annotations
-
 import shlex
 from collections.abc import Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The human populations of an evaluation, and whether each is used where it was calibrated."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The robots of a run: bodies and agents, resolved from what the user typed."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from pathlib import Path

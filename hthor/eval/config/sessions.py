@@ -1,7 +1,5 @@
 """Assigning tasks to participants: which ten tasks each does, and in which order."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

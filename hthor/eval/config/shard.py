@@ -1,7 +1,5 @@
 """Dividing a run among machines: the sessions of each shard, and its folder."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Sequence
 from pathlib import Path

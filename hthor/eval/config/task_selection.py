@@ -1,7 +1,5 @@
 """The tasks of a run: those of a suite, or a part of it by task kind, house, difficulty or number."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Sequence
 from pathlib import Path

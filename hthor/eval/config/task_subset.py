@@ -1,7 +1,5 @@
 """A representative subset of a suite: always the same tasks, spread over its houses and task kinds."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Sequence
 

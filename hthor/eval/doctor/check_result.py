@@ -1,7 +1,5 @@
 """The result of one check, and of all checks."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 from msgspec import Struct

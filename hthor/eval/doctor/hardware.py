@@ -1,7 +1,5 @@
 """What the machine has to give: room and speed of the runs' folder, memory, cores, environment; changes nothing."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import tempfile

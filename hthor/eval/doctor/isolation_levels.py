@@ -1,7 +1,5 @@
 """Which levels of isolation really start here, and what to do about one that does not; confines nothing itself."""
 
-from __future__ import annotations
-
 import os
 import platform
 import shutil

@@ -1,7 +1,5 @@
 """What is installed, against what this version of hthor was made with: libraries, extras, its own files."""
 
-from __future__ import annotations
-
 import platform
 import subprocess
 import tomllib

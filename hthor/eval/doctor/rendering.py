@@ -1,7 +1,5 @@
 """Whether robots can see, and whether pictures for people can be drawn; run as a script it draws both."""
 
-from __future__ import annotations
-
 import os
 import sys
 from collections.abc import Iterator

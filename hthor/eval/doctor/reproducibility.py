@@ -4,8 +4,6 @@ What is compared is the trial's course, not the code's hash: a change that moves
 that moves anything does. `hthor doctor --write-reference` writes it.
 """
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 from typing import Any

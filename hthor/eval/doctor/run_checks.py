@@ -1,7 +1,5 @@
 """Runs all checks of the machine in one order."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from hthor.eval.doctor import hardware, isolation_levels, libraries, rendering, reproducibility, subprocess_probe

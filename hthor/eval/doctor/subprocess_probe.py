@@ -1,7 +1,5 @@
 """Tries something in a process of its own, so that a crash or a hang is a result."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys

@@ -1,7 +1,5 @@
 """What a command would do, found out without doing it: its runs, how far each is, and how long they would take."""
 
-from __future__ import annotations
-
 import math
 import os
 from collections.abc import Callable, Iterator, Mapping

@@ -1,7 +1,5 @@
 """What a trial takes on this machine: from a finished run like it, or from a few trials that are run to measure it."""
 
-from __future__ import annotations
-
 import math
 import tempfile
 import time

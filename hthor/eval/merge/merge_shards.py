@@ -1,7 +1,5 @@
 """Joining the shards of a run in one folder: each record once, and what is still missing."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

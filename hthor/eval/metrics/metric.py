@@ -1,7 +1,5 @@
 """What a metric is: how it is measured in a trial, what it is called, and which values it can have."""
 
-from __future__ import annotations
-
 import inspect
 import math
 from collections.abc import Callable, Sequence

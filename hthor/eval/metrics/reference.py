@@ -3,8 +3,6 @@
 `python -m hthor.eval.metrics.reference docs/metrics.md` writes it between the page's two markers.
 """
 
-from __future__ import annotations
-
 import math
 import sys
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """All metrics, found by the files of `hthor.eval.metrics.definitions`, in the order of tables."""
 
-from __future__ import annotations
-
 from hthor import plugins
 from hthor.errors import UnknownName
 from hthor.eval.metrics.metric import Metric

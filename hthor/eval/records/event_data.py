@@ -3,8 +3,6 @@
 Task kinds and human models may add data of any form; the fields that are read later have types.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import msgspec

@@ -1,7 +1,5 @@
 """Finding one trial of a run by what the user calls it, and describing its first fault."""
 
-from __future__ import annotations
-
 import difflib
 from collections.abc import Sequence
 

@@ -3,8 +3,6 @@
 `run.json` lists what an agent consists of before the first trial; each trial's record lists what it opened later.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 
 import msgspec

@@ -4,8 +4,6 @@ Several commands on several machines may work on one run, so the file is a list.
 configuration: equal platforms give equal bytes, different ones may not.
 """
 
-from __future__ import annotations
-
 import platform
 from collections.abc import Iterable
 from pathlib import Path

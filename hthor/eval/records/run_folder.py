@@ -1,7 +1,5 @@
 """A run's folder: one object that opens each of the run's files where it is first needed."""
 
-from __future__ import annotations
-
 import difflib
 import fnmatch
 from collections.abc import Sequence

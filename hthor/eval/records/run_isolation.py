@@ -4,8 +4,6 @@ Several commands may work on one run at different levels. The weakest of them co
 decides no record and is no part of the run's configuration.
 """
 
-from __future__ import annotations
-
 from collections.abc import Collection
 from pathlib import Path
 

@@ -5,8 +5,6 @@ with unlimited retries could kill itself whenever it is losing. So each run has 
 After that, a trial in which a process is killed has the fault `killed`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from pathlib import Path
 

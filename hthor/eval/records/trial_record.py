@@ -1,7 +1,5 @@
 """One trial as one line of JSON; the same trial gives the same bytes everywhere."""
 
-from __future__ import annotations
-
 import zlib
 from typing import Any
 

@@ -5,8 +5,6 @@ and in that one the model reports its thoughts. Reporting changes nothing, which
 must equal the logged one.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 

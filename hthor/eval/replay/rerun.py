@@ -4,8 +4,6 @@ What the human does depends on their earlier trials, so these are run too. If an
 the changed agent takes part, and the trial may go differently.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 
 import msgspec

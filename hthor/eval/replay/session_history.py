@@ -1,7 +1,5 @@
 """What it takes to run a logged trial again: the participant's session up to it, and where everything lies."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """A result from a run's records: metrics with intervals, counts and hashes."""
 
-from __future__ import annotations
-
 import hashlib
 from collections import Counter
 from collections.abc import Iterable, Sequence

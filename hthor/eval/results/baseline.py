@@ -1,7 +1,5 @@
 """Finds the baseline of a run: the run of the same participants at the same tasks without a robot."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The difference of two runs in one metric over the same trials: interval, p-value and detectable difference."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """Pairs the trials of two runs that are the same except for the robots."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """What the robots of a run add over its baseline: the same participants at the same tasks without a robot."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import msgspec

@@ -1,7 +1,5 @@
 """Collecting an engine's messages: new trials go to the log, lost sessions are reported."""
 
-from __future__ import annotations
-
 import threading
 from collections.abc import Sequence
 from contextlib import closing

@@ -1,7 +1,5 @@
 """`hthor eval` as one function: every robot team with every human population, each pair in its own run."""
 
-from __future__ import annotations
-
 import functools
 import os
 import shlex

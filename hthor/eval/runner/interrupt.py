@@ -1,7 +1,5 @@
 """Ending a command early: the first signal lets running trials finish, the second one ends at once."""
 
-from __future__ import annotations
-
 import signal
 import threading
 from collections.abc import Iterator

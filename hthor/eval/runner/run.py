@@ -1,7 +1,5 @@
 """One run from its configuration to its result: claim the folder, run the missing trials, score; prints nothing."""
 
-from __future__ import annotations
-
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence

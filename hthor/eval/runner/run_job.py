@@ -1,7 +1,5 @@
 """One run as a job: its configuration, team, humans, tasks, and where everything lies that a worker needs."""
 
-from __future__ import annotations
-
 import functools
 from pathlib import Path
 

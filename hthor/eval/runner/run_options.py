@@ -1,7 +1,5 @@
 """The options of `hthor eval`, and the runs that they stand for."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from pathlib import Path

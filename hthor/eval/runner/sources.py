@@ -1,7 +1,5 @@
 """Where everything lies that a trial needs and hthor does not bring; workers get it as one record."""
 
-from __future__ import annotations
-
 from msgspec import Struct
 
 from hthor.guest.agent.manifest import Manifest

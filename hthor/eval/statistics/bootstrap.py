@@ -3,8 +3,6 @@
 For what has no formula, such as a rank. All rows of values meet the same samples, so that pairing is kept.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numpy as np

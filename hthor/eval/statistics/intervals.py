@@ -1,7 +1,5 @@
 """Means with honest intervals."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """How many trials it takes to detect a difference of two rates."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

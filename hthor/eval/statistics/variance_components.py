@@ -5,8 +5,6 @@ the three are worked out from sums of squares by their expectations (Henderson's
 does everything, every task is done once, or anything between.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """`hthor eval --house my_house.json`: tasks made in houses of the user's own, kept in the cache for the next time."""
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Callable

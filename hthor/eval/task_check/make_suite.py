@@ -1,7 +1,5 @@
 """Draws the tasks of a user's own suite and checks that they can be solved, in worker processes."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Iterator, Sequence
 

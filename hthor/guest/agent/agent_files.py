@@ -4,8 +4,6 @@ The agent says which files it has opened. The host adds what the sources name an
 hashes all of it itself.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable, Iterator
 from pathlib import Path

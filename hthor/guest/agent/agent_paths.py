@@ -1,7 +1,5 @@
 """Where an agent's own files are, and their names in its manifest."""
 
-from __future__ import annotations
-
 import os
 import sys
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The user's ``--agent-args``: parsed, converted for a constructor, or appended to a command."""
 
-from __future__ import annotations
-
 import difflib
 import inspect
 import os

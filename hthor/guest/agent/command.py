@@ -1,7 +1,5 @@
 """An agent that is a command: its words, the files that they name, and their hash."""
 
-from __future__ import annotations
-
 import hashlib
 import os
 import shlex

@@ -1,7 +1,5 @@
 """Hashes of agents' files."""
 
-from __future__ import annotations
-
 import errno
 import hashlib
 import os

@@ -1,7 +1,5 @@
 """What a user gives an agent beyond its own folder: arguments, and files that it may read."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What an agent consists of: a list of files with hashes, and its arguments."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 from msgspec import Struct

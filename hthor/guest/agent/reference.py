@@ -3,8 +3,6 @@
 Every command that takes an agent parses it here, so that all accept the same forms.
 """
 
-from __future__ import annotations
-
 import difflib
 import re
 import shutil

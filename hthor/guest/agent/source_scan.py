@@ -3,8 +3,6 @@
 A file that is imported late, or opened by a library in C, is not recorded while the agent starts.
 """
 
-from __future__ import annotations
-
 import ast
 import os
 import re

@@ -1,7 +1,5 @@
 """One trial of a Python agent: observations in, actions out."""
 
-from __future__ import annotations
-
 import traceback
 from collections.abc import Callable
 from typing import Any

@@ -3,8 +3,6 @@
 The program reads messages from standard input and writes them to standard output; standard error is its log.
 """
 
-from __future__ import annotations
-
 import os
 import signal
 from collections.abc import Sequence

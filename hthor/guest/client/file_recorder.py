@@ -4,8 +4,6 @@ An agent can evade this, and libraries in C open files unseen. So the host hashe
 the sources name; of a submission, everything that was handed in counts.
 """
 
-from __future__ import annotations
-
 import errno
 import os
 import sys

@@ -4,8 +4,6 @@ The agent's own modules are imported from their sources, never from compiled fil
 of another source, so that what runs would not be what was hashed.
 """
 
-from __future__ import annotations
-
 import importlib
 import importlib.util
 import sys

@@ -1,7 +1,5 @@
 """What an agent reads of its robot's senses, asked for over the wire."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any, NoReturn, Protocol
 

@@ -3,8 +3,6 @@
 A submitted file is executed here and nowhere else, and nothing of it lasts: the next trial has another process.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 from collections.abc import Callable

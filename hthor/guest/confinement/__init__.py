@@ -3,8 +3,6 @@
 L1 is a process with limits, L2 adds Landlock and seccomp, and L3 adds namespaces. Results describe it by `Isolation`.
 """
 
-from __future__ import annotations
-
 from hthor.guest.confinement.isolation import AUTO, LEVELS, SERVED, Isolation, IsolationError, check_level, suffices
 from hthor.guest.confinement.policy import Policy
 

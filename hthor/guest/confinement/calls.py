@@ -4,8 +4,6 @@ The filter in `seccomp` is assembled from these tables. Calls that are not liste
 `fcntl` and `ioctl`: of those only the listed ones are.
 """
 
-from __future__ import annotations
-
 import signal
 
 DENIED = {

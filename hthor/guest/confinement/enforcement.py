@@ -3,8 +3,6 @@
 Each layer is tested once it is on: a filter that lets something through must not pass for one that works.
 """
 
-from __future__ import annotations
-
 import os
 import resource
 import socket

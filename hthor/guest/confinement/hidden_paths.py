@@ -4,8 +4,6 @@ They are recognized by their content, whatever their names and places. The searc
 reach are hidden as well.
 """
 
-from __future__ import annotations
-
 import os
 import re
 import time

@@ -1,7 +1,5 @@
 """Levels of isolation, and the record of how a guest was isolated."""
 
-from __future__ import annotations
-
 from msgspec import Struct
 
 from hthor.errors import HthorError, UnknownName

@@ -1,7 +1,5 @@
 """Kernel calls for which Python has no functions."""
 
-from __future__ import annotations
-
 import ctypes
 import os
 from typing import Any

@@ -5,8 +5,6 @@ denied too, from version 6 on signals and abstract sockets to processes outside.
 can still be asked.
 """
 
-from __future__ import annotations
-
 import ctypes
 import os
 import stat

@@ -1,7 +1,5 @@
 """Resource limits, dropped privileges, and what a process uses."""
 
-from __future__ import annotations
-
 import contextlib
 import ctypes
 import os

@@ -4,8 +4,6 @@ There it sees only its own processes, no network, not even the machine's loopbac
 What it writes goes to memory of a fixed size and ends with it.
 """
 
-from __future__ import annotations
-
 import shutil
 from collections.abc import Sequence
 

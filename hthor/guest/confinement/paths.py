@@ -4,8 +4,6 @@ Landlock and bubblewrap only know rules that allow. So a folder that contains so
 other members are, one by one.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 from collections.abc import Iterable, Sequence

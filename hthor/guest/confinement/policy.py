@@ -1,7 +1,5 @@
 """How one guest is confined and what it may use, as a record that is sent to its process."""
 
-from __future__ import annotations
-
 from msgspec import Struct
 
 

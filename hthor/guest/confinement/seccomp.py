@@ -7,8 +7,6 @@ A process can be allowed to start one program, which stays confined: `exec_with_
 demands, in arguments that the kernel itself ignores. The token is random, and is gone with the memory of its sender.
 """
 
-from __future__ import annotations
-
 import ctypes
 import errno
 import os

@@ -1,7 +1,5 @@
 """Messages to and from a guest, each with a deadline. Any failure ends the guest and is a `GuestFault`."""
 
-from __future__ import annotations
-
 import time
 from typing import Protocol
 

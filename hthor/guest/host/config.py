@@ -1,7 +1,5 @@
 """How the submitted agents of a run are isolated and what they are given, as one record."""
 
-from __future__ import annotations
-
 from msgspec import Struct
 
 from hthor.guest.agent.inputs import AgentInputs

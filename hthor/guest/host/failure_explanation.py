@@ -1,7 +1,5 @@
 """Explains an agent's failure where isolation caused it."""
 
-from __future__ import annotations
-
 import os
 import re
 from collections.abc import Iterator

@@ -4,8 +4,6 @@ Starting a process takes longer than many trials. An idle one is reused only for
 only where each trial has a process of its own anyway, so that nothing is carried over.
 """
 
-from __future__ import annotations
-
 import weakref
 
 from msgspec import Struct

@@ -1,7 +1,5 @@
 """What a submitted agent says it is, as a record."""
 
-from __future__ import annotations
-
 import hashlib
 import math
 

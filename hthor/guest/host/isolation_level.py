@@ -3,8 +3,6 @@
 A level counts only once a process has really come up on it.
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Callable
 

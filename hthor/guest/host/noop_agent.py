@@ -1,7 +1,5 @@
 """An agent that does nothing, to try out how agents are held."""
 
-from __future__ import annotations
-
 from hthor.types import Action, Briefing, Observation
 
 

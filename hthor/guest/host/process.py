@@ -1,7 +1,5 @@
 """A guest's process as the host sees it: its pipes, what it prints, and its end."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import select

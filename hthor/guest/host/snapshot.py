@@ -1,7 +1,5 @@
 """An agent's manifest, made when a run begins: its guest is started, and begins a trial that is never run."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable
 

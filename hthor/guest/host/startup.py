@@ -1,7 +1,5 @@
 """Starts a submitted agent: a process at a level of isolation, or a connection to a server."""
 
-from __future__ import annotations
-
 from hthor.errors import KILLED, AgentError, AgentKilled
 from hthor.guest.agent import arguments
 from hthor.guest.agent.agent_paths import AgentPaths

@@ -1,7 +1,5 @@
 """One trial of a guest: observations out, sensor requests answered, actions in, all within the time allowed."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any, TypeVar
 

@@ -1,7 +1,5 @@
 """Ends the processes that a guest has started, and removes the files that it has written."""
 
-from __future__ import annotations
-
 import contextlib
 import os
 import signal

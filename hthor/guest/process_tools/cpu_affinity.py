@@ -4,8 +4,6 @@ One of the two always waits. On a CPU of its own it would fall asleep between tw
 everything else in a step. A guest with several threads is left alone, since they may run in parallel.
 """
 
-from __future__ import annotations
-
 import contextlib
 import ctypes
 import os

@@ -1,7 +1,5 @@
 """How a process ended, as a fault's kind and description."""
 
-from __future__ import annotations
-
 import signal
 
 from hthor.errors import KILLED

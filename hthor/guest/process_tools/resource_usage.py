@@ -4,8 +4,6 @@ Most of a guest's time is spent by processes that end together with it, so that 
 therefore read just before the end.
 """
 
-from __future__ import annotations
-
 import contextlib
 import os
 from collections.abc import Iterator

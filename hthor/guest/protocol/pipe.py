@@ -1,7 +1,5 @@
 """The guest's end of a trial's pipes."""
 
-from __future__ import annotations
-
 import os
 from typing import NoReturn
 

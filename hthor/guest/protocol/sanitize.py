@@ -3,8 +3,6 @@
 Control characters, characters that change the writing direction, and surrogates are replaced by escapes.
 """
 
-from __future__ import annotations
-
 _KEPT = (ord("\n"), ord("\t"))
 _TURNING = (0x61C, *range(0x200E, 0x2010), *range(0x2028, 0x202F), *range(0x2066, 0x206A))
 _UNSEEN = (*range(0x20), *range(0x7F, 0xA0), *_TURNING)

@@ -4,8 +4,6 @@ The memory has no name and a fixed size; seals keep all but the host's own mappi
 until the next step, so the guest takes a copy.
 """
 
-from __future__ import annotations
-
 import fcntl
 import mmap
 import os

@@ -3,8 +3,6 @@
 Whatever an agent does to them, such as writing into a pipe's other end, ends with its trial.
 """
 
-from __future__ import annotations
-
 import contextlib
 import fcntl
 import os

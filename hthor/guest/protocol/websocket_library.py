@@ -1,7 +1,5 @@
 """The optional library that speaks WebSocket, for agents served elsewhere."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from hthor.errors import MissingExtra

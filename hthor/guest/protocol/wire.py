@@ -4,8 +4,6 @@ Arrays are sent from host to guest only: as ``{"__nd__": dtype, "s": shape, "d":
 shared memory, with ``"at"``, the offset in it, instead of the bytes.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

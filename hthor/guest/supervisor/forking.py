@@ -1,7 +1,5 @@
 """Forks the process of a trial, when the trial begins or before."""
 
-from __future__ import annotations
-
 import os
 import socket
 from collections.abc import Callable, Iterable

@@ -4,8 +4,6 @@ Only installed libraries and the parts of this package that agents are made with
 the file's own import will meet them.
 """
 
-from __future__ import annotations
-
 import ast
 import contextlib
 import gc

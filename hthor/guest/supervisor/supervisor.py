@@ -5,8 +5,6 @@ own socket to the host, which no trial's process ever holds: an agent can neithe
 reporting how the agent ended. It never reads what a trial is about.
 """
 
-from __future__ import annotations
-
 import contextlib
 import os
 import select

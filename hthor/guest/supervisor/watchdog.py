@@ -1,7 +1,5 @@
 """Waits for the end of a trial's process, and ends it early if it exceeds a limit."""
 
-from __future__ import annotations
-
 import os
 import select
 import signal

@@ -1,7 +1,5 @@
 """What is wrong with a house, in words: one record a finding."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import Literal
 

@@ -5,8 +5,6 @@ warning, because real floor plans are full of it: a receptacle out of reach, a n
 other furniture. A house of our own has no such excuse: judged strictly, more rules hold and nearly all are errors.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 

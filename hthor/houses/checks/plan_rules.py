@@ -1,7 +1,5 @@
 """Rules about the bare plan: how large rooms are, how wide doorways."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """What makes a floor polygon sound: crossings, overlaps, nearness to the outline."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Sequence

@@ -3,8 +3,6 @@
 Whether a body can live in the house is checked in `house_checks`.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator, Sequence
 

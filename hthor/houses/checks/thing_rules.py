@@ -1,7 +1,5 @@
 """Rules about how things stand: indoors, apart, at rest, with room for their doors."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 

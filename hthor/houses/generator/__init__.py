@@ -4,8 +4,6 @@ Rooms are grown on a grid, joined by doors and furnished in groups; things are h
 the house is checked by named rules. The same arguments give the same bytes. Begin with `attempt.build_document`.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """One attempt at a house, stage by stage."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import msgspec

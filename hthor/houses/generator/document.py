@@ -3,8 +3,6 @@
 The house frame's (x, y, z) becomes Unity's (x, z, y), and its counter-clockwise yaw a clockwise one in degrees.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections import Counter

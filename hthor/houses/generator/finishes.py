@@ -1,7 +1,5 @@
 """Materials, colors, lights and the ceiling's height."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from hthor.houses.generator.draws import Dice

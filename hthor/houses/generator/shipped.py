@@ -5,8 +5,6 @@ ship in, or all of them to one folder given. The unseen houses are what ten seed
 are as many of 4, 5, 6 and 7 rooms as among the scenes, so that they differ from the scenes only in being new.
 """
 
-from __future__ import annotations
-
 import sys
 from importlib import resources
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The rules that a generated house must meet, each violation with the name of its rule."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 

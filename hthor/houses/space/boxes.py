@@ -3,8 +3,6 @@
 A cylinder or a sphere counts as the box around it.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple

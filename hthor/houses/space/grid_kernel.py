@@ -4,8 +4,6 @@ Coordinates are in cells unless a parameter says otherwise: cell (i, j) is the s
 ``free[j, i]`` says whether it is free; off the grid nothing is free. A cell's edge belongs to both its sides.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """What stands in the way, as upright boxes: walls cut at doorways, and furniture."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from typing import NamedTuple

@@ -1,7 +1,5 @@
 """Lines of sight in a house at rest, past the opaque parts of its walls and things."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any

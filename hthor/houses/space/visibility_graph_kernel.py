@@ -4,8 +4,6 @@ A corner is a grid vertex with just one blocked neighbour: the only places where
 lengths are in cells, as in ``cells``.
 """
 
-from __future__ import annotations
-
 import heapq
 import math
 from typing import Any

@@ -1,7 +1,5 @@
 """All behaviours of a trial, built from perceiving, walking and handling."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from functools import partial

@@ -4,8 +4,6 @@ Several hold a thing by its handles. Once they are strong enough together it ris
 along; whoever lets go puts it down.
 """
 
-from __future__ import annotations
-
 import math
 from functools import partial
 

@@ -1,7 +1,5 @@
 """Bringing what is in hand to where it belongs: which place, which spot on it."""
 
-from __future__ import annotations
-
 from functools import partial
 
 from hthor import catalog

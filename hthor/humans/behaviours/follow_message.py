@@ -4,8 +4,6 @@ The map in the headset shows the place all the time, so nobody misses it by the 
 wrong from memory; what reading the map costs is in the pace (``k_map``) and in ways that end at a wall.
 """
 
-from __future__ import annotations
-
 import math
 from functools import partial
 

@@ -6,8 +6,6 @@ in hand or after refusals of the same offer: a logit, as in Trust-POMDP (Chen et
 What is not confirmed is declined, or left without an answer.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -3,8 +3,6 @@
 A message names an object, or something to look into, or where to bring what is in hand.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Literal
 

@@ -1,7 +1,5 @@
 """How a participant notices and reads robots' messages, one after the other."""
 
-from __future__ import annotations
-
 import math
 
 from msgspec import Struct

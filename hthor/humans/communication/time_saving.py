@@ -4,8 +4,6 @@ Without the message they would search on, option by option, the most promising f
 that it names and look there.
 """
 
-from __future__ import annotations
-
 import math
 
 from hthor.humans.core.trial_context import HumanContext

@@ -19,8 +19,6 @@ journal adds what a recorder at the participant's side sees, as events of these 
 The episode records stick and head for every human model; the rest is written by models that have such notions.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 

@@ -4,8 +4,6 @@ Eyes, memory, legs and hands stay the proxy's. A language model, a policy learnt
 among options that are described to it, and answers messages.
 """
 
-from __future__ import annotations
-
 from typing import Literal, Protocol
 
 from msgspec import Struct

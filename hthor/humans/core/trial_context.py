@@ -1,7 +1,5 @@
 """What all parts of a human model share in one trial: traits, body, the observation of now, chance and the journal."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Generator, Iterator
 from typing import Any
 

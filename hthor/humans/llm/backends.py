@@ -1,7 +1,5 @@
 """Where language models' answers come from: an endpoint over HTTP, or a rule that needs no model."""
 
-from __future__ import annotations
-
 import os
 import re
 import urllib.error

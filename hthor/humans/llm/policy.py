@@ -5,8 +5,6 @@ simulated time. An answer that cannot be read is asked for once more; if that fa
 nearest option, or leaves the message alone.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from pathlib import Path
 from typing import TypeVar

@@ -1,7 +1,5 @@
 """The questions to a language model in a participant's place, and how its answers are read."""
 
-from __future__ import annotations
-
 import json
 import re
 

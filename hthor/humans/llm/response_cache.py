@@ -4,8 +4,6 @@ One line of JSON per answer, append-only, safe for several processes at once. A 
 model and gives the same bytes again; publish the file with the run.
 """
 
-from __future__ import annotations
-
 import fcntl
 import os
 from collections.abc import Callable

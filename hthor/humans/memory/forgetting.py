@@ -6,8 +6,6 @@ them apart. The objects of the task are forgotten, and the furniture that someth
 (rooms, doorways, where furniture stands) is learnt fast and kept (Li, Aivar, Tong and Hayhoe 2018).
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator
 

@@ -5,8 +5,6 @@ furniture. People weigh the two, and fresh evidence against both ("Why are the b
 Research 2021): a place searched in vain loses belief by its exposure, see `hthor.humans.search.option_choice`.
 """
 
-from __future__ import annotations
-
 from functools import cache
 
 from hthor import catalog

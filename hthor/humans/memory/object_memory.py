@@ -1,7 +1,5 @@
 """What a participant knows of the objects of the task: where each was noticed last."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 

@@ -1,7 +1,5 @@
 """What a participant remembers of the house during one trial: furniture, doorways, rooms."""
 
-from __future__ import annotations
-
 import math
 from functools import cache
 

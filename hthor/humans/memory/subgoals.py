@@ -1,7 +1,5 @@
 """What there is to do in a trial, and what of it is done as far as the participant knows."""
 
-from __future__ import annotations
-
 import math
 import re
 from typing import Literal

@@ -1,7 +1,5 @@
 """A participant and the robots' messages, from the first notice to the answer."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from msgspec import Struct

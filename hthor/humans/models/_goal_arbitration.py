@@ -1,7 +1,5 @@
 """Which of all possible goals a participant pursues now."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from typing import Literal

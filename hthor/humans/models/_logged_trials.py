@@ -1,7 +1,5 @@
 """The trials of a participant in a run's log, as far as `replay` needs them: ways, looks, hands, answers."""
 
-from __future__ import annotations
-
 import hashlib
 import math
 from collections.abc import Callable, Iterator

@@ -13,8 +13,6 @@ It has the mean body of its population, and differs from the proxy in that it
 All participants are this human; they differ in their tasks only.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from typing import Any

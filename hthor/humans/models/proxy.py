@@ -1,7 +1,5 @@
 """The human proxy: searches, reads messages and trusts more or less, as published studies suggest people do."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 

@@ -5,8 +5,6 @@ robots differ only in how much they stand in the way. Eyes, memory, legs and han
 population's differences; messages are read, and declined.
 """
 
-from __future__ import annotations
-
 from hthor import seeds
 from hthor.humans.core.policy import Answer, Offer, Situation
 from hthor.humans.models import proxy

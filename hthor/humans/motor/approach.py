@@ -1,7 +1,5 @@
 """Getting within reach or sight of something, from another side when one side failed."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from functools import partial

@@ -1,7 +1,5 @@
 """How a participant walks: on a map of what was seen, at their own pace, optimistic about the rest."""
 
-from __future__ import annotations
-
 import copy
 import math
 from collections.abc import Callable

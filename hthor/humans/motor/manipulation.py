@@ -3,8 +3,6 @@
 Every attempt is recorded in the journal, see `hthor.humans.core.behaviour_log`.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Generator
 

@@ -1,7 +1,5 @@
 """Where to stand to look at a place or to reach an object."""
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Sequence

@@ -5,8 +5,6 @@ glimpses at a rate make the time to notice exponential (Koopman 1956). That it i
 of the view, half hidden or crowded is the common finding of visual search; the form of each factor is our choice.
 """
 
-from __future__ import annotations
-
 import math
 from functools import cache
 

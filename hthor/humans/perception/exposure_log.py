@@ -4,8 +4,6 @@ A regression needs them to estimate the parameters of noticing: glimpses without
 Similar glimpses are added up.
 """
 
-from __future__ import annotations
-
 import math
 
 from msgspec import Struct

@@ -8,8 +8,6 @@ On furniture in view, the rate at which the target would be noticed in its middl
 as well: the exposure, a measure of how thoroughly it was searched.
 """
 
-from __future__ import annotations
-
 import math
 
 from hthor.humans.core.trial_context import HumanContext

@@ -3,8 +3,6 @@
 People look over a counter and past a lamp, but not through a wall: only what reaches higher than any furniture counts.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """The range of each parameter."""
 
-from __future__ import annotations
-
 import math
 
 from msgspec.structs import fields

@@ -1,7 +1,5 @@
 """A population described: parameters, where they come from, and how participants differ."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import msgspec

@@ -1,7 +1,5 @@
 """Prior distributions as data."""
 
-from __future__ import annotations
-
 import math
 from statistics import NormalDist
 from typing import Any

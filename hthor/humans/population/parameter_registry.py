@@ -1,7 +1,5 @@
 """Every free parameter of the proxy: unit, prior, source, and which data could identify it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import cache
 from typing import Literal

@@ -4,8 +4,6 @@ Each has its unit and one sentence beside it; the fixed ones also their source. 
 free ones are in `hthor.humans.population.parameter_registry`.
 """
 
-from __future__ import annotations
-
 from msgspec import Struct
 
 

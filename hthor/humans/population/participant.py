@@ -1,7 +1,5 @@
 """One participant: who they are, and the roots of their random numbers."""
 
-from __future__ import annotations
-
 from msgspec import Struct
 
 from hthor import seeds

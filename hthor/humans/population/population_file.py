@@ -3,8 +3,6 @@
 Equal populations give equal bytes.
 """
 
-from __future__ import annotations
-
 import hashlib
 import io
 import zipfile

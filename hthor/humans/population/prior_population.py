@@ -1,7 +1,5 @@
 """The population by the literature alone: drawn from the priors."""
 
-from __future__ import annotations
-
 from hthor import seeds
 from hthor.humans.population import parameter_registry
 from hthor.humans.population.population import Population, Validity

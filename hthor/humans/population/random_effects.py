@@ -1,7 +1,5 @@
 """How participants differ from their population's mean, and how practice changes them."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from typing import Protocol

@@ -5,8 +5,6 @@ that holds one (pop.npz, my_kind.json, my_human.py). A model with a source has i
 ``WORD@POPULATION`` uses a kind or a model with another population than the default.
 """
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """How a participant searches the house: doorways, rooms, furniture one by one."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Generator
 from functools import partial

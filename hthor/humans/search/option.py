@@ -1,7 +1,5 @@
 """One thing that a participant could do next while searching."""
 
-from __future__ import annotations
-
 from msgspec import Struct
 
 from hthor.humans.memory.spatial_memory import KnownDoorway, KnownPlace

@@ -3,8 +3,6 @@
 An option is worth belief * exp(-exposure) / seconds^kappa; the choice follows Luce's law, P ~ worth^beta.
 """
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence

@@ -1,7 +1,5 @@
 """A participant's options in words, for policies, and in numbers, for the journal and for listeners."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Columns of small whole numbers as text: booleans as bits, numbers in a few bytes each."""
 
-from __future__ import annotations
-
 import base64
 import binascii
 

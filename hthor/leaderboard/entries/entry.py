@@ -1,7 +1,5 @@
 """The record of an entry. Its schema is made from these records, see `hthor.leaderboard.schema`."""
 
-from __future__ import annotations
-
 from typing import Annotated, Final, Literal
 
 from msgspec import UNSET, Meta, Struct, UnsetType

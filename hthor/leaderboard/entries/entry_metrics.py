@@ -1,7 +1,5 @@
 """Computes an entry's numbers from the outcomes of its trials."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

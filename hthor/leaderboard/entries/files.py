@@ -1,7 +1,5 @@
 """The board's files: where they are, and how they are read and written."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TypeVar

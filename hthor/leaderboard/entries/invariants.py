@@ -3,8 +3,6 @@
 Each rule yields its problems as pairs of a field and what is wrong there, so that all of them can be listed.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from typing import Any

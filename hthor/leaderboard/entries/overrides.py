@@ -1,7 +1,5 @@
 """Settings of a run other than the benchmark's, with which it cannot be ranked."""
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Mapping
 from pathlib import Path

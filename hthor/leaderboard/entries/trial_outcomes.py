@@ -1,7 +1,5 @@
 """The outcomes of trials as columns: from records, into an entry, and back."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any

@@ -4,8 +4,6 @@ They are separate from the entries, and no submission may touch them. An entry d
 nobody can submit one, and removing something from an entry does not bring a refuted run back.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Annotated, Final, Literal, TypeVar
 

@@ -1,7 +1,5 @@
 """The cells of the page's tables."""
 
-from __future__ import annotations
-
 from msgspec import Struct
 
 from hthor.eval.metrics.metric import NUMBER, SHARE, Unit

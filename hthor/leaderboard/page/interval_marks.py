@@ -1,7 +1,5 @@
 """Small drawings in a table's cells: a mean and its interval on a scale that a column shares."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 

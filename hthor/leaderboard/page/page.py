@@ -1,7 +1,5 @@
 """The leaderboard as one page that needs nothing else: no network, and a script that only sorts."""
 
-from __future__ import annotations
-
 from hthor.eval.metrics.metric import SECONDS
 from hthor.leaderboard.page import cells, interval_marks, tables
 from hthor.leaderboard.page.cells import Cell

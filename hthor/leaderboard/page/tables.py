@@ -1,7 +1,5 @@
 """Tables whose heads sort them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 
 from hthor.leaderboard.page.cells import Cell

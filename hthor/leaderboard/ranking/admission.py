@@ -4,8 +4,6 @@ Without such lists anybody could open a section of their own: with a seed that s
 name as ours, on hand-picked tasks. A board without the file accepts what `own` lists.
 """
 
-from __future__ import annotations
-
 import functools
 from collections.abc import Iterator
 from pathlib import Path

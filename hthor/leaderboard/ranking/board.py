@@ -1,7 +1,5 @@
 """What the list holds: entries in sections of those that can be compared, with their ranks."""
 
-from __future__ import annotations
-
 from typing import Final, Literal
 
 from msgspec import Struct

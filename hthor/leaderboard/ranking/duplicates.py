@@ -4,8 +4,6 @@ Two entries are of the same agent when a team submitted both under one name, as 
 same, no matter who submitted it; or when they did nearly the same, trial by trial.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Makes the list from the entries: sections, ranks, rows; the same entries give the same bytes."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Unpacks a .zip or .tar.gz that is submitted: plain files within a folder, of bounded number and size."""
 
-from __future__ import annotations
-
 import shutil
 import stat
 import tarfile

@@ -1,7 +1,5 @@
 """A submission: a folder with one agent, its files, and its authors' description. Nothing of it is run here."""
 
-from __future__ import annotations
-
 import re
 import tempfile
 from collections.abc import Iterator

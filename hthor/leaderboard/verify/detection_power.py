@@ -5,8 +5,6 @@ draw. Chance differences are taken from the observation: where the entry and the
 have been the claim.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

@@ -3,8 +3,6 @@
 The people are those of the entry: the same population, drawn with the same seed.
 """
 
-from __future__ import annotations
-
 import functools
 import hashlib
 import os

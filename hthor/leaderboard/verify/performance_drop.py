@@ -5,8 +5,6 @@ The tasks differ, so only the people are the same: the test is Welch's, one-side
 weighted success, each at half the level, so an honest agent is flagged once in a hundred verifications.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

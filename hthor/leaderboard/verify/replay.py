@@ -3,8 +3,6 @@
 A person remembers earlier trials, so those before a wanted one in the same session are run too.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from contextlib import closing
 from pathlib import Path

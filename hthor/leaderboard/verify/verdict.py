@@ -5,8 +5,6 @@ but rarely and in both directions (V2). An agent that does not repeat itself can
 the claimed run could be one more run like the replayed one.
 """
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Mapping, Sequence

@@ -1,7 +1,5 @@
 """Verifies an entry: trials drawn after its submission are replayed and compared, and its agent meets fresh tasks."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Machines with a window in their door: stoves, microwave ovens, safes, washers; range hoods."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from hthor.catalog import colors as c

@@ -1,7 +1,5 @@
 """Things to lie on: beds with duvet and pillows, cushions, baskets for dogs."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -5,8 +5,6 @@ the wall with 0 in the middle of its thickness and the room that is looked from 
 the lower edge, for windows). All measures are in metres.
 """
 
-from __future__ import annotations
-
 import math
 
 from hthor.catalog import colors as c

@@ -3,8 +3,6 @@
 What moves in the solids moves here, and every solid stays where it is, so that both looks of a thing agree.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from itertools import pairwise
 from typing import Any

@@ -1,7 +1,5 @@
 """Kitchen things with one big door or none: fridge, coffee machine, toaster."""
 
-from __future__ import annotations
-
 from hthor.catalog import colors as c
 from hthor.looks import materials
 from hthor.looks.draft import Draft

@@ -1,7 +1,5 @@
 """Lamps, candles, and other things on a pole: floor lamps, vacuum cleaners, brushes."""
 
-from __future__ import annotations
-
 from hthor.catalog import colors as c
 from hthor.looks import materials
 from hthor.looks.draft import Draft

@@ -1,7 +1,5 @@
 """The look of last resort: a kind's own solids with rounded edges, in what their colors speak of."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 import numpy as np

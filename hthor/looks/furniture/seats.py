@@ -1,7 +1,5 @@
 """Things to sit on: sofas, armchairs, chairs, stools, ottomans."""
 
-from __future__ import annotations
-
 import math
 
 from hthor.catalog import colors as c

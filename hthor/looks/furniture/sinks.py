@@ -1,7 +1,5 @@
 """Sinks and taps."""
 
-from __future__ import annotations
-
 from hthor.catalog import colors as c
 from hthor.looks import materials
 from hthor.looks.draft import Draft

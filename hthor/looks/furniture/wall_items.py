@@ -1,7 +1,5 @@
 """What hangs on walls, and rugs: paintings, mirrors, clocks, curtains, switches."""
 
-from __future__ import annotations
-
 import zlib
 
 import numpy as np

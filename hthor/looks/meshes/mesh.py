@@ -1,7 +1,5 @@
 """Triangle meshes with texture coordinates, and what they are made of."""
 
-from __future__ import annotations
-
 from typing import Any, NamedTuple
 
 from msgspec import Struct

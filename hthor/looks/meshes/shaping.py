@@ -3,8 +3,6 @@
 Texture coordinates are in metres until `hthor.looks.materials.piece` turns them into repeats of a texture.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 from typing import Any

@@ -1,7 +1,5 @@
 """Solid shapes: rounded box, lathe, cylinder, ball, cushion."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Shapes swept from lines and outlines: tubes, rings, sheets, extrusions, picture panels."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Food that reads as food: apple, tomato, lettuce, bread, egg, potato."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

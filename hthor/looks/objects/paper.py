@@ -1,7 +1,5 @@
 """Books, newspapers, cartons, rolls of paper, cloths and sponges."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

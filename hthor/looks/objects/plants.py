@@ -1,7 +1,5 @@
 """House plants: a pot of soil, stems and arching leaves."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Electronics: televisions, computers, laptops, phones, remote controls."""
 
-from __future__ import annotations
-
 import math
 
 from hthor.catalog import colors as c

@@ -1,7 +1,5 @@
 """Small things of a household: clocks, bins, baskets, boots, keys, pens."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What food is cooked in and eaten from: mugs, bowls, plates, pots, bottles, cutlery."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """Balls, bears, bats and other things to play, train or decorate with."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """A packed trunk to be carried by two."""
 
-from __future__ import annotations
-
 from hthor.catalog import colors as c
 from hthor.looks import materials
 from hthor.looks.draft import Draft

@@ -1,7 +1,5 @@
 """Getting the library's files: from a Debian package, from where one is installed, or through apt."""
 
-from __future__ import annotations
-
 import io
 import shutil
 import subprocess

@@ -4,8 +4,6 @@ A model is stretched along its three axes to fill the thing's box, piece by piec
 lie on it is exactly where the kind's own surface is: things that rest there neither float nor sink.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 

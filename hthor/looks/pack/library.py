@@ -1,7 +1,5 @@
 """One library of furniture (.sh3f, a zip): its catalogue and the files of its models."""
 
-from __future__ import annotations
-
 import io
 import re
 import zipfile

@@ -1,7 +1,5 @@
 """Making a pack of the library: pick, bring into shape, check, write."""
 
-from __future__ import annotations
-
 import hashlib
 import io
 import os

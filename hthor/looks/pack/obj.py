@@ -1,7 +1,5 @@
 """Reading Wavefront OBJ and MTL: triangles by material, in the model's own frame."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any, NamedTuple
 

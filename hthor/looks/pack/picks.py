@@ -3,8 +3,6 @@
 Kinds that open are not here, for no model of the library can, nor kinds with several shelves, where things would float.
 """
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 

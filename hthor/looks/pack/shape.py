@@ -1,7 +1,5 @@
 """Bringing a model into our frame, and finding where things lie on it."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

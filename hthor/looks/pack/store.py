@@ -4,8 +4,6 @@ A pack is a folder: ``pack.json``, ``meshes.npz``, ``textures/*.jpg``, ``LICENCE
 licence asks for it. Its hash is that of ``pack.json``, which holds the hashes of all other files.
 """
 
-from __future__ import annotations
-
 import functools
 import hashlib
 import os

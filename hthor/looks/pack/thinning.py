@@ -1,7 +1,5 @@
 """Fewer triangles for detailed models, with their pictures kept in place."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

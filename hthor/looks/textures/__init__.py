@@ -4,8 +4,6 @@ Each is (H, W, 3) uint8 and at most 512 pixels a side; row 0 lies at v = 0, colu
 repeat without a seam and are near white, to be multiplied by a color; the others fill what they are on.
 """
 
-from __future__ import annotations
-
 from functools import lru_cache
 from typing import Any
 

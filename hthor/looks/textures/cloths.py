@@ -1,7 +1,5 @@
 """Soft surfaces: weaves, knit, terry, carpet, leather, stripes, rugs, wicker."""
 
-from __future__ import annotations
-
 from functools import partial
 from typing import Any
 

@@ -3,8 +3,6 @@
 Skins of food go once around a thing: rows run from its top (first) to its bottom, columns around it.
 """
 
-from __future__ import annotations
-
 from functools import partial
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Smooth random fields that repeat without a seam, and mixing of colors by them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from typing import Any
 

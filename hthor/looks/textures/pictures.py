@@ -1,7 +1,5 @@
 """Pictures that fill what they are on: paintings, screens, book covers, print, dials, keys."""
 
-from __future__ import annotations
-
 import math
 from functools import partial
 from typing import Any

@@ -1,7 +1,5 @@
 """Mineral surfaces: tiles, marble, granite, brick, plaster, concrete."""
 
-from __future__ import annotations
-
 from functools import partial
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Wood: grain for furniture, and boards for floors, in tones to be colored."""
 
-from __future__ import annotations
-
 from functools import partial
 from typing import Any
 

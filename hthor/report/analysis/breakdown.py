@@ -1,7 +1,5 @@
 """Success within parts of the trials: by difficulty, kind of task, split, scene and kind of person."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 
 from hthor.eval.metrics import registry

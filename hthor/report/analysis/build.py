@@ -1,7 +1,5 @@
 """Builds a report's document from runs."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from hthor.eval.results import aggregate

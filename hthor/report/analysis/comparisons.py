@@ -1,7 +1,5 @@
 """Runs against each other, trial by trial, as `hthor compare` does it."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Sequence
 

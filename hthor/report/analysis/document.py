@@ -3,8 +3,6 @@
 Fractions are fractions, times are seconds, trust is 1 to 7.
 """
 
-from __future__ import annotations
-
 import math
 
 from msgspec import Struct

@@ -1,7 +1,5 @@
 """Single trials that a report shows: the best, the worst, and those in which a robot failed; chooses none."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 from msgspec import Struct

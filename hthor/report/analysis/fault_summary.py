@@ -1,7 +1,5 @@
 """In what ways a run's robots failed, how often, and what is left of the first."""
 
-from __future__ import annotations
-
 import shlex
 
 from msgspec import Struct

@@ -1,7 +1,5 @@
 """Reads several runs from their folders and checks that they belong together."""
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Sequence
 from pathlib import Path

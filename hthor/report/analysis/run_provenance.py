@@ -1,7 +1,5 @@
 """Where one run came from: everything that decides its records, and what held its agents."""
 
-from __future__ import annotations
-
 from msgspec import Struct
 
 from hthor import documents

@@ -1,7 +1,5 @@
 """Time spent and trust in one run, as numbers."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

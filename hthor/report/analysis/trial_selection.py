@@ -1,7 +1,5 @@
 """Selects the trials of a run that get a map: those in which its robots helped most and least."""
 
-from __future__ import annotations
-
 import shlex
 
 from hthor.eval.config import cli_command

@@ -1,7 +1,5 @@
 """Names of rooms and a scale on a picture of a house from above; renders nothing itself."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

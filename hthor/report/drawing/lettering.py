@@ -4,8 +4,6 @@ Every figure is made and saved within `plain`, so that a message such as ``$\\fr
 a letter that the font lacks is a box and no warning.
 """
 
-from __future__ import annotations
-
 import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager

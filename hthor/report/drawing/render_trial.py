@@ -1,7 +1,5 @@
 """A logged trial as a picture or a film in a file."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from hthor.errors import HthorError

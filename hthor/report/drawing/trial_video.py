@@ -3,8 +3,6 @@
 Films are VP8 in WebM, which browsers play and OpenCV's own FFmpeg writes. The same trial gives the same bytes.
 """
 
-from __future__ import annotations
-
 import contextlib
 import os
 import sys

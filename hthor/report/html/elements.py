@@ -1,7 +1,5 @@
 """Pieces of a page: tables, figures, paragraphs; everything that is put in is escaped."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from html import escape

@@ -4,8 +4,6 @@ A `Markup` is HTML; a plain str is text and is escaped when it is put into an el
 document holds, such as an entry of the leaderboard, reaches the page as text alone.
 """
 
-from __future__ import annotations
-
 import base64
 import hashlib
 from collections.abc import Iterable

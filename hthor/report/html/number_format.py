@@ -1,7 +1,5 @@
 """Numbers and names as they stand in a sentence or a table."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 

@@ -1,7 +1,5 @@
 """The page's style sheet: light and dark paper, screen and print."""
 
-from __future__ import annotations
-
 from hthor.report.html import matplotlib_svg
 
 _RULES = """

@@ -1,7 +1,5 @@
 """A figure of the page as a file of its own, with colours of light paper."""
 
-from __future__ import annotations
-
 import re
 
 from hthor.report.html import matplotlib_svg

@@ -3,8 +3,6 @@
 Looking changes nothing, which is checked: the record of the trial that was played again must equal the logged one.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
 from typing import Any

@@ -1,7 +1,5 @@
 """The case study's files from the folders of runs: one person at one task with several robots, as SVG and PNG."""
 
-from __future__ import annotations
-
 import io
 from collections.abc import Sequence
 from pathlib import Path

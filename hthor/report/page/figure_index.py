@@ -1,7 +1,5 @@
 """Every figure of a report by its name, with what it shows in words."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 
 from matplotlib.figure import Figure

@@ -1,7 +1,5 @@
 """The page's first sentence: what was compared, which robot is better and by how much, or that it cannot be told."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from hthor.eval.comparison.compare import Comparison

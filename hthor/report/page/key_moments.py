@@ -1,7 +1,5 @@
 """The moments of a trial that a case study shows: a robot speaks, the human answers and acts, the end."""
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterator
 

@@ -1,7 +1,5 @@
 """A report as one page without network access or scripts."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from html import escape
 

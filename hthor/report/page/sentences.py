@@ -1,7 +1,5 @@
 """Sentences about a report's numbers."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping, Sequence
 

@@ -1,7 +1,5 @@
 """Estimates and differences as cells of tables: number, interval, and below them n and what it could have seen."""
 
-from __future__ import annotations
-
 from hthor.eval.metrics.metric import SHARE, Metric, Unit
 from hthor.eval.results.paired_difference import Difference
 from hthor.eval.statistics.intervals import Estimate

@@ -1,7 +1,5 @@
 """What a reader has to know before comparing: unfinished runs, people out of their range, unequal code; no results."""
 
-from __future__ import annotations
-
 from hthor.report.analysis.document import Findings
 from hthor.report.html.number_format import listed
 

@@ -1,7 +1,5 @@
 """A report's files from the folders of runs: `report.html`, `report.json`, and the figures as SVG."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """The person's avatar as far as tasks need it: an all-knowing person with this body sets T*."""
 
-from __future__ import annotations
-
 RADIUS_M = 0.20
 HEIGHT_M = 1.75
 EYE_M = 1.6

@@ -7,8 +7,6 @@ target belongs there, with `ACCEPTABLE` or more it is acceptable, otherwise it i
 fridge. Food in the sink is acceptable, because people wash it.
 """
 
-from __future__ import annotations
-
 from functools import cache
 from importlib import resources
 from typing import Literal

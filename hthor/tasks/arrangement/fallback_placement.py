@@ -5,8 +5,6 @@ brings another plate, elsewhere. Where the remote control is to be near the tele
 and no other surface is within a metre, it has slipped to the floor.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

@@ -1,7 +1,5 @@
 """A free place for one object, on furniture or on the floor, that everybody can get at."""
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Callable, Iterable, Sequence

@@ -1,7 +1,5 @@
 """One relation of a scene graph as a pose: where a target can be on, in or near what it is to be."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 

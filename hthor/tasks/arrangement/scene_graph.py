@@ -1,7 +1,5 @@
 """Scene graphs: which relation of the priors puts each target where, drawn by weight."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Set
 from functools import cache
 

@@ -1,7 +1,5 @@
 """Spreading the six targets over a house as the scene priors say."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import msgspec

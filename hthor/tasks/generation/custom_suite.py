@@ -1,7 +1,5 @@
 """Custom suites: tasks of some kinds, generated in a given house. Equal recipes and houses give equal tasks."""
 
-from __future__ import annotations
-
 import functools
 from typing import Literal
 

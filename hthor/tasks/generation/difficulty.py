@@ -1,7 +1,5 @@
 """How difficult a task is: its least time, and how many likelier places there are to search before the target's."""
 
-from __future__ import annotations
-
 import functools
 from collections import Counter, defaultdict
 from typing import Literal

@@ -1,7 +1,5 @@
 """New tasks like those of a suite: made by the same specification from another root, so nobody can know them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 
 import msgspec

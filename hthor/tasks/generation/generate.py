@@ -4,8 +4,6 @@
 long as the houses, the catalogue, the rules and this code are. A second argument names another file to write.
 """
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Sequence
 from pathlib import Path

@@ -4,8 +4,6 @@ Everything is derived from the salt and the suite's name: each house and its tas
 that reveal nothing. So the same salt gives the same bytes, and knowing one house does not help to predict the next.
 """
 
-from __future__ import annotations
-
 import functools
 import itertools
 import re

@@ -4,8 +4,6 @@
 same while houses, catalogue, rules and task generation are the same. An argument names another file to write.
 """
 
-from __future__ import annotations
-
 import math
 import os
 import sys

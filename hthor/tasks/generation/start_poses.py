@@ -1,7 +1,5 @@
 """Start poses of the person and the robots, chosen so that the least time is near a wanted one."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -10,8 +10,6 @@ hands, within `hthor.tasks.subgoals.TOGETHER_M` of the place, which is beside a 
 instruction names. Progress is the share of the way, as the crow flies, that the trunk has come.
 """
 
-from __future__ import annotations
-
 import math
 
 from hthor import catalog, seeds

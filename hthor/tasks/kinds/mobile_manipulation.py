@@ -11,8 +11,6 @@ The least time is that of a person who knows where everything is:
 Turning, recognising and reading cost nothing, and lines of sight do not matter.
 """
 
-from __future__ import annotations
-
 from typing import Literal
 
 from hthor import catalog, rules

@@ -14,8 +14,6 @@ time (`alone`), while a person and a robot with hands who share them well can wi
 
 # ruff: noqa: ARG002 - the instruction does not say where the apples are; the signatures are those of every kind
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Iterable

@@ -14,8 +14,6 @@ Turning, recognising and reading cost nothing.
 
 # ruff: noqa: ARG002 - a search asks nothing of the house; the signatures are those of every kind
 
-from __future__ import annotations
-
 from hthor import catalog, rules
 from hthor.tasks.kind import LeastTimes, TaskKind
 from hthor.types import HUMAN, Goal, HouseSpec, Placement, Snapshot, TaskSpec

@@ -11,8 +11,6 @@ challenge there are two scores. The share fixed, `progress`, counts the targets 
 somebody displaced since. Strict success, `met`, is that everything is in its place.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

@@ -11,8 +11,6 @@ that of the likeliest. Progress counts the targets that were out of place, less 
 goal is met when common sense finds nothing to object to.
 """
 
-from __future__ import annotations
-
 from hthor import catalog, seeds
 from hthor.errors import HthorError
 from hthor.tasks.arrangement import commonsense_places

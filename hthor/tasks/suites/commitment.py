@@ -4,8 +4,6 @@
 anybody is evaluated. ``revealed.json`` holds the salt, once the season is over.
 """
 
-from __future__ import annotations
-
 import hashlib
 from collections.abc import Iterator, Mapping
 from pathlib import Path

@@ -1,7 +1,5 @@
 """Suites by name or from a file: read, verified by their hash and, where they are the user's own, validated."""
 
-from __future__ import annotations
-
 import difflib
 from pathlib import Path
 

@@ -5,8 +5,6 @@ second salt with the same commitment be found. Roots come from HMAC-SHA256 with 
 purpose: somebody who knows one root, or everything made from it, learns nothing about the salt or other roots.
 """
 
-from __future__ import annotations
-
 import hashlib
 import hmac
 import math

@@ -1,7 +1,5 @@
 """The files of a suite of one's own: the tasks, copies of the houses, and what these need of an asset database."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path

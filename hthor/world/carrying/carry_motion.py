@@ -1,7 +1,5 @@
 """Moving and turning with a thing that is held by its handles, tick by tick."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 

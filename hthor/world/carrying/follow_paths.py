@@ -1,7 +1,5 @@
 """Paths that a bearer or a carried thing follows, as points: where to head for, how long they are."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Sequence

@@ -28,8 +28,6 @@ body that is to lead should take the handle at the end where the route begins, a
 disc of 0.40 m radius has room.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """A thing held by its handles: who holds which end, where it is, and what the bearers lift together."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any

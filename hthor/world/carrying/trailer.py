@@ -15,8 +15,6 @@ only if it leaves the thing in no wall and no body, and no arm longer than its b
 All lengths, angles and counts below are our choice.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 

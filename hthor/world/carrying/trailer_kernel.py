@@ -9,8 +9,6 @@ the unit vector n, applied at arm r = p × n from the centre, is met by the impu
 l / (1 + r² k) and turns it by r k l / (1 + r² k), with k = 3 / (a² + b²); see `_displace`.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Which rules decide on an action, and which activity carries it out."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from hthor.types import Close, Drop, HouseSpec, Motion, Move, Open, Pick, Place, Rotate, Vec2, Wait

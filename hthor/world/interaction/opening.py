@@ -4,8 +4,6 @@ A hinged door passes through what is in its way; it only has to fit where it sto
 needs its way free.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 

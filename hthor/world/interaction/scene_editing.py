@@ -1,7 +1,5 @@
 """Setting and removing objects directly, to prepare a scene."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 

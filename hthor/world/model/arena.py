@@ -3,8 +3,6 @@
 All of it is geoms of the world body, so that the engine has no bodies to process for what stands still.
 """
 
-from __future__ import annotations
-
 import itertools
 from collections.abc import Iterable
 from typing import Any

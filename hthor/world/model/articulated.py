@@ -1,7 +1,5 @@
 """Doors and drawers as composer entities without motors: their joints are written directly."""
 
-from __future__ import annotations
-
 from hthor.types import Joint
 from hthor.world.model import geoms
 from hthor.world.model.door_geometry import Openable

@@ -1,7 +1,5 @@
 """Colours of floors, walls and doors of the physics model."""
 
-from __future__ import annotations
-
 from hthor.looks import finishes
 from hthor.types import Rgba, Wall
 

@@ -8,8 +8,6 @@ between one step and the next. So a step in which anything moves farther than `S
 `STEP_TURN_MAX_RAD` is split.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
 from typing import Any

@@ -1,7 +1,5 @@
 """The composer task of a house: arena, props, doors and bodies in one model."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any
 

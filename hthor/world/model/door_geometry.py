@@ -1,7 +1,5 @@
 """The geometry of everything that opens: doors and drawers of furniture, and doors in doorways."""
 
-from __future__ import annotations
-
 import math
 
 from msgspec import Struct

@@ -5,8 +5,6 @@ look yet: a trial needs no picture, and `rendering` makes its own context when s
 draws with either of them itself still can, see `late_opengl`.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 

@@ -1,7 +1,5 @@
 """The compiled model's geoms as plain arrays: who owns each, which of them hide what."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 from typing import Any
 

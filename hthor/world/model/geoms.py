@@ -1,7 +1,5 @@
 """Turning parts into geoms: shapes, colours, collision bits and draw groups."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

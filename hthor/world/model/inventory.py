@@ -5,8 +5,6 @@ on a surface of something, where `hthor.houses.laying` lays it. What cannot lie 
 furniture does; so does what lies on the bare floor, where the free-space grid counts it as an obstacle.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 from msgspec import Struct

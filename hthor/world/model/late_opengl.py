@@ -5,8 +5,6 @@ off; what is here lets them choose after all, by the environment as it is then, 
 together with hthor. Our own pictures do without, see `opengl`.
 """
 
-from __future__ import annotations
-
 import importlib
 from collections.abc import Callable, Sequence
 from types import ModuleType

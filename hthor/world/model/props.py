@@ -1,7 +1,5 @@
 """A movable object as a composer entity with its true mass."""
 
-from __future__ import annotations
-
 from hthor import catalog
 from hthor.types import Vec3
 from hthor.world.model import geoms

@@ -1,7 +1,5 @@
 """Walls as boxes: every face a slab of half a wall's thickness, cut at doors and windows."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from typing import Literal, NamedTuple

@@ -1,7 +1,5 @@
 """Names what a body ran into: the thing, wall or shut door nearest to a place."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 from hthor.geometry import plane

@@ -5,8 +5,6 @@ where both are blocked it stops. Other bodies are discs: no body may come closer
 but one that is too close already may always move away.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 

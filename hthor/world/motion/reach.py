@@ -1,7 +1,5 @@
 """What a hand can reach, what an arm can lift, and where a held object is."""
 
-from __future__ import annotations
-
 import math
 
 from hthor import catalog

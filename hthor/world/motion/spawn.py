@@ -1,7 +1,5 @@
 """Placing bodies, at the start of an episode or by hand: on free floor and clear of each other."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 

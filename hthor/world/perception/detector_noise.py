@@ -12,8 +12,6 @@ detector was read before. Within a glimpse:
 - reported positions of objects are off by a normal error of ``position_sigma`` along each axis.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 

@@ -1,7 +1,5 @@
 """Furniture and doorways as targets of sight: what never moves, and the points at which it is looked for."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Mapping, Sequence
 

@@ -1,7 +1,5 @@
 """The solids that hide things, laid out for the visibility kernels: in groups that lie close together."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 import numba

@@ -1,7 +1,5 @@
 """Which solid hides a point from an eye, and how far the eye may move while it stays hidden: compiled."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """A range scan over the static obstacles of a house; moving bodies and carried objects are not in it."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

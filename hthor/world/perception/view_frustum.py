@@ -1,7 +1,5 @@
 """An eye's position, axes and field of view, and which points and balls are within it."""
 
-from __future__ import annotations
-
 import functools
 import math
 

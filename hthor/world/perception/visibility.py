@@ -1,7 +1,5 @@
 """What each seat sees of a world now: objects, bodies, furniture and doorways in view."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Sequence
 from typing import Any

@@ -4,8 +4,6 @@ One call handles all targets and takes a few microseconds. Loops over balls, poi
 can, so that they compile to vector instructions.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

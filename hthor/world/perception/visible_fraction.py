@@ -1,7 +1,5 @@
 """How much of one object in view is visible, and how many others appear close to it."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Where a camera is and how it projects, as records and as the numbers a tracer wants; draws nothing."""
 
-from __future__ import annotations
-
 import math
 from typing import Any, NamedTuple
 

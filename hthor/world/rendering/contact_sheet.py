@@ -5,8 +5,6 @@ The views are found by looking: of many places and directions in each room, the 
 same house gives the same sheet.
 """
 
-from __future__ import annotations
-
 import argparse
 import math
 import sys

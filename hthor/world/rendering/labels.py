@@ -4,8 +4,6 @@ Numbers in alphabetic order would reveal names, and constant numbers would ident
 a camera sees neither.
 """
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

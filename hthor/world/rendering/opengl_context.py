@@ -4,8 +4,6 @@ Without a graphics card, Mesa starts a drawing thread for every core. With one p
 ``LP_NUM_THREADS=0`` so that these threads do not compete.
 """
 
-from __future__ import annotations
-
 import contextlib
 import importlib
 import os

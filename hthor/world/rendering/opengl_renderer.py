@@ -3,8 +3,6 @@
 It draws copied moments on a stage of its own (see `hthor.world.rendering.scene`), so a picture never touches the world.
 """
 
-from __future__ import annotations
-
 import atexit
 import math
 import weakref

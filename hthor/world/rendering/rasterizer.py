@@ -6,8 +6,6 @@ of a flat face is a straight line, so that a box needs no division at all within
 a pixel. Nothing is built beforehand, so things may move freely between pictures.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

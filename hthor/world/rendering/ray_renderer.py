@@ -3,8 +3,6 @@
 It draws copied moments on a copy of the model, so a picture never touches the world.
 """
 
-from __future__ import annotations
-
 import copy
 from typing import Any
 

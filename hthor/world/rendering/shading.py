@@ -4,8 +4,6 @@ The light is a lamp at the eye, two suns without shadows and a soft sky, so that
 where a pixel covers more of a surface than they repeat over, so that nothing flickers far away.
 """
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Which pattern each solid of a house is drawn with."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

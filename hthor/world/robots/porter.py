@@ -1,7 +1,5 @@
 """A broad service robot with two arms and a tray, in the manner of a Fetch or a TIAGo: strong, wide and unhurried."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from hthor import rules

@@ -1,7 +1,5 @@
 """A flat disc on the floor, in the manner of a robot vacuum: it can only move, look up from below, and report."""
 
-from __future__ import annotations
-
 from hthor import rules
 from hthor.looks.meshes import sweeps
 from hthor.looks.meshes.mesh import Piece

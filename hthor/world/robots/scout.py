@@ -1,7 +1,5 @@
 """A low two-wheeled base with a camera on a mast, in the manner of a LoCoBot: it looks and reports, it cannot grasp."""
 
-from __future__ import annotations
-
 import math
 
 from hthor import rules

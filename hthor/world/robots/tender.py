@@ -1,7 +1,5 @@
 """A slender column with a lift, an arm and a gripper, in the manner of a Stretch: it fetches, carries and opens."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from hthor import rules

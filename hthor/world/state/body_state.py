@@ -1,7 +1,5 @@
 """The state of each body in an episode: where it is, what it is doing, what it holds."""
 
-from __future__ import annotations
-
 from typing import Protocol
 
 from hthor.errors import UnknownName

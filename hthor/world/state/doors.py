@@ -1,7 +1,5 @@
 """The doors and drawers of one episode: which are open and how they move."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 
 import numpy as np

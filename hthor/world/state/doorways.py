@@ -3,8 +3,6 @@
 Grids are computed when a door is first shut, and kept. While all doorways are open they are those of the house.
 """
 
-from __future__ import annotations
-
 import copy
 from collections.abc import Iterable, Mapping
 from typing import Any

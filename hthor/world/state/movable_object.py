@@ -1,7 +1,5 @@
 """The state of one movable object in an episode."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any

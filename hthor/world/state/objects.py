@@ -1,7 +1,5 @@
 """The movable objects of one episode: where each is, what it lies on, who holds it."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 import numpy as np

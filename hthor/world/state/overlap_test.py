@@ -1,7 +1,5 @@
 """Which solids an object touches or overlaps, by the engine's exact shapes."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The poses that a picture of one moment needs, cheap enough to be kept with every message."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 

@@ -1,7 +1,5 @@
 """Which room each body is in."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 

@@ -3,8 +3,6 @@
 The surface of a drawer moves with it; see `SupportSurfaces.pull`.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator
 from typing import Any

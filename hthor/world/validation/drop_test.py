@@ -3,8 +3,6 @@
 All are tried in one simulation, in which the objects do not meet one another.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import Any
 

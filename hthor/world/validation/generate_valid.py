@@ -1,7 +1,5 @@
 """Generates homes until one passes all checks."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from msgspec import Struct

@@ -1,7 +1,5 @@
 """All checks of a house: the rules on its plan, and those that need the physics engine."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 
 from hthor.houses.checks import thing_rules

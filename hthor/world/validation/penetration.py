@@ -1,7 +1,5 @@
 """Do the things of a house penetrate one another, its walls or its floor? Exact, part by part; judges nothing else."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from hthor.houses.checks.findings import Finding, error, readable_kind

@@ -3,8 +3,6 @@
 They take a hundredth of a second to make, so a house can be proved sound while it is being generated.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from typing import Any
 

@@ -1,7 +1,5 @@
 """How a person walked and turned in a trial, from the joystick and the path."""
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 from typing import Any

@@ -1,7 +1,5 @@
 """What a person tried to manipulate in a trial, from the journal."""
 
-from __future__ import annotations
-
 from msgspec import Struct
 
 from hthor import rules

@@ -1,7 +1,5 @@
 """How a person handled messages in a trial, from events, joystick and journal."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Which messages people accept: a logistic regression with an intercept for each person."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

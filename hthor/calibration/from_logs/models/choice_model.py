@@ -4,8 +4,6 @@ The value of an option is (w knowledge + (1 - w) uniform) exp(-exposure) / secon
 that follows value^beta; beta differs from person to person.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

@@ -5,8 +5,6 @@ person is searching at that spot; an object is noticed in a glimpse with 1 - exp
 logarithm is linear in most of this. ``lam0`` differs from person to person.
 """
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import numpy as np

@@ -4,8 +4,6 @@ The effects are integrated out around their modes, one Newton search for all peo
 are found by a quasi-Newton search, with priors as penalties, and their errors come from the curvature there.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """The belief about each parameter before logs are used: normal distributions on a fitting scale."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any, Literal

@@ -4,8 +4,6 @@ Both are log-normal; their sum is treated as log-normal with its own mean and va
 without an answer was either not handled yet, or will never get one.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 

@@ -1,7 +1,5 @@
 """How fast people walk, turn, start, handle and read: log-normal distributions with an effect per person."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any

@@ -4,8 +4,6 @@ Trust is Beta(alpha, beta); each trial adds counts for the value of the robots i
 the scale of 1 to 7 with some noise. The first mean differs from person to person.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping, Sequence
 

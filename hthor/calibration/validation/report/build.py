@@ -1,7 +1,5 @@
 """The findings of a validation, computed from the runs, the targets and the evidence."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 
 import msgspec

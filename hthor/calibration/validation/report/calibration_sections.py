@@ -1,7 +1,5 @@
 """The page's sections on a calibration; without one, a sentence in each says so."""
 
-from __future__ import annotations
-
 import msgspec
 
 from hthor.calibration.evidence import Evidence

@@ -1,7 +1,5 @@
 """The criteria that a human model has to meet: what each asks, what was found, and the verdict."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import msgspec

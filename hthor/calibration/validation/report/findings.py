@@ -3,8 +3,6 @@
 Fractions are fractions, times are seconds, trust is 1 to 7. ``condition`` is none, frontier or oracle.
 """
 
-from __future__ import annotations
-
 from typing import Literal
 
 from msgspec import Struct

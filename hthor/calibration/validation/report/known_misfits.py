@@ -1,7 +1,5 @@
 """Where a human model differs from the published study, as sentences made from the numbers."""
 
-from __future__ import annotations
-
 from hthor.calibration.validation.report import phrases
 from hthor.calibration.validation.report.findings import QUARTILE_S, Findings
 

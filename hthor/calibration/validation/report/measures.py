@@ -1,7 +1,5 @@
 """The report's numbers from trials: figures, time spent, trust, log scores."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Mapping

@@ -4,8 +4,6 @@ The first and last sections are here, those of the calibration in
 `hthor.calibration.validation.report.calibration_sections`.
 """
 
-from __future__ import annotations
-
 from html import escape
 
 from hthor.calibration.targets import CONDITIONS

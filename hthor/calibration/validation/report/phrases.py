@@ -1,7 +1,5 @@
 """Sentences made from the numbers of a validation."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from hthor.calibration.evidence import (

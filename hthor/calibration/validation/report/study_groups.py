@@ -5,8 +5,6 @@ done once, as in the study; as many of its trials are dropped as the study lost.
 more groups than people, but their spread is that of people drawn from one population.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 

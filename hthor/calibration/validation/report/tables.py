@@ -1,7 +1,5 @@
 """Findings as rows of cells, for the page and for the terminal."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from hthor.calibration.evidence import (

@@ -1,7 +1,5 @@
 """Records of an evaluation as a table of trials, so that evaluations and calibrations are measured alike."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 import numpy as np

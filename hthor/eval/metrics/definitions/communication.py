@@ -1,7 +1,5 @@
 """What became of the robots' messages, and how good they were as a channel."""
 
-from __future__ import annotations
-
 import functools
 
 from hthor import rules

@@ -1,7 +1,5 @@
 """Which seat did how much of what was achieved in a trial."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Sequence
 
 from hthor.episode import EpisodeLog

@@ -1,7 +1,5 @@
 """How much bodies were in each other's way."""
 
-from __future__ import annotations
-
 import functools
 import math
 from collections.abc import Iterable, Iterator

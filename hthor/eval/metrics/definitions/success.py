@@ -1,7 +1,5 @@
 """Success, success weighted by time, and progress."""
 
-from __future__ import annotations
-
 import functools
 
 import numpy as np

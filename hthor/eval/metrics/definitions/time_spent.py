@@ -1,7 +1,5 @@
 """Time spent on the task, and time in which the human did nothing."""
 
-from __future__ import annotations
-
 from hthor import rules
 from hthor.eval.metrics.metric import DIGITS, LOWER, SECONDS, Metric, Trial
 from hthor.types import HUMAN

@@ -1,7 +1,5 @@
 """The human's trust in the robots."""
 
-from __future__ import annotations
-
 from hthor import rules
 from hthor.eval.metrics.metric import HIGHER, Metric, Trial
 

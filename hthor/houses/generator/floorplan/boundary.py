@@ -1,7 +1,5 @@
 """The outline of a house: whole cells of a grid, some corners cut off."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

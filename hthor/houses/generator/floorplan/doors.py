@@ -1,7 +1,5 @@
 """Which rooms a door joins, and where it stands and swings."""
 
-from __future__ import annotations
-
 import math
 
 from msgspec import Struct

@@ -1,7 +1,5 @@
 """Growing rooms on a house's cells (after Lopes et al. 2010): first rectangles, then L-shapes."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

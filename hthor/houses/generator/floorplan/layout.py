@@ -3,8 +3,6 @@
 Plans are in the house frame [m], the grid's corner at the origin.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np

@@ -1,7 +1,5 @@
 """Putting small things on furniture, so that every surface still takes every target."""
 
-from __future__ import annotations
-
 import math
 from collections import Counter
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """What people leave where: for each kind of furniture the small things on it and how often."""
 
-from __future__ import annotations
-
 from typing import Literal
 
 from msgspec import Struct

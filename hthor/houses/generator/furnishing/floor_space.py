@@ -3,8 +3,6 @@
 Rectangles are upright in the house frame [m]: x0, y0, x1, y1, and the heights z0, z1 between which they count.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """Chooses the furniture of each room, what is required first."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 
 from hthor.houses.generator.draws import Dice

@@ -1,7 +1,5 @@
 """Groups of furniture as people put them together, in their own frames."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 

@@ -1,7 +1,5 @@
 """Choosing sizes and finishes of things, alike within one house."""
 
-from __future__ import annotations
-
 from hthor import catalog
 from hthor.houses.generator.draws import Dice
 from hthor.houses.generator.furnishing.pieces import Piece

@@ -1,7 +1,5 @@
 """Which kinds a house must have, may have and must not have."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 
 from msgspec import Struct

@@ -1,7 +1,5 @@
 """The room that doors and drawers of a thing take while they open, in its own frame."""
 
-from __future__ import annotations
-
 import math
 from functools import lru_cache
 

@@ -1,7 +1,5 @@
 """Windows, curtains, pictures, towels and switches on the walls that furniture left free."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 

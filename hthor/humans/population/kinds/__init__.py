@@ -4,8 +4,6 @@ A new file here is a new kind; a path to such a file works as well. The populati
 random effects between participants are added as before.
 """
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Literal
 

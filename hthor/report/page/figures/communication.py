@@ -1,7 +1,5 @@
 """What became of the robots' messages, and how good a channel they were."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from matplotlib.figure import Figure

@@ -1,7 +1,5 @@
 """Runs against each other over the trials that they share."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from matplotlib.figure import Figure

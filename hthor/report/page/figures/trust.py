@@ -1,7 +1,5 @@
 """Trust by trial of the session."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from matplotlib.figure import Figure

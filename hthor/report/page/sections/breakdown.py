@@ -1,7 +1,5 @@
 """Success by difficulty, kind of task, split, scene and kind of person, with the gain over no robot."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping, Sequence
 
 from hthor.eval.metrics import registry

@@ -1,7 +1,5 @@
 """The robots' messages, and how much bodies are in each other's way."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 
 from hthor.eval.metrics import registry

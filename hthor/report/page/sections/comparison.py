@@ -1,7 +1,5 @@
 """Runs against each other and against no robot, trial by trial."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from hthor.eval.comparison.compare import Comparison

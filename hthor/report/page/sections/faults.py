@@ -1,7 +1,5 @@
 """What failed: kinds of fault, and of each the first with its traceback, its last output and how to replay it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from hthor.report.analysis.document import Findings

@@ -1,7 +1,5 @@
 """Where the runs come from: everything that decides their records, what held their agents, and their commands."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 
 from hthor.eval.config.cli_command import BUILT_IN_AGENTS

@@ -1,7 +1,5 @@
 """The table against the baselines and the article."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 
 from hthor.eval.metrics import registry

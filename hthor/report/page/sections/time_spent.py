@@ -1,7 +1,5 @@
 """Time spent, as the article's box plots have it."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from hthor.report.analysis.document import Findings

@@ -1,7 +1,5 @@
 """The best and the worst trials of each robot, on maps."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from html import escape
 

@@ -1,7 +1,5 @@
 """Trust over the trials of a session."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 
 from hthor import rules

@@ -3,8 +3,6 @@
 Speed, turn rate and field of view are those of a person in a headset with a stick in either hand (see `rules`).
 """
 
-from __future__ import annotations
-
 import math
 
 from hthor import rules

@@ -5,8 +5,6 @@ that planners use (see `hthor.world.motion`). Its head turns with the camera: so
 are given as they are while the camera looks straight ahead.
 """
 
-from __future__ import annotations
-
 import functools
 import importlib
 import math

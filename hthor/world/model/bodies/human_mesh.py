@@ -1,7 +1,5 @@
 """The person's meshes: a dressed figure with shoes, trousers, belt, jumper, hands, face and hair; cannot move them."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from hthor.looks.meshes import shaping, sweeps

@@ -3,8 +3,6 @@
 ``moves`` is "head" for what turns with the camera, empty for the rest.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Sequence
 from typing import Any

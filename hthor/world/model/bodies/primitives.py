@@ -4,8 +4,6 @@ The body frame has x ahead, y left, z up, and its origin on the floor below the 
 turns with the camera, empty for the rest.
 """
 
-from __future__ import annotations
-
 from typing import Literal
 
 from hthor.types import Part, Rgba, Vec3

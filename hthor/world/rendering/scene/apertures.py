@@ -3,8 +3,6 @@
 Frames are boxes that reach into the wall and stand a little proud of it, so that no two faces lie in one plane.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable, Iterator
 

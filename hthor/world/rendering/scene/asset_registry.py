@@ -1,7 +1,5 @@
 """Meshes and materials as assets of the visual model, each stored once."""
 
-from __future__ import annotations
-
 from collections.abc import Hashable
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Where looks and textures come from: an optional pack first, then our own."""
 
-from __future__ import annotations
-
 from typing import Any, Protocol
 
 import msgspec

@@ -1,7 +1,5 @@
 """The visual model: a house, its things and bodies in their looks, compiled once."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 

@@ -1,7 +1,5 @@
 """Flat meshes cut into small cells, so that light computed at corners looks smooth."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterable
 

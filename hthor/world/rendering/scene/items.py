@@ -1,7 +1,5 @@
 """One mesh of the visual model with its owner and material."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from hthor.looks import Material, Mesh

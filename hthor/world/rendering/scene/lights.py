@@ -3,8 +3,6 @@
 The lamps throw shadows, so their light stays in their rooms.
 """
 
-from __future__ import annotations
-
 import itertools
 import math
 from collections.abc import Iterable, Iterator

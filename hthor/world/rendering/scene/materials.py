@@ -1,7 +1,5 @@
 """What floors, walls and trim of a house are made of."""
 
-from __future__ import annotations
-
 from msgspec import structs
 
 from hthor.looks import Material, materials, textures

@@ -1,7 +1,5 @@
 """What is seen through windows: a sky with clouds and a line of trees, painted by numbers."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

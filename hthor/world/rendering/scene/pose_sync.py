@@ -3,8 +3,6 @@
 A mover's *rest* is its pose with every door and drawer closed; what is drawn there follows it from then on.
 """
 
-from __future__ import annotations
-
 import copy
 from typing import Any
 

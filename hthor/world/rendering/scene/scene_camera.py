@@ -1,7 +1,5 @@
 """Cameras of the drawn scene: a seat's eye and the view from above."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from hthor.types import BodySpec, Pose, Vec2

@@ -1,7 +1,5 @@
 """Floors, ceilings, walls and baseboards of a house as meshes."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 

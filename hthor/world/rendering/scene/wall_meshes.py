@@ -4,8 +4,6 @@ The boxes of `hthor.world.model.walls`, which bodies run into, overlap at their 
 there.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from typing import NamedTuple

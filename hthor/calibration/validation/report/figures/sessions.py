@@ -1,7 +1,5 @@
 """Figures of sessions: time spent, and trust by trial."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 
 from matplotlib.figure import Figure
