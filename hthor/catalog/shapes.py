@@ -99,8 +99,8 @@ def sofa(size: Vec3, *, fabric: Rgba, cushion: Rgba, seats: int) -> Form:
         box(size, (w - arm, back, 0.0), (w, d, rail), fabric),
         box(size, (arm, back, 0.04 * h), (w - arm, d, base), fabric),
         *(
-            box(size, (arm + (i + 0.01) * width, back, base), (arm + (i + 0.99) * width, d, seat), cushion)
-            for i in range(seats)
+            box(size, (arm + i * width, back, base), (arm + (i + 1) * width, d, seat), cushion)
+            for i in range(seats)  # without a gap, where a pen would be lost
         ),
     )
     e = min(0.03, 0.05 * d)

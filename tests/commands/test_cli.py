@@ -231,7 +231,7 @@ def _printed(text: str) -> list[str]:
     """Commands that a page or a command's words tell the reader to type."""
     return [
         html.unescape(one).strip()
-        for one in re.findall(r"(?:<code>|<pre>|^next: |^look: |^ {6,})\s*(hthor [^<\n]+)", text, re.M)
+        for one in re.findall(r"(?:<code>|<pre>|^next: |^see: |^ {6,})\s*(hthor [^<\n]+)", text, re.M)
     ]
 
 

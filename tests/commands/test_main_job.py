@@ -268,9 +268,9 @@ def test_a_new_agent_works_unedited_from_anywhere_beside_one_that_fails(tmp_path
     assert f"failed in {tired['counts']['faults']} of {TRIALS // 2} trials" in done.stderr
     assert "after 10.0 s: raised: AssertionError: tired" in done.stderr
     assert 'File "agent.py", line' in done.stderr, "the agent's own frames, and none of ours"
-    assert "hthor/" not in done.stderr.partition("Traceback")[2].partition("look:")[0]
-    look = next(line for line in done.stderr.splitlines() if line.startswith("look:"))
-    again = hthor(*shlex.split(look.removeprefix("look:"))[1:], "--json", cwd=tmp_path)
+    assert "hthor/" not in done.stderr.partition("Traceback")[2].partition("see:")[0]
+    see = next(line for line in done.stderr.splitlines() if line.startswith("see:"))
+    again = hthor(*shlex.split(see.removeprefix("see:"))[1:], "--json", cwd=tmp_path)
     assert again.returncode == 3, again.stderr
     rerun = json.loads(again.stdout)
     assert (rerun["same"], rerun["changed"]) == (True, False)
