@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeAlias
+import inspect
+from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeAlias, get_type_hints
 
 from msgspec import Struct
 
@@ -175,3 +176,12 @@ class Senses(Protocol):
     def camera(self) -> Camera:
         """The intrinsics and the pose of the camera that takes the three pictures."""
         ...
+
+
+READINGS: dict[str, Any] = {
+    name: get_type_hints(method)["return"]
+    for name, method in inspect.getmembers(Senses, inspect.isfunction)
+    if not name.startswith("_") and len(inspect.signature(method).parameters) == 1
+}
+"""What a robot in a process of its own can ask for: the sensors that take no argument, by name, with the types of their
+readings; `Any` for an array."""

@@ -1,15 +1,15 @@
 """What an agent reads of its robot's senses, asked for over the wire."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, NoReturn, Protocol
 
 import msgspec
+import numpy as np
+from numpy.typing import NDArray
 
 from hthor.errors import StaleObservation
 from hthor.guest.protocol import shared_frames, wire
-from hthor.types import Camera, Detection, Scan
-
-_PICTURES = ("rgb", "depth", "segmentation", "image")
+from hthor.types.sensors import READINGS
 
 
 class HostGone(BaseException):
@@ -46,39 +46,29 @@ class RemoteSenses:
         """End the tick: nothing can be read after it."""
         self._fresh = False
 
-    def detections(self) -> tuple[Detection, ...]:
-        return self._get("detections", lambda data: msgspec.msgpack.decode(data, type=tuple[Detection, ...]))  # type: ignore[no-any-return]
+    def __getattr__(self, name: str) -> Callable[[], Any]:
+        """The sensor of that name."""
+        if name not in READINGS:
+            raise AttributeError(f"there is no sensor '{name}'; there are {', '.join(READINGS)}")
+        return lambda: self._get(name)
 
-    def scan(self) -> Scan:
-        return self._get("scan", _scan)  # type: ignore[no-any-return]
-
-    def rgb(self) -> Any:
-        return self._get("rgb", self._array)
-
-    def depth(self) -> Any:
-        return self._get("depth", self._array)
-
-    def segmentation(self) -> Any:
-        return self._get("segmentation", self._array)
-
-    def camera(self) -> Camera:
-        return self._get("camera", _camera)  # type: ignore[no-any-return]
-
-    def image(self, number: int) -> Any:
+    def image(self, number: int) -> NDArray[np.uint8]:
         """The picture that came with message ``number``."""
-        return self._get("image", self._array, number)
+        image: NDArray[np.uint8] = self._get("image", number)
+        return image
 
-    def _get(self, what: str, decode: Any, which: int = -1) -> Any:
+    def _get(self, what: str, which: int = -1) -> Any:
         if not self._fresh:
             raise StaleObservation("this observation is of an earlier tick: read what you need during act")
         key = (what, which)
         if key not in self._known:
-            sent = self._ahead.get(what)
-            self._known[key] = decode(self._ask(what, which) if sent is None else sent)
+            sent, kind = self._ahead.get(what), READINGS.get(what, Any)
+            reading = self._ask(what, which, kind is Any) if sent is None else sent
+            self._known[key] = self._array(reading) if kind is Any else _decode(reading, kind)
         return self._known[key]
 
-    def _ask(self, what: str, which: int) -> msgspec.Raw:
-        self._pipe.send(wire.Ask(what=what, which=which, shared=what in _PICTURES and self._pipe.view is not None))
+    def _ask(self, what: str, which: int, picture: bool) -> msgspec.Raw:
+        self._pipe.send(wire.Ask(what=what, which=which, shared=picture and self._pipe.view is not None))
         answer = self._pipe.receive()
         if not isinstance(answer, wire.Given):
             self._pipe.fail()
@@ -90,20 +80,15 @@ class RemoteSenses:
         return view.take(value) if view is not None and "at" in value else wire.decode_array(value)
 
 
-def _scan(data: bytes) -> Scan:
-    scan: Any = msgspec.msgpack.decode(data, type=Scan)
-    decoded: Scan = msgspec.structs.replace(
-        scan,
-        bearings=wire.decode_array(scan.bearings),
-        ranges=wire.decode_array(scan.ranges),
-        tops=scan.tops if scan.tops is None else wire.decode_array(scan.tops),
-    )
-    return decoded
-
-
-def _camera(data: bytes) -> Camera:
-    camera: Any = msgspec.msgpack.decode(data, type=Camera)
-    decoded: Camera = msgspec.structs.replace(
-        camera, matrix=wire.decode_array(camera.matrix), pose=wire.decode_array(camera.pose)
-    )
-    return decoded
+def _decode(data: bytes, kind: Any) -> Any:
+    """A reading of type ``kind``, with its fields that are arrays."""
+    reading = msgspec.msgpack.decode(data, type=kind)
+    if isinstance(reading, msgspec.Struct):
+        fields = {name: getattr(reading, name) for name in reading.__struct_fields__}
+        arrays = {
+            name: wire.decode_array(value)
+            for name, value in fields.items()
+            if isinstance(value, dict) and "__nd__" in value
+        }
+        return msgspec.structs.replace(reading, **arrays)
+    return reading

@@ -9,14 +9,11 @@ from hthor.guest.host.channel import GuestFault, MessageChannel
 from hthor.guest.protocol import wire
 from hthor.guest.protocol.shared_frames import FrameWriter
 from hthor.types import Action, Observation
+from hthor.types.sensors import READINGS
 
 _T = TypeVar("_T")
 _ASKS = 100
 """Sensor requests allowed within one ``act``; an agent never needs to ask for the same thing twice."""
-
-
-_CHEAP = ("detections", "scan")
-_SENSES = ("detections", "scan", "rgb", "depth", "segmentation", "camera")
 
 
 class UnknownSensor(Exception):
@@ -124,8 +121,8 @@ class ReadAhead:
         self._now: set[str] = set()
 
     def read(self, *what: str) -> None:
-        """Note what it has read."""
-        self._now.update(one for one in what if one in _CHEAP)
+        """Note what it has read; pictures are too dear to be sent unasked."""
+        self._now.update(name for name in what if READINGS.get(name, Any) is not Any)
 
     def ahead(self, observation: Observation) -> dict[str, msgspec.Raw]:
         """Start a step: the data to send along. Raises any error of a sensor."""
@@ -135,7 +132,7 @@ class ReadAhead:
 
 
 def _sensed(observation: Observation, ask: wire.Ask) -> Any:
-    if ask.what in _SENSES:
+    if ask.what in READINGS:
         return getattr(observation.senses, ask.what)()
     pictures = [message.image for message in observation.inbox if message.id == ask.which]
     if ask.what == "image" and pictures and callable(pictures[0]):
