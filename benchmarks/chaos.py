@@ -28,6 +28,8 @@ ROOT = Path(__file__).resolve().parents[1]
 FAKES = ROOT / "tests" / "support" / "eval_fakes.py"
 MARK = "HTHOR_CHAOS"
 _PATIENCE_S = 300.0
+_IDLE_MAX = 5
+"""Ends of the command in a row that played nothing new; more means that it cannot run."""
 
 
 @dataclass
@@ -139,14 +141,17 @@ class Chaos:
         )
 
     def _until(self, process: subprocess.Popen[str] | None, trials: int) -> subprocess.Popen[str]:
-        """Have a run going that has come so far."""
-        end = time.monotonic() + _PATIENCE_S
+        """Have a run going that has come so far. Raises RuntimeError when it keeps ending before it plays anything."""
+        end, idle, played = time.monotonic() + _PATIENCE_S, 0, self.played()
         while True:
             if process is None:
                 process = self._start()
             if process.poll() is not None:
                 self._note(process)
                 process = None
+                idle, played = 0 if self.played() > played else idle + 1, self.played()
+                if idle == _IDLE_MAX:
+                    raise RuntimeError(f"the command ended {idle} times without a new trial: {self.report.ended[-1:]}")
             elif self.played() >= trials and family.children(process.pid):
                 return process
             if time.monotonic() > end:
