@@ -1,7 +1,7 @@
 """The world's side of a trial: what an `Episode` asks of the world that it runs in."""
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Protocol
+from typing import Protocol
 
 from hthor.types import (
     BodySpec,
@@ -15,6 +15,7 @@ from hthor.types import (
     TaskSpec,
     ThingState,
 )
+from hthor.types.sensors import RgbImage
 
 
 class TrialWorld(Protocol):
@@ -79,5 +80,5 @@ class TrialWorld(Protocol):
     def snapshot(self) -> Snapshot:
         """The true state of the world at this tick, by which the goal is judged."""
 
-    def frame(self, seat: str) -> Callable[[], Any]:
+    def frame(self, seat: str) -> Callable[[], RgbImage]:
         """What the body's camera shows at this tick: draws the picture, (height, width, 3) uint8, when called."""

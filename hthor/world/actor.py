@@ -5,7 +5,10 @@ something else moves them. A trial, in which all bodies move at once, uses `htho
 """
 
 import math
-from typing import Any
+from collections.abc import Callable, Iterable
+
+import numpy as np
+from numpy.typing import NDArray
 
 from hthor import rules
 from hthor.errors import HthorError
@@ -15,6 +18,7 @@ from hthor.types import (
     Close,
     Detection,
     Drop,
+    Event,
     Message,
     Motion,
     Move,
@@ -194,15 +198,15 @@ class Actor:
         """
         return self._world.look(self.seat, size, profile)
 
-    def rgb(self, size: Size = None, profile: str | None = None) -> Any:
+    def rgb(self, size: Size = None, profile: str | None = None) -> NDArray[np.uint8]:
         """(H, W, 3) uint8, what its camera sees; arguments as in `look`."""
         return self._world.picture(self.seat, "rgb", size, profile)
 
-    def depth(self, size: Size = None, profile: str | None = None) -> Any:
+    def depth(self, size: Size = None, profile: str | None = None) -> NDArray[np.float32]:
         """(H, W) float32 [m] along the optical axis."""
         return self._world.picture(self.seat, "depth", size, profile)
 
-    def segmentation(self, size: Size = None, profile: str | None = None) -> Any:
+    def segmentation(self, size: Size = None, profile: str | None = None) -> NDArray[np.int32]:
         """(H, W) int32, indices into ``World.names``, -1 for nothing."""
         return self._world.picture(self.seat, "segmentation", size, profile)
 
@@ -264,10 +268,10 @@ class Actor:
         """What became of this robot's last message: sent, shown, confirmed, declined or covered; None before any."""
         return self._world.mail.receipt(self.seat)
 
-    def _frame(self) -> Any:
+    def _frame(self) -> Callable[[], NDArray[np.uint8]]:
         return self._world.frame(self.seat)
 
-    def _post(self, events: Any) -> None:
+    def _post(self, events: Iterable[Event]) -> None:
         for event in events:
             if event.kind == "refused":
                 raise HthorError(f"{self.seat}: {event.data['reason']}")

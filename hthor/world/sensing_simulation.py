@@ -3,6 +3,9 @@
 from collections.abc import Callable, Iterable
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from hthor.errors import HthorError, UnknownName
 from hthor.looks import pack as packs
 from hthor.looks.pack import Pack
@@ -110,7 +113,7 @@ class SensingSimulation(Simulation):
         """How pictures are drawn unless a call says otherwise."""
         return self._pictures.profile
 
-    def picture(self, seat: str, mode: str = "rgb", size: Size = None, profile: str | None = None) -> Any:
+    def picture(self, seat: str, mode: str = "rgb", size: Size = None, profile: str | None = None) -> NDArray[Any]:
         """The seat's own view now, without its own body.
 
         Args:
@@ -134,11 +137,11 @@ class SensingSimulation(Simulation):
         """The seat's camera now: how it projects pictures of ``size`` (width, height) [pixels], and where it is."""
         return self._pictures.camera(seat, size)
 
-    def frame(self, seat: str, size: Size = None, profile: str | None = None) -> Callable[[], Any]:
+    def frame(self, seat: str, size: Size = None, profile: str | None = None) -> Callable[[], NDArray[np.uint8]]:
         """The seat's own view of this very moment, (H, W, 3) uint8, drawn if and when it is called."""
         return self._pictures.frame(seat, size, profile)
 
-    def top_view(self, pixels_per_metre: float = 50.0, profile: str | None = None) -> Any:
+    def top_view(self, pixels_per_metre: float = 50.0, profile: str | None = None) -> NDArray[np.uint8]:
         """The house from above without its ceilings, (H, W, 3) uint8, covering `top_view_bounds`; north (+y) is up."""
         return self._pictures.top_view(pixels_per_metre, profile)
 

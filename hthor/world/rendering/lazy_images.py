@@ -9,6 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from hthor.types import Camera, CameraSpec, HouseSpec, Vec2, View
 from hthor.world import numbers
 from hthor.world.model.composer_env import LazyComposerEnv
@@ -63,11 +66,11 @@ class LazyImages:
         self._labels.draw(seed)
         return self._labels.names
 
-    def view(self, seat: str, mode: str, size: Size, profile: str | None, seed: int) -> Any:
+    def view(self, seat: str, mode: str, size: Size, profile: str | None, seed: int) -> NDArray[Any]:
         """The seat's own view now: rgb (H, W, 3) uint8, depth (H, W) float32 [m] or segmentation (H, W) int32."""
         _check(MODES, mode=mode)
         size = self._size(seat, size)
-        picture = self._draw(profile).view(self._moment(), seat, mode, size, self._by(seat))
+        picture: NDArray[Any] = self._draw(profile).view(self._moment(), seat, mode, size, self._by(seat))
         return self._labelled(picture, seed) if mode == "segmentation" else picture
 
     def look(self, seat: str, size: Size, profile: str | None, seed: int) -> View:
@@ -86,19 +89,25 @@ class LazyImages:
         body = self._seats[seat]
         return camera.camera_record(body.pose, body.spec, self._size(seat, size), self._by(seat))
 
-    def frame(self, seat: str, size: Size, profile: str | None) -> Callable[[], Any]:
+    def frame(self, seat: str, size: Size, profile: str | None) -> Callable[[], NDArray[np.uint8]]:
         """The seat's own view of this moment in colour, drawn when called."""
         _check(PROFILES, profile=profile or self.profile)
         fixed, moment, by = self._size(seat, size), self._moment(), self._by(seat)
-        return lambda: self._draw(profile).view(moment, seat, "rgb", fixed, by)
 
-    def top_view(self, pixels_per_metre: float, profile: str | None) -> Any:
+        def draw() -> NDArray[np.uint8]:
+            picture: NDArray[np.uint8] = self._draw(profile).view(moment, seat, "rgb", fixed, by)
+            return picture
+
+        return draw
+
+    def top_view(self, pixels_per_metre: float, profile: str | None) -> NDArray[np.uint8]:
         """The house from above now, (H, W, 3) uint8."""
         if not numbers.is_finite(pixels_per_metre) or not 0.0 < pixels_per_metre <= 500.0:
             raise ValueError(
                 f"pixels_per_metre must be more than 0 and at most 500, got {numbers.quoted(pixels_per_metre)}"
             )
-        return self._draw(profile).top_view(self._moment(), self.bounds, pixels_per_metre)
+        picture: NDArray[np.uint8] = self._draw(profile).top_view(self._moment(), self.bounds, pixels_per_metre)
+        return picture
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:
@@ -117,9 +126,10 @@ class LazyImages:
         camera.check_size(size)
         return size
 
-    def _labelled(self, numbers: Any, seed: int) -> Any:
+    def _labelled(self, numbers: NDArray[np.int32], seed: int) -> NDArray[np.int32]:
         self._labels.draw(seed)
-        return self._labels.of(numbers)
+        labelled: NDArray[np.int32] = self._labels.of(numbers)
+        return labelled
 
     def _moment(self) -> PoseSnapshot:
         self._env.pin()
