@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from hthor.calibration import targets
-from hthor.calibration.diagnostics import abc_check, acceptance, coverage, held_out, ranking_robustness
-from hthor.calibration.emulator import emulator, mlp, outcomes
-from hthor.calibration.inference import design_effects, likelihood, posterior, predictive, summary_statistics
+from hthor.calibration.diagnostics import abc_check, acceptance, coverage, ranking_robustness
+from hthor.calibration.emulator import emulator, mlp
+from hthor.calibration.inference import design_effects, likelihood, posterior, summary_statistics
 from hthor.calibration.inference.design_effects import DesignEffects
 from hthor.calibration.simulation import trial_table
 from hthor.errors import MissingExtra
@@ -94,8 +94,8 @@ def test_training_sessions_are_no_studies():
 def test_rates_are_integrals_of_chances():
     made = toy.sessions(np.tile(toy.points(1, 7), (3000, 1)), 7)
     rows = made.condition == 2
-    answers = outcomes.success_outcomes(made.take(rows), toy.LEAST).mean(axis=0, keepdims=True)
-    sr, ratio, spread = outcomes.success_rates(answers)
+    answers = emulator.success_outcomes(made.take(rows), toy.LEAST).mean(axis=0, keepdims=True)
+    sr, ratio, spread = emulator.success_rates(answers)
     truth = toy.exact(made.points[:1])
     worth = trial_table.twsr(made.take(rows), toy.LEAST)
     assert sr[0] == made.met[rows].mean()
@@ -107,8 +107,8 @@ def test_rates_are_integrals_of_chances():
 @settings(max_examples=25, deadline=None)
 def test_any_answers_give_possible_rates(seed):
     chance = np.random.Generator(np.random.Philox(seed))
-    answers = chance.random((4, outcomes.SUCCESS_QUESTIONS + len(outcomes.TIME_LEVELS_S)))
-    _, ratio, spread = outcomes.success_rates(answers)
+    answers = chance.random((4, emulator.SUCCESS_QUESTIONS + len(emulator.TIME_LEVELS_S)))
+    _, ratio, spread = emulator.success_rates(answers)
     assert (ratio >= 0.0).all()
     assert (ratio <= 1.0).all()
     assert (spread > 0.0).all()
@@ -375,7 +375,7 @@ def test_two_conditions_foretell_the_third(true_effects):
     )
     prior = posterior.sample_prior(toy.Exact(), seed=1, proposals=1 << 12)
     bad = msgspec.structs.replace(truth, sr=np.full((1, 3), 0.05), adoption=np.full((1, 3), 0.01))
-    found = held_out.predict_held_out(toy.Exact(), study, true_effects, prior, rivals={"bad": bad, "true": truth})
+    found = coverage.predict_held_out(toy.Exact(), study, true_effects, prior, rivals={"bad": bad, "true": truth})
     assert [one.condition for one in found] == list(targets.CONDITIONS)
     for one in found:
         assert one.log_score > one.log_score_prior
@@ -391,7 +391,7 @@ def test_two_conditions_foretell_the_third(true_effects):
 def test_foretold_studies_are_as_noisy_as_real_ones(studied, true_effects):
     where = np.tile(toy.points(1, 20), (300, 1))
     _, real = summary_statistics.study_results(toy.studies(where, 21), toy.LEAST)
-    drawn = predictive.draw_studies(toy.exact(np.repeat(where, 5, axis=0)), PAPER, true_effects, seed=2).figures()
+    drawn = likelihood.draw_studies(toy.exact(np.repeat(where, 5, axis=0)), PAPER, true_effects, seed=2).figures()
     for name, values in real.figures().items():
         assert drawn[name].mean() == pytest.approx(values.mean(), abs=0.02), name
         assert 0.75 < drawn[name].std() / values.std() < 1.35, name
@@ -399,8 +399,8 @@ def test_foretold_studies_are_as_noisy_as_real_ones(studied, true_effects):
 
 def test_the_table_of_figures(true_effects):
     figures = {name: np.linspace(0.0, 1.0, 1001) for name in summary_statistics.FIGURES}
-    wide = predictive.compare_figures(figures, PAPER, (0.05, 0.5, 0.95))
-    narrow = predictive.compare_figures(figures, PAPER, (0.1, 0.5, 0.9))
+    wide = likelihood.compare_figures(figures, PAPER, (0.05, 0.5, 0.95))
+    narrow = likelihood.compare_figures(figures, PAPER, (0.1, 0.5, 0.9))
     assert [row.figure for row in wide] == list(summary_statistics.FIGURES)
     assert (wide[2].band.median, wide[2].band.low, narrow[2].band.high) == pytest.approx((0.5, 0.05, 0.9))
     assert wide[2].inside

@@ -17,15 +17,7 @@ from typer.testing import CliRunner
 from hthor import tasks
 from hthor.calibration.emulator import emulator
 from hthor.calibration.pipeline import config, run, stages, terminal
-from hthor.calibration.simulation import (
-    design_points,
-    session_simulation,
-    session_store,
-    simulate,
-    studies,
-    trial_identity,
-    trial_table,
-)
+from hthor.calibration.simulation import design_points, session_simulation, session_store, simulate, trial_table
 from hthor.cli import app
 from hthor.errors import HthorError, MissingExtra, RunError, UnknownName
 from hthor.eval.config import robot_team
@@ -94,9 +86,9 @@ def test_a_larger_table_goes_on_from_a_smaller_and_nothing_is_played_twice(train
 
 def test_a_changed_world_is_refused(trained, monkeypatch):
     folder, _ = trained
-    known = trial_identity.trials_identity(TINY)
-    changed = trial_identity.TrialIdentity(parts={**known.parts, "the person": "x"})
-    monkeypatch.setattr(trial_identity, "trials_identity", lambda _: changed)
+    known = session_store.trials_identity(TINY)
+    changed = session_store.TrialIdentity(parts={**known.parts, "the person": "x"})
+    monkeypatch.setattr(session_store, "trials_identity", lambda _: changed)
     with pytest.raises(RunError, match=r"another world or person: the person"):
         _train(folder, 3)
 
@@ -109,7 +101,7 @@ def test_a_session_is_what_an_evaluation_would_have_played():
     from hthor.humans.population.participant import Participant, participant_root
 
     point = design_points.sobol_points(1, len(parameter_registry.free_parameter_names()), 0, "x")[0]
-    one = simulate.make_session_spec(TINY, trial_identity.trials_identity(TINY), 5, 0, point.tolist(), 1)
+    one = simulate.make_session_spec(TINY, session_store.trials_identity(TINY), 5, 0, point.tolist(), 1)
     stage, seats = TrialRunner(), robot_team.form_team(["scout"], ["frontier"]).seats
     rows = list(session_simulation.run_session(one, TINY, seats, stage))
 
@@ -147,7 +139,7 @@ def cheap():
 @pytest.fixture
 def made_up(monkeypatch):
     monkeypatch.setattr(simulate, "simulate_sessions", fakes.sessions)
-    monkeypatch.setattr(studies, "simulate_studies", fakes.whole)
+    monkeypatch.setattr(simulate, "simulate_studies", fakes.whole)
 
 
 @pytest.fixture(scope="module")
@@ -156,7 +148,7 @@ def calibrated(tmp_path_factory):
     folder = tmp_path_factory.mktemp("calibrated") / "first"
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(simulate, "simulate_sessions", fakes.sessions)
-        patch.setattr(studies, "simulate_studies", fakes.whole)
+        patch.setattr(simulate, "simulate_studies", fakes.whole)
         found = run.run_calibration(_options(folder), terminal.SilentProgress())
     return folder, found
 
@@ -239,9 +231,9 @@ def test_each_stage_is_told_of(made_up, tmp_path):
 
 
 def test_a_calibration_may_stop_after_a_stage(made_up, tmp_path, monkeypatch):
-    monkeypatch.setattr(studies, "simulate_studies", lambda *_: pytest.fail("it was to stop before"))
+    monkeypatch.setattr(simulate, "simulate_studies", lambda *_: pytest.fail("it was to stop before"))
     assert run.run_calibration(_options(tmp_path, until="training"), terminal.SilentProgress()) is None
-    monkeypatch.setattr(studies, "simulate_studies", fakes.whole)
+    monkeypatch.setattr(simulate, "simulate_studies", fakes.whole)
     assert (
         run.run_calibration(_options(tmp_path, until="correction"), terminal.SilentProgress()) is None
     )  # a small one has none

@@ -15,11 +15,10 @@ from hthor import jsonio, tasks
 from hthor.calibration import targets
 from hthor.calibration.diagnostics import acceptance
 from hthor.calibration.evidence import AbcShift
-from hthor.calibration.pipeline.artifact_cache import ArtifactCache
-from hthor.calibration.simulation import design_points, session_store, trial_identity, trial_table
+from hthor.calibration.pipeline.stages import ArtifactCache
+from hthor.calibration.simulation import design_points, session_store, trial_table
 from hthor.calibration.simulation.session_simulation import SessionOutcome
-from hthor.calibration.simulation.session_store import SessionStore
-from hthor.calibration.simulation.trial_identity import TrialIdentity
+from hthor.calibration.simulation.session_store import SessionStore, TrialIdentity
 from hthor.errors import HthorError, RunError, RunLocked, UnknownName
 from hthor.eval.records import trial_record
 
@@ -182,18 +181,18 @@ def test_a_simulated_study_loses_as_many_trials_as_the_published_one():
 def test_what_decides_only_t_star_is_no_part_of_a_trials_identity():
     slower = tuple(msgspec.structs.replace(task, t_star=task.t_star + 7.0, difficulty="hard") for task in SUITE.tasks)
     elsewhere = (msgspec.structs.replace(SUITE.tasks[0], time_limit=80.0), *SUITE.tasks[1:])
-    known = trial_identity.trials_identity(SUITE)
-    assert trial_identity.trials_identity(msgspec.structs.replace(SUITE, tasks=slower)) == known
-    assert known.differences(trial_identity.trials_identity(msgspec.structs.replace(SUITE, tasks=elsewhere))) == [
+    known = session_store.trials_identity(SUITE)
+    assert session_store.trials_identity(msgspec.structs.replace(SUITE, tasks=slower)) == known
+    assert known.differences(session_store.trials_identity(msgspec.structs.replace(SUITE, tasks=elsewhere))) == [
         "suite paper"
     ]
 
 
 def test_identity_has_the_code_the_rules_and_the_priors():
-    parts = trial_identity.trials_identity(SUITE).parts
+    parts = session_store.trials_identity(SUITE).parts
     assert {"code", "rules", "parameters and their priors", "version of mujoco", "suite paper"} <= set(parts)
     assert "version of hthor" not in parts
-    assert trial_identity.statistics_sha256() != parts["code"]
+    assert session_store.statistics_sha256() != parts["code"]
 
 
 def _identity(**parts):

@@ -12,23 +12,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from benchmarks import recovery
 from hthor import seeds, tasks
-from hthor.calibration.from_logs import estimate, estimate_all, load_sessions, parameter_recovery, run
+from hthor.calibration.from_logs import estimate, estimate_all, load_sessions, run
 from hthor.calibration.from_logs.features.messages import Offer, Reading
-from hthor.calibration.from_logs.models import (
-    acceptance_model,
-    choice_model,
-    detection_model,
-    mixed_effects,
-    priors,
-    reading_time,
-    timing_models,
-    trust_model,
-)
-from hthor.calibration.from_logs.models.choice_model import Choice
-from hthor.calibration.from_logs.models.detection_model import Exposure
+from hthor.calibration.from_logs.models import mixed_effects, priors, search_models, timing_models, trust_model
 from hthor.calibration.from_logs.models.mixed_effects import Fit, Term
 from hthor.calibration.from_logs.models.priors import to_scale
+from hthor.calibration.from_logs.models.search_models import Choice, Exposure
 from hthor.calibration.from_logs.models.trust_model import Experience
 from hthor.calibration.from_logs.update_population import update_draws
 from hthor.errors import RunError
@@ -106,7 +97,7 @@ def some_choices(rng: np.random.Generator, beta: float, kappa: float, w: float, 
 
 def test_choices_tell_rationality_and_the_weight_of_time(rng: np.random.Generator) -> None:
     made = list(some_choices(rng, beta=2.0, kappa=0.8, w=0.7, count=600))
-    found = choice_model.fit_choices(made, np.arange(600) % PEOPLE, BELIEFS)
+    found = search_models.fit_choices(made, np.arange(600) % PEOPLE, BELIEFS)
     assert near(found, "beta", math.log(2.0))
     assert near(found, "kappa", 0.8)
     assert near(found, "w_prior", float(to_scale(0.7, "logit")))
@@ -126,7 +117,7 @@ def test_exposures_tell_the_rate_of_noticing(rng: np.random.Generator) -> None:
             noticed = float(rng.random()) < 1.0 - math.exp(-rate * 0.3)
         found.append(Exposure(rows=rows, noticed=noticed))
         person.append(k % PEOPLE)
-    fit = detection_model.fit_detection(found, np.array(person), BELIEFS)
+    fit = search_models.fit_detection(found, np.array(person), BELIEFS)
     assert near(fit, "lam0", math.log(1.2))
     assert near(fit, "a50", 0.04)
 
@@ -140,7 +131,7 @@ def test_reading_time_is_found_though_some_never_answer(rng: np.random.Generator
         notice, reads = 1.4 * math.exp(rng.normal(0.0, 0.4)), 3.5 * length * math.exp(own[who] + rng.normal(0.0, 0.4))
         left = bool(rng.random() < 0.15)
         read.append(Reading(seconds=40.0 if left else notice + reads, answered=not left, words=words, known=known))
-    fit = reading_time.fit_reading(read, person, BELIEFS)
+    fit = timing_models.fit_reading(read, person, BELIEFS)
     total = math.exp(fit.value["t_notice"]) + math.exp(fit.value["t_read"])
     assert total == pytest.approx(1.4 + 3.5, rel=0.1)
 
@@ -153,7 +144,7 @@ def test_answers_tell_willingness_and_what_sways_it(rng: np.random.Generator) ->
         logit = 0.5 + own[who] + 4.0 * (level - 0.5) + 0.5 * math.log1p(gain) - 1.5 * load - 0.5 * again
         said = bool(rng.random() < 1.0 / (1.0 + math.exp(-logit)))
         offers.append(Offer(gain=gain, load=load, again=again, confirmed=said))
-    fit = acceptance_model.fit_acceptance(offers, trust, person, BELIEFS)
+    fit = trust_model.fit_acceptance(offers, trust, person, BELIEFS)
     for name, truth in (("a0", 0.5), ("a_trust", 4.0), ("a_gain", 0.5), ("a_load", 1.5), ("a_again", 0.5)):
         assert abs(fit.value[name] - truth) < 3.0 * fit.se[name], name
     assert near(fit, "a0", 0.5)
@@ -273,7 +264,7 @@ def played() -> tuple[Parameters, list[TrialRecord]]:
     smoke = tasks.load_suite("smoke")
     few = make_suite("few", 1, tuple(task for task in smoke.tasks if task.house in ("alder", "hazel"))[:4])
     population = Parameters(v_pace=0.45, omega=1.2, t_manip=1.6, t_read=4.2, sigma=0.1, a0=3.0)
-    return population, parameter_recovery.simulate_logs(population, few, trial_runner.TrialRunner(), seed=5, people=6)
+    return population, recovery.simulate_logs(population, few, trial_runner.TrialRunner(), seed=5, people=6)
 
 
 def test_real_logs_tell_what_people_were_made_of(played: tuple[Parameters, list[TrialRecord]]) -> None:
@@ -334,20 +325,17 @@ def test_a_log_that_is_not_there(tmp_path: Path) -> None:
 
 def test_recovery_counts_what_was_found_and_what_was_covered() -> None:
     made = [
-        parameter_recovery.Dataset(
-            truth={"v_pace": float(k)}, found={"v_pace": k + 0.1 * (-1) ** k}, errors={"v_pace": error}
-        )
+        recovery.Dataset(truth={"v_pace": float(k)}, found={"v_pace": k + 0.1 * (-1) ** k}, errors={"v_pace": error})
         for k, error in enumerate((0.1, 0.1, 0.01, 0.1))
     ]
-    (row,) = parameter_recovery.summarize_recovery(made)
+    (row,) = recovery.summarize_recovery(made)
     assert (row.name, row.datasets, row.bar, row.passed) == ("v_pace", 4, 0.8, True)
     assert row.r == pytest.approx(np.corrcoef([0, 1, 2, 3], [0.1, 0.9, 2.1, 2.9])[0, 1])
     assert row.covered == 0.75
     scrambled = [
-        parameter_recovery.Dataset(truth=a.truth, found=b.found, errors=a.errors)
-        for a, b in zip(made, made[::-1], strict=True)
+        recovery.Dataset(truth=a.truth, found=b.found, errors=a.errors) for a, b in zip(made, made[::-1], strict=True)
     ]
-    assert not parameter_recovery.summarize_recovery(scrambled)[0].passed
+    assert not recovery.summarize_recovery(scrambled)[0].passed
 
 
 def test_logs_become_a_population_the_same_every_time(

@@ -21,15 +21,7 @@ from hthor.calibration import evidence, targets
 from hthor.calibration.evidence import FIGURES
 from hthor.calibration.simulation import trial_table as tables
 from hthor.calibration.validation import plan, run
-from hthor.calibration.validation.report import (
-    build,
-    criteria,
-    measures,
-    page,
-    phrases,
-    study_groups,
-    trial_tables,
-)
+from hthor.calibration.validation.report import build, criteria, measures, page, phrases, study_groups
 from hthor.calibration.validation.report.figures import diagnostics
 from hthor.calibration.validation.report.findings import Findings, ModelUnderTest, Setting
 from hthor.cli import app as cli
@@ -208,7 +200,7 @@ def test_records_become_the_same_numbers() -> None:
     for condition, absent in (("none", True), ("oracle", False)):
         _, dealt = eval_fakes.run_of(30, absent=absent)
         runs[condition] = [done for session in dealt for done in eval_fakes.records(session)]
-    made = trial_tables.records_table(runs, suite)
+    made = build.records_table(runs, suite)
     for number, condition in ((0, "none"), (2, "oracle")):
         one = made.take(made.condition == number)
         order = sorted(runs[condition], key=lambda done: (done.spec.participant, done.spec.index))

@@ -10,7 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hthor import rules, tasks
-from hthor.calibration.from_logs.features import locomotion, manipulation
+from hthor.calibration.from_logs import trial_features
+from hthor.calibration.from_logs.features import locomotion
 from hthor.eval.config.sessions import Session, make_sessions
 from hthor.eval.records import trial_record
 from hthor.eval.records.trial_record import TrialRecord
@@ -113,7 +114,7 @@ def test_nobody_goes_farther_than_the_stick_says(played: list[TrialRecord]) -> N
 def test_every_deed_of_the_hands_was_an_attempt(played: list[TrialRecord]) -> None:
     done = {"picked", "placed", "opened"}
     deeds_done = [e for one in played for e in one.events if e.seat == HUMAN and e.kind in done]
-    worked = [a for one in played for a in manipulation.manipulation_attempts(one) if not a.missed and not a.cut]
+    worked = [a for one in played for a in trial_features.manipulation_attempts(one) if not a.missed and not a.cut]
     assert deeds_done
     assert len(worked) >= len(deeds_done)
     assert all(a.seconds >= rules.HANDLING_S for a in worked)

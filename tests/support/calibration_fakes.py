@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from hthor import seeds
-from hthor.calibration.simulation import design_points, studies, trial_table
+from hthor.calibration.simulation import design_points, simulate, trial_table
 from hthor.calibration.simulation.trial_table import Table
 from hthor.calibration.targets import CONDITIONS
 from hthor.eval.config.sessions import assign_tasks
@@ -47,13 +47,13 @@ def sessions(where, suite, seed, folder, jobs, watch, name) -> Table:
 
 
 def whole(where, suite, seed, folder, jobs, watch, name, design) -> Table:
-    """In place of `studies.simulate_studies`."""
+    """In place of `simulate.simulate_studies`."""
     spots = design_points.round_points(where)
     people = design.people * len(CONDITIONS)
     study = np.repeat(np.arange(len(spots)), people * 10)
     person = np.tile(np.repeat(np.arange(people), 10), len(spots))
     made = _table(spots, suite, seed, name, study, person, study, person // design.people, person)
-    valid, counted = studies.select_counted(made, seed, name, design)
+    valid, counted = simulate.select_counted(made, seed, name, design)
     columns = {column: getattr(made, column) for column in trial_table.COLUMNS}
     return trial_table.build_table(NAMES, spots, {**columns, "valid": valid, "counted": counted})
 

@@ -1,14 +1,22 @@
-"""Whether intervals hold the truth as often as they claim: simulated studies, whose truth is known, are fitted."""
+"""Whether intervals hold the truth as often as they claim.
 
+Simulated studies, whose truth is known, are fitted; and every two conditions of the published study predict the third.
+"""
+
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 from msgspec import Struct
 
-from hthor.calibration.emulator.emulator import Emulator
-from hthor.calibration.emulator.single_thread import single_thread
-from hthor.calibration.inference import design_effects, posterior
+from hthor.calibration.emulator.emulator import Emulator, Rates
+from hthor.calibration.emulator.mlp import single_thread
+from hthor.calibration.evidence import HeldOutCondition
+from hthor.calibration.inference import design_effects, likelihood, posterior
+from hthor.calibration.inference.design_effects import DesignEffects
+from hthor.calibration.inference.posterior import PriorSample
 from hthor.calibration.inference.summary_statistics import StudyResults
+from hthor.calibration.targets import CONDITIONS
 
 Array = np.ndarray[Any, Any]
 
@@ -17,6 +25,7 @@ PROPOSALS = 1 << 17
 LEVEL = 0.9
 BINS = 10
 """Bins of the histogram of ranks."""
+_BAND80 = (0.1, 0.5, 0.9)
 
 
 class Coverage(Struct, frozen=True, kw_only=True, eq=False):
@@ -76,3 +85,44 @@ def _correlations(truth: Array, estimate: Array) -> Array:
     size = np.sqrt((a**2).sum(axis=0) * (b**2).sum(axis=0))
     correlations: Array = (a * b).sum(axis=0) / np.maximum(size, 1e-12)
     return correlations
+
+
+def predict_held_out(
+    emulator: Emulator,
+    study: StudyResults,
+    effects: DesignEffects,
+    prior: PriorSample,
+    seed: int = 0,
+    rivals: Mapping[str, Rates] | None = None,
+) -> tuple[HeldOutCondition, ...]:
+    """Leave out each condition in turn, and predict it: SR, TWSR and, with a robot, adoption.
+
+    Args:
+        study: the published one (S = 1).
+        prior: see `posterior.sample_prior`.
+        rivals: rates (N = 1) of models without parameters, by name.
+    """
+    found = []
+    for condition in CONDITIONS:
+        others, only = study.without(condition), study.only(condition)
+        fitted = posterior.sample_posterior(emulator, others, effects, seed, prior=prior)
+        rates = emulator.rates(fitted.points)
+        figures = likelihood.draw_studies(rates, study, effects, seed).figures()
+        found.append(
+            HeldOutCondition(
+                condition=condition,
+                fitted=tuple(name for name in CONDITIONS if name != condition),
+                figures=likelihood.compare_figures(figures, only, _BAND80),
+                log_score=_score(rates, only, effects),
+                log_score_prior=_score(prior.rates, only, effects),
+                rivals={name: _score(rival, only, effects) for name, rival in sorted((rivals or {}).items())},
+            )
+        )
+    return tuple(found)
+
+
+def _score(rates: Rates, study: StudyResults, effects: DesignEffects) -> float:
+    """Log of the mean probability [nats] over equally likely rates."""
+    log = likelihood.log_likelihood(rates, study, effects)
+    top = float(log.max())
+    return top + float(np.log(np.mean(np.exp(log - top))))

@@ -12,16 +12,24 @@ from typing import Any
 import numpy as np
 from msgspec import Struct
 
-from hthor.calibration.emulator import ensemble, outcomes
-from hthor.calibration.emulator.ensemble import MEMBERS
-from hthor.calibration.emulator.mlp import Network
-from hthor.calibration.emulator.single_thread import single_thread
+from hthor import rules
+from hthor.calibration.emulator import mlp
+from hthor.calibration.emulator.mlp import MEMBERS, Network, single_thread
+from hthor.calibration.simulation import trial_table as tables
 from hthor.calibration.simulation.trial_table import Table
 from hthor.calibration.targets import CONDITIONS
 
 Array = np.ndarray[Any, Any]
 
 _CHUNK = 50_000
+TWSR_LEVELS = tuple(np.round(np.arange(0.1, 1.01, 0.1), 1).tolist())
+"""Levels of time-weighted success that a trial may reach."""
+SUCCESS_QUESTIONS = 1 + len(TWSR_LEVELS)
+"""How many of the questions are about success and time-weighted success."""
+TIME_LEVELS_S = tuple(np.arange(10.0, rules.TIME_LIMIT_S, 5.0).tolist())
+"""Times [s] at which a trial may still last."""
+MESSAGE_LEVELS_S = (15.0, 30.0, 45.0, 60.0)
+"""Times [s] by which a message may have been sent or accepted."""
 
 
 class Rates(Struct, frozen=True, kw_only=True, eq=False):
@@ -65,8 +73,8 @@ class Emulator(Struct, frozen=True, kw_only=True, eq=False):
     def _rates(self, points: Array) -> Rates:
         columns: dict[str, list[Array]] = {name: [] for name in Rates.__struct_fields__}
         for number, condition in enumerate(CONDITIONS):
-            inputs = outcomes.network_inputs(points, number)
-            members = [outcomes.success_rates(member(inputs, outcomes.SUCCESS_QUESTIONS)) for member in self.success]
+            inputs = network_inputs(points, number)
+            members = [success_rates(member(inputs, SUCCESS_QUESTIONS)) for member in self.success]
             sr, ratio, spread = (np.array(part) for part in zip(*members, strict=True))
             if condition == CONDITIONS[0]:
                 adoption = np.zeros((len(self.messages), len(points)))
@@ -93,15 +101,13 @@ def fit_emulator(table: Table, t_star: Array, seed: int = 0, members: int = MEMB
     """
     if members < 2 or len(np.unique(table.point)) < members:
         raise ValueError(f"an ensemble needs two members and a point for each, got {members} members")
-    inputs = outcomes.network_inputs(table.unit(), table.condition)
+    inputs = network_inputs(table.unit(), table.condition)
     robots, width = table.condition > 0, len(table.names)
-    success, messages = outcomes.success_outcomes(table, t_star), outcomes.message_outcomes(table)[robots]
+    success, messages = success_outcomes(table, t_star), message_outcomes(table)[robots]
     return Emulator(
         names=table.names,
-        success=ensemble.fit_ensemble(inputs, success, table.point, width, seed, "doing", members),
-        messages=ensemble.fit_ensemble(
-            inputs[robots], messages, table.point[robots], width, seed, "listening", members
-        ),
+        success=mlp.fit_ensemble(inputs, success, table.point, width, seed, "doing", members),
+        messages=mlp.fit_ensemble(inputs[robots], messages, table.point[robots], width, seed, "listening", members),
     )
 
 
@@ -113,3 +119,40 @@ def join_rates(parts: list[Rates]) -> Rates:
 def _chunks(points: Array) -> Iterator[Array]:
     for at in range(0, max(1, len(points)), _CHUNK):
         yield points[at : at + _CHUNK]
+
+
+def network_inputs(points: Array, condition: Array | int) -> Array:
+    """(N, P + 3) a network's inputs for trials: the point, from -1 to 1, and which condition it is."""
+    chosen = np.eye(len(CONDITIONS))[np.broadcast_to(condition, len(points))]
+    return np.column_stack([2.0 * points - 1.0, 2.0 * chosen - 0.7])
+
+
+def success_outcomes(table: Table, t_star: Array) -> Array:
+    """(N, 1 + levels + times) met, TWSR at least each level, not done at each time. ``t_star`` is T* [s] by task."""
+    twsr, spent = tables.twsr(table, t_star), tables.time_spent_s(table)
+    reached = twsr[:, None] >= np.array(TWSR_LEVELS) - 1e-9
+    return np.column_stack([table.met, reached, spent[:, None] > np.array(TIME_LEVELS_S)])
+
+
+def message_outcomes(table: Table) -> Array:
+    """(N, 2 + 2 times) whether a message was accepted, or sent at all; and each of the two by each time."""
+    by = np.array(MESSAGE_LEVELS_S) / rules.TICK_S
+    confirmed, sent = table.confirmed[:, None], table.sent[:, None]
+    early = (confirmed >= 0) & (confirmed <= by), (sent >= 0) & (sent <= by)
+    return np.column_stack([table.adopted, table.sent >= 0, *early])
+
+
+def success_rates(answers: Array) -> tuple[Array, Array, Array]:
+    """(N,) SR, ratio TWSR / SR, and its sd between successes.
+
+    Args:
+        answers: (N, ...) answers to `success_outcomes`, at least the first `SUCCESS_QUESTIONS` of them.
+    """
+    met, reached = answers[:, 0], answers[:, 1:SUCCESS_QUESTIONS]
+    levels = np.array([0.0, *TWSR_LEVELS])
+    chance = np.minimum.accumulate(np.column_stack([met, np.minimum(reached, met[:, None])]), axis=1)
+    middle = (chance[:, 1:] + chance[:, :-1]) / 2.0
+    safe = np.maximum(met, 1e-6)
+    mean = np.minimum((middle * np.diff(levels)).sum(axis=1) / safe, 1.0)
+    square = (middle * np.diff(levels**2)).sum(axis=1) / safe
+    return met, mean, np.sqrt(np.maximum(square - mean**2, 1e-4))

@@ -1,12 +1,13 @@
 """Small networks that predict several yes-or-no outcomes at once."""
 
 import warnings
+from contextlib import AbstractContextManager
 from typing import Any
 
 import numpy as np
 from msgspec import Struct
 
-from hthor.calibration.emulator.single_thread import single_thread
+from hthor import seeds
 from hthor.errors import MissingExtra
 
 Array = np.ndarray[Any, Any]
@@ -22,6 +23,13 @@ _BATCHES = 64
 _LEAST_BATCH, _MOST_BATCH = 32, 512
 _STEP = 2e-3
 _CHUNK = 16384
+MEMBERS = 6
+"""Networks in an ensemble."""
+PILOTS = 2
+"""Networks that find out which parameters matter."""
+_LEAST_SCALE = 0.05
+_PILOT_TRIALS = 3000
+_LEAST_SLOPE = 1e-3
 
 
 class Network(Struct, frozen=True, kw_only=True, eq=False):
@@ -92,3 +100,63 @@ def sensitivity(networks: list[Network], inputs: Array, step: float = 0.1) -> Ar
         moved[:, place] += step
         slopes.append(np.sqrt(np.mean(((answer(moved) - base) / step) ** 2)))
     return np.array(slopes)
+
+
+def single_thread() -> AbstractContextManager[Any]:
+    """A context in which numerical libraries use one thread.
+
+    Raises:
+        MissingExtra: without scikit-learn, whose dependency does it.
+    """
+    try:
+        from threadpoolctl import threadpool_limits
+    except ImportError:
+        raise MissingExtra("calibration", "calibration") from None
+    limits: AbstractContextManager[Any] = threadpool_limits(1)
+    return limits
+
+
+def fit_ensemble(
+    inputs: Array,
+    outcomes: Array,
+    point: Array,
+    width: int,
+    seed: int,
+    name: str,
+    members: int = MEMBERS,
+    epochs: int = EPOCHS,
+) -> tuple[Network, ...]:
+    """An ensemble for inputs (N, F) and outcomes (N, K) of 0 and 1.
+
+    Args:
+        point: (N,) number of each trial's point.
+        width: how many of the inputs, the first ones, are parameters, which are weighted by how much they matter.
+        seed, name: of the networks' chances. epochs: passes over the trials.
+    """
+    scale = _input_scale(inputs, outcomes, width, seed, name, epochs)
+    fold = assign_folds(point, seed, members)
+    return tuple(
+        fit_network(inputs[fold != out], outcomes[fold != out], seeds.derive(seed, "network", name, out), scale, epochs)
+        for out in range(members)
+    )
+
+
+def assign_folds(point: Array, seed: int, members: int) -> Array:
+    """(N,) which member is not trained on a trial, if any: all trials of a point go together, no member misses many."""
+    numbers, of_trial = np.unique(point, return_inverse=True)
+    order = np.argsort(np.random.Generator(np.random.Philox(seeds.derive(seed, "folds"))).random(len(numbers)))
+    folds: Array = (order % max(members, MEMBERS))[of_trial]
+    return folds
+
+
+def _input_scale(inputs: Array, outcomes: Array, width: int, seed: int, name: str, epochs: int) -> Array:
+    """Weights of the inputs, by what they do to the predictions of pilots: parameters that do nothing get the least."""
+    first = np.ones(inputs.shape[1])
+    first[:width] = 0.5
+    pilots = [fit_network(inputs, outcomes, seeds.derive(seed, "pilot", name, k), first, epochs) for k in range(PILOTS)]
+    every = max(1, len(inputs) // _PILOT_TRIALS)
+    with single_thread():
+        slopes = sensitivity(pilots, inputs[::every])[:width]
+    scale = np.ones(inputs.shape[1])
+    scale[:width] = np.maximum(slopes / max(float(slopes.max()), _LEAST_SLOPE), _LEAST_SCALE)
+    return scale

@@ -12,17 +12,9 @@ import numpy as np
 
 from hthor import rules
 from hthor.calibration.from_logs import estimate, trial_features
-from hthor.calibration.from_logs.accumulator import EstimateCollector, renumber
-from hthor.calibration.from_logs.estimate import Estimate
+from hthor.calibration.from_logs.estimate import Estimate, EstimateCollector, renumber
 from hthor.calibration.from_logs.load_sessions import Sessions
-from hthor.calibration.from_logs.models import (
-    acceptance_model,
-    choice_model,
-    detection_model,
-    reading_time,
-    timing_models,
-    trust_model,
-)
+from hthor.calibration.from_logs.models import search_models, timing_models, trust_model
 from hthor.calibration.from_logs.models.mixed_effects import Array, Fit
 from hthor.calibration.from_logs.models.priors import Belief, Beliefs
 from hthor.humans.population.parameter_registry import parameter
@@ -57,12 +49,10 @@ def estimate_walking(collector: EstimateCollector) -> None:
             pace, beliefs["v_pace"].term(), parameter("v_pace").effect, noise=0.03, practice=1, learn=practice
         )
         collector.add(("v_pace", "learn"), fit, len(pace.y), "median stick under way, mixed model")
-        collector.spread("v_pace", fit)
     turns = collector.capped([(rate, t, w.fastest) for t, w in walks for rate in w.turns])
     if len(turns.y):
         fit = timing_models.fit_log_normal(turns, beliefs["omega"].term(), parameter("omega").effect, noise=0.05)
         collector.add(("omega",), fit, len(turns.y), "speed of turns over 45 degrees, mixed model")
-        collector.spread("omega", fit)
     stops = [stop for _, w in walks for stop in w.stops]
     collector.median("t_on", [w.start for _, w in walks], "first move or turn", least=rules.TICK_S)
     collector.rate("stop_every", sum(w.under_way for _, w in walks), len(stops), "time under way by stops", least=0.2)
@@ -84,7 +74,6 @@ def estimate_manipulation(collector: EstimateCollector) -> None:
     prior, effect = collector.beliefs["t_manip"].term(), parameter("t_manip").effect
     fit = timing_models.fit_log_normal(data, prior, effect, noise=0.35, practice=-1, learn=practice)
     collector.add(("t_manip",), fit, len(data.y), "attempt to outcome, mixed model")
-    collector.spread("t_manip", fit)
     ended = [attempt for _, attempt in attempts if not attempt.cut]
     collector.share("p_fail", sum(attempt.missed for attempt in ended), len(ended), "misses among attempts")
 
@@ -94,19 +83,18 @@ def estimate_messages(collector: EstimateCollector) -> None:
     beliefs = dict(collector.beliefs)
     rows = [(s, one.person, one.index, int(not seen)) for one in collector.trials for s, seen in one.noticings]
     if any(not censored for *_, censored in rows):
-        fit = reading_time.fit_noticing(rows, beliefs["t_notice"])
+        fit = timing_models.fit_noticing(rows, beliefs["t_notice"])
         beliefs["t_notice"] = msgspec.structs.replace(
             beliefs["t_notice"], mean=fit.value["t_notice"], sd=fit.se["t_notice"]
         )
     read = [(one, each) for one in collector.trials for each in one.readings]
     if not read:
         return
-    fit = reading_time.fit_reading([each for _, each in read], renumber([t.person for t, _ in read]), beliefs)
+    fit = timing_models.fit_reading([each for _, each in read], renumber([t.person for t, _ in read]), beliefs)
     answers = sum(each.answered for _, each in read)
     method = "shown to answer, mixed model of two log-normals"
-    collector.add(("t_notice", "t_read"), fit, answers, method)
+    collector.add(timing_models.READING_TERMS, fit, answers, method)
     collector.estimates[READING] = _reading_total(collector.beliefs, fit, answers, method)
-    collector.spread("t_read", fit)
 
 
 def estimate_trust(collector: EstimateCollector) -> None:
@@ -124,7 +112,6 @@ def estimate_trust(collector: EstimateCollector) -> None:
         fit = trust_model.fit_trust(data, collector.beliefs)
         ratings = int((data.rating > 0.0).sum())
         collector.add(trust_model.TERMS, fit, ratings, "ratings, hierarchical Beta law")
-        collector.spread("mu0", fit)
         before, _ = trust_model.mean_trust(data, fit.value, fit.effects[data.person])
         for row, own in enumerate(rated):
             trust[own] = before[row, : len(own)]
@@ -137,31 +124,28 @@ def _answers(collector: EstimateCollector, trust: Array) -> None:
         return
     rows = [k for k, _ in offers]
     people = renumber([collector.trials[k].person for k in rows])
-    fit = acceptance_model.fit_acceptance([each for _, each in offers], trust[rows], people, collector.beliefs)
-    collector.add(acceptance_model.TERMS, fit, len(offers), "confirmed or not, mixed logistic regression")
-    collector.spread("a0", fit)
+    fit = trust_model.fit_acceptance([each for _, each in offers], trust[rows], people, collector.beliefs)
+    collector.add(trust_model.ACCEPTANCE_TERMS, fit, len(offers), "confirmed or not, mixed logistic regression")
 
 
 def estimate_choices(collector: EstimateCollector) -> None:
     """Where people chose to search."""
     made = [(one, each) for one in collector.trials for each in one.choices]
     if made:
-        known = {name: _current_belief(collector, name) for name in ("beta", "kappa", "w_prior", "t_dwell", "t_manip")}
+        known = {name: _current_belief(collector, name) for name in (*search_models.CHOICE_TERMS, "t_dwell", "t_manip")}
         people = renumber([t.person for t, _ in made])
-        fit = choice_model.fit_choices([each for _, each in made], people, known)
-        collector.add(("beta", "kappa", "w_prior"), fit, len(made), "where to search, conditional logit")
-        collector.spread("beta", fit)
+        fit = search_models.fit_choices([each for _, each in made], people, known)
+        collector.add(search_models.CHOICE_TERMS, fit, len(made), "where to search, conditional logit")
 
 
 def estimate_detection(collector: EstimateCollector) -> None:
     """How fast people noticed what they were searching for."""
     seen = [(one, each) for one in collector.trials for each in one.exposures]
     if seen:
-        fit = detection_model.fit_detection(
+        fit = search_models.fit_detection(
             [each for _, each in seen], renumber([t.person for t, _ in seen]), collector.beliefs
         )
-        collector.add(("lam0", "a50", "clutter"), fit, len(seen), "noticed or not, complementary log-log")
-        collector.spread("lam0", fit)
+        collector.add(search_models.DETECTION_TERMS, fit, len(seen), "noticed or not, complementary log-log")
 
 
 _STEPS: dict[str, Callable[[EstimateCollector], None]] = {

@@ -17,11 +17,6 @@ class Trial(Struct, frozen=True, kw_only=True):
     person: int
     session: int
 
-    @property
-    def index(self) -> int:
-        """The trial's place in its session, from 0."""
-        return self.record.spec.index
-
 
 class Sessions(Struct, frozen=True, kw_only=True):
     """All trials, ordered by person, session and index.

@@ -5,15 +5,22 @@ import math
 from msgspec import Struct
 
 from hthor import rules
-from hthor.calibration.from_logs.features import locomotion, manipulation, messages
+from hthor.calibration.from_logs.features import locomotion, messages
 from hthor.calibration.from_logs.features.locomotion import Walk
-from hthor.calibration.from_logs.features.manipulation import Attempt
 from hthor.calibration.from_logs.features.messages import Offer, Reading
-from hthor.calibration.from_logs.load_sessions import Sessions
-from hthor.calibration.from_logs.models.choice_model import Choice, default_pace
-from hthor.calibration.from_logs.models.detection_model import Exposure
+from hthor.calibration.from_logs.load_sessions import Sessions, Trial
+from hthor.calibration.from_logs.models.search_models import Choice, Exposure
 from hthor.calibration.from_logs.models.trust_model import Experience
 from hthor.eval.records.trial_record import TrialRecord
+from hthor.humans.population.parameters import Parameters
+
+
+class Attempt(Struct, frozen=True, kw_only=True):
+    """One manipulation attempt: its duration [s], whether it ``missed``, and whether it was ``cut`` short."""
+
+    seconds: float
+    missed: bool
+    cut: bool
 
 
 class TrialFeatures(Struct, frozen=True, kw_only=True):
@@ -34,18 +41,19 @@ class TrialFeatures(Struct, frozen=True, kw_only=True):
 
 def extract_features(sessions: Sessions) -> tuple[TrialFeatures, ...]:
     """The features of every trial of some sessions, in their order."""
-    return tuple(_reduced(one.record, one.person, one.session, one.index) for one in sessions.trials)
+    return tuple(_reduced(one) for one in sessions.trials)
 
 
-def _reduced(record: TrialRecord, person: int, session: int, index: int) -> TrialFeatures:
+def _reduced(trial: Trial) -> TrialFeatures:
+    record = trial.record
     walk = locomotion.walk_features(record)
-    pace = walk.pace if walk is not None and not math.isnan(walk.pace) else default_pace()
+    pace = walk.pace if walk is not None and not math.isnan(walk.pace) else Parameters().v_pace
     return TrialFeatures(
-        person=person,
-        session=session,
-        index=index,
+        person=trial.person,
+        session=trial.session,
+        index=record.spec.index,
         walk=walk,
-        attempts=manipulation.manipulation_attempts(record),
+        attempts=manipulation_attempts(record),
         readings=messages.message_readings(record),
         noticings=messages.message_noticings(record),
         offers=messages.message_offers(record),
@@ -78,3 +86,22 @@ def _experience(record: TrialRecord) -> Experience:
 
 def _helps(offer: dict[str, object]) -> bool:
     return bool(offer["relevant"]) and offer["answer"] == "confirm"
+
+
+def manipulation_attempts(record: TrialRecord) -> tuple[Attempt, ...]:
+    """The attempts of a trial in order; one without an outcome was cut short by walking on or by the end."""
+    walked = [
+        tick
+        for event in record.journal
+        if event.kind == "stick"
+        for tick, deflection in zip(event.data["runs"][::2], event.data["runs"][1::2], strict=True)
+        if deflection > 0
+    ]
+    found = []
+    for event in record.journal:
+        if event.kind == "attempt":
+            cut = "ok" not in event.data
+            until = min((tick for tick in walked if tick > event.tick), default=record.ticks)
+            seconds = (until - event.tick) * rules.TICK_S if cut else float(event.data["seconds"])
+            found.append(Attempt(seconds=seconds, missed=event.data.get("why") == "missed", cut=cut))
+    return tuple(found)

@@ -1,10 +1,12 @@
-"""How likely a study's results are at given rates: beta-binomial counts, normal ratios."""
+"""How likely a study's results are at given rates, and such results drawn: beta-binomial counts, normal ratios."""
 
 from typing import Any
 
 import numpy as np
 
+from hthor import seeds
 from hthor.calibration.emulator.emulator import Rates
+from hthor.calibration.evidence import HeldOutFigure, band
 from hthor.calibration.inference.design_effects import DesignEffects
 from hthor.calibration.inference.summary_statistics import StudyResults
 from hthor.calibration.targets import CONDITIONS
@@ -72,3 +74,54 @@ def _ratios(rates: Rates, study: StudyResults, effects: DesignEffects) -> Array:
     square = np.einsum("ni,ij,nj->n", z, np.linalg.inv(correlation), z)
     found: Array = -0.5 * (square + size + len(known) * np.log(2.0 * np.pi)) - np.log(sd).sum(axis=1)
     return found
+
+
+def draw_studies(rates: Rates, design: StudyResults, effects: DesignEffects, seed: int = 0) -> StudyResults:
+    """A simulated study for each of N points: counts are beta-binomial, ratios normal.
+
+    Args:
+        design: a study (S = 1) of which only the numbers of trials are used: ``trials`` and ``asked``.
+        seed: of the noise; each condition's is its own.
+    """
+    shape = (len(rates), len(CONDITIONS))
+    counts = {name: np.zeros(shape) for name in ("successes", "adopted")}
+    for name, out_of, metric in (("successes", "trials", "sr"), ("adopted", "asked", "adoption")):
+        for column, condition in enumerate(CONDITIONS):
+            trials = int(getattr(design, out_of)[0, column])
+            rng = np.random.Generator(np.random.Philox(seeds.derive(seed, "predictive", name, condition)))
+            share, error = getattr(rates, metric)[:, column], getattr(rates, f"{metric}_se")[:, column]
+            if trials:
+                phi = total_design_effect(
+                    share, trials, getattr(effects, metric)[column], (effects.spread * error) ** 2
+                )
+                chances = rng.beta(*beta_shape(share, trials, phi))
+                counts[name][:, column] = rng.binomial(trials, chances)
+    return StudyResults(
+        **counts,
+        trials=np.broadcast_to(design.trials[:1], shape).copy(),
+        asked=np.broadcast_to(design.asked[:1], shape).copy(),
+        ratio=_draw_ratios(rates, counts["successes"], effects, seed),
+    )
+
+
+def _draw_ratios(rates: Rates, successes: Array, effects: DesignEffects, seed: int) -> Array:
+    rng = np.random.Generator(np.random.Philox(seeds.derive(seed, "predictive", "ratio")))
+    noise = rng.standard_normal(successes.shape) @ np.linalg.cholesky(effects.correlation).T
+    sd = np.sqrt(ratio_variance(rates, successes, effects))
+    return np.where(successes > 0.0, np.clip(rates.ratio + sd * noise, 0.0, 1.0), np.nan)
+
+
+def compare_figures(
+    predictions: dict[str, Array], published: StudyResults, quantiles: tuple[float, float, float]
+) -> tuple[HeldOutFigure, ...]:
+    """Every figure that the published study reports, with an interval of predictions.
+
+    Args:
+        predictions: fractions by figure, of any number of studies, emulated or simulated; NaN where there is none.
+        quantiles: low, median and high end of the interval.
+    """
+    return tuple(
+        HeldOutFigure(figure=name, published=float(value[0]), band=band(np.nanquantile(predictions[name], quantiles)))
+        for name, value in published.figures().items()
+        if np.isfinite(value[0])
+    )

@@ -13,7 +13,7 @@ from msgspec import Struct
 
 from hthor import seeds
 from hthor.calibration.emulator.emulator import Emulator, Rates, join_rates
-from hthor.calibration.emulator.single_thread import single_thread
+from hthor.calibration.emulator.mlp import single_thread
 from hthor.calibration.inference import likelihood
 from hthor.calibration.inference.design_effects import DesignEffects
 from hthor.calibration.inference.summary_statistics import StudyResults

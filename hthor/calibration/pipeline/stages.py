@@ -1,34 +1,62 @@
-"""The stages of a calibration on published numbers, each computed once and stored."""
+"""The stages of a calibration on published numbers, each computed once and stored.
 
+A product is stored with the hash of everything that it was made from; when that has changed, it is made again.
+"""
+
+import pickle
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from functools import cached_property
+from pathlib import Path
 from typing import Protocol, TypeVar
 
 import numpy as np
 
 from hthor import jsonio
-from hthor.calibration.diagnostics import abc_check, coverage, held_out, ranking_robustness
+from hthor.calibration.diagnostics import abc_check, coverage, ranking_robustness
 from hthor.calibration.diagnostics.coverage import Coverage
 from hthor.calibration.emulator import emulator
 from hthor.calibration.emulator.emulator import Emulator
-from hthor.calibration.emulator.single_thread import single_thread
+from hthor.calibration.emulator.mlp import single_thread
 from hthor.calibration.evidence import AbcShift, HeldOutCondition, ParameterSwing, RobotRanking
-from hthor.calibration.inference import design_effects, posterior, predictive, summary_statistics
+from hthor.calibration.inference import design_effects, likelihood, posterior, summary_statistics
 from hthor.calibration.inference.design_effects import DesignEffects, EmulatorQuality
 from hthor.calibration.inference.posterior import Posterior
 from hthor.calibration.inference.summary_statistics import StudyResults
-from hthor.calibration.pipeline.artifact_cache import ArtifactCache
 from hthor.calibration.pipeline.config import CalibrationConfig
-from hthor.calibration.simulation import design_points, simulate, studies, trial_identity, trial_table
+from hthor.calibration.simulation import design_points, session_store, simulate, trial_table
 from hthor.calibration.simulation.trial_table import Table
 from hthor.eval.runner.progress import Watcher
 from hthor.humans.population import parameter_registry
 
 _T = TypeVar("_T")
-
+_KEY_LENGTH = 64
 FITTED = tuple(one.name for one in parameter_registry.PARAMETERS if one.fitted)
 """Parameters that the published numbers are expected to move."""
+
+
+class ArtifactCache:
+    """Products of one calibration.
+
+    Args:
+        folder: where they are stored; only files that this program wrote there are read.
+        key: hash of everything that the products are made from, 64 hexadecimal digits.
+    """
+
+    def __init__(self, folder: Path, key: str) -> None:
+        self._folder, self._key = folder, key
+
+    def get(self, name: str, make: Callable[[], _T]) -> _T:
+        """The product of this name: the stored one if it was made from the same inputs, else a new one."""
+        path = self._folder / f"{name}.pkl"
+        if path.exists():
+            data = path.read_bytes()
+            if data[:_KEY_LENGTH] == self._key.encode():
+                stored: _T = pickle.loads(data[_KEY_LENGTH:])
+                return stored
+        product = make()
+        jsonio.write(path, self._key.encode() + pickle.dumps(product, protocol=5))
+        return product
 
 
 class ProgressReporter(Protocol):
@@ -48,12 +76,12 @@ class CalibrationStages:
         self.config, self._progress = config, progress
         self.t_star = trial_table.suite_t_star(config.suite)
         inputs = (
-            trial_identity.trials_identity(config.suite),
+            session_store.trials_identity(config.suite),
             config.targets,
             config.seed,
             config.sizes,
             self.t_star.tolist(),
-            trial_identity.statistics_sha256(),
+            session_store.statistics_sha256(),
         )
         self._cache = ArtifactCache(config.folder / "products", jsonio.sha256(inputs))
 
@@ -101,7 +129,9 @@ class CalibrationStages:
         config = self.config
         with self._progress.watch(name) as watch:
             folder, design = config.folder / name, config.targets.design
-            return studies.simulate_studies(points, config.suite, config.seed, folder, config.jobs, watch, name, design)
+            return simulate.simulate_studies(
+                points, config.suite, config.seed, folder, config.jobs, watch, name, design
+            )
 
     # ------------------------------------------------------------------------------------------------------------ fits
 
@@ -194,7 +224,7 @@ class CalibrationStages:
 
         def predict() -> tuple[HeldOutCondition, ...]:
             prior = posterior.sample_prior(fitted, seed, size)
-            return held_out.predict_held_out(fitted, published, effects, prior, seed=seed)
+            return coverage.predict_held_out(fitted, published, effects, prior, seed=seed)
 
         return self._cached("held-out", predict)
 
@@ -223,7 +253,7 @@ class CalibrationStages:
             "posterior": self.posterior.points,
         }
         emulated = {
-            name: predictive.draw_studies(self.emulator.rates(some), self.published, self.effects, self.config.seed)
+            name: likelihood.draw_studies(self.emulator.rates(some), self.published, self.effects, self.config.seed)
             for name, some in points.items()
         }
         simulated = summary_statistics.study_results(self.predicted, self.t_star)[1]

@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from hthor.calibration.evidence import Band
-from hthor.calibration.pipeline.summary import CalibrationSummary
+from hthor.calibration.pipeline.run import CalibrationSummary
 from hthor.eval.runner import progress
 
 if TYPE_CHECKING:

@@ -10,12 +10,11 @@ import numpy as np
 from msgspec import Struct
 
 from hthor import jsonio, seeds
-from hthor.calibration.simulation import design_points, session_simulation, trial_identity, trial_table
+from hthor.calibration.simulation import design_points, session_simulation, session_store, trial_table
 from hthor.calibration.simulation.session_simulation import OUTCOMES, SessionOutcome, SessionSpec
-from hthor.calibration.simulation.session_store import SessionStore
-from hthor.calibration.simulation.trial_identity import TrialIdentity
+from hthor.calibration.simulation.session_store import SessionStore, TrialIdentity
 from hthor.calibration.simulation.trial_table import AGENTS, Table
-from hthor.calibration.targets import CONDITIONS
+from hthor.calibration.targets import CONDITIONS, Design
 from hthor.errors import RunError
 from hthor.eval.config import robot_team, sessions
 from hthor.eval.runner.collector import InternalFailure
@@ -57,7 +56,7 @@ def simulate_sessions(
         Interrupted: on Ctrl-C or SIGTERM.
     """
     points = design_points.round_points(points)
-    identity, own_seed = trial_identity.trials_identity(suite), seeds.derive(seed, "calibration", name)
+    identity, own_seed = session_store.trials_identity(suite), seeds.derive(seed, "calibration", name)
     specs = tuple(
         (-1, number, number, make_session_spec(suite, identity, own_seed, number, point, assign_condition(number)))
         for number, point in enumerate(points.tolist())
@@ -121,7 +120,7 @@ def make_table(batch: SessionBatch, outcomes: Mapping[str, SessionOutcome], **mo
 
 def robots_by_condition() -> tuple[tuple[RobotSeat, ...], ...]:
     """The robots of each condition."""
-    return tuple(robot_team.form_team([trial_identity.ROBOT], [agent]).seats for agent in AGENTS)
+    return tuple(robot_team.form_team([session_store.ROBOT], [agent]).seats for agent in AGENTS)
 
 
 def _run(suite: Suite, left: Sequence[SessionSpec], store: SessionStore, jobs: int, watch: Watcher) -> None:
@@ -144,3 +143,43 @@ def _run(suite: Suite, left: Sequence[SessionSpec], store: SessionStore, jobs: i
                 jsonio.write(path, failure.detail.encode())
                 raise InternalFailure(f"{failure}. The traceback is in {path}.") from None
             raise
+
+
+def simulate_studies(
+    points: np.ndarray, suite: Suite, seed: int, folder: Path, jobs: int, watch: Watcher, name: str, design: Design
+) -> Table:
+    """A study at each point; arguments as of `simulate_sessions`, study number s has people from row s.
+
+    Args:
+        design: of the published study.
+    """
+    points, identity = design_points.round_points(points), session_store.trials_identity(suite)
+    specs = []
+    for study, point in enumerate(points.tolist()):
+        own_seed = study_seed(seed, name, study)
+        for participant in range(design.people * len(CONDITIONS)):
+            condition = participant // design.people
+            spec = make_session_spec(suite, identity, own_seed, participant, point, condition)
+            specs.append((study, participant, study, spec))
+    batch = SessionBatch(suite=suite, identity=identity, points=points, sessions=tuple(specs))
+    outcomes = run_missing(batch, folder, jobs, watch)
+    valid, counted = select_counted(make_table(batch, outcomes), seed, name, design)
+    return make_table(batch, outcomes, valid=valid, counted=counted)
+
+
+def study_seed(seed: int, name: str, study: int) -> int:
+    """The seed of one study: of its people, their tasks and all its chances."""
+    return seeds.derive(seed, "calibration", name, study)
+
+
+def select_counted(table: Table, seed: int, name: str, design: Design) -> tuple[np.ndarray, np.ndarray]:
+    """Which trials count in success and in adoption rates: as many in each group as in the published study."""
+    valid, counted = np.zeros(len(table), bool), np.zeros(len(table), bool)
+    group = table.study.astype(np.int64) * len(CONDITIONS) + table.condition
+    for number in range(len(table.points) * len(CONDITIONS)):
+        study, condition = divmod(number, len(CONDITIONS))
+        rows, label = np.flatnonzero(group == number), CONDITIONS[condition]
+        mixed = rows[seeds.shuffled(len(rows), study_seed(seed, name, study), "kept", label)]
+        valid[mixed[: design.valid.get(label, len(rows))]] = True
+        counted[mixed[: design.counted.get(label, 0)]] = True
+    return valid, counted

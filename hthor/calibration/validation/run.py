@@ -16,7 +16,7 @@ from hthor.calibration.simulation.trial_table import AGENTS, Table
 from hthor.calibration.targets import CONDITIONS
 from hthor.calibration.validation import plan
 from hthor.calibration.validation.plan import SUITE, ValidationOptions, ValidationRun
-from hthor.calibration.validation.report import build, measures, page, trial_tables
+from hthor.calibration.validation.report import build, measures, page
 from hthor.calibration.validation.report.findings import Findings, ModelFigures, ModelUnderTest, Setting
 from hthor.eval.config.sessions import participants_needed
 from hthor.eval.records.trial_record import TrialRecord
@@ -99,7 +99,7 @@ class _ConditionRuns:
             condition = CONDITIONS[AGENTS.index(plugins.file_stem("agent", done.config.name))]
             records[condition] = done.folder.records()
             self.notes = self.notes or done.config.humans.notes
-        return trial_tables.records_table(records, tasks.load_suite(one.suite))
+        return build.records_table(records, tasks.load_suite(one.suite))
 
 
 def _figures_of(name: str, runs: _ConditionRuns, one: ValidationRun) -> ModelFigures:

@@ -37,7 +37,6 @@ class Fit(Struct, frozen=True, kw_only=True):
     se: dict[str, float]
     covariance: Array
     effects: Array
-    loss: float
 
 
 Likelihood = Callable[[dict[str, float], Array], Array]
@@ -79,7 +78,6 @@ def fit_mixed_model(likelihood: Likelihood, terms: Sequence[Term], person: Array
         se=dict(zip(names, map(float, errors), strict=True)),
         covariance=covariance,
         effects=modes.copy(),
-        loss=float(found.fun),
     )
 
 

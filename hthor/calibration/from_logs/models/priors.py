@@ -1,4 +1,4 @@
-"""The belief about each parameter before logs are used: normal distributions on a fitting scale."""
+"""The belief about each parameter before logs are used, normal on a fitting scale, and fits that start from it."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -7,14 +7,18 @@ from typing import Any, Literal
 import numpy as np
 from msgspec import Struct
 
-from hthor.calibration.from_logs.models.mixed_effects import Term
+from hthor.calibration.from_logs.models.mixed_effects import Array, Fit, Likelihood, Term, fit_mixed_model
 from hthor.humans.population.distributions import Beta, LogNormal, LogUniform
-from hthor.humans.population.parameter_registry import PARAMETERS, Parameter
+from hthor.humans.population.parameter_registry import PARAMETERS, Parameter, parameter
+from hthor.humans.population.parameters import Parameters
 
 Scale = Literal["log", "logit", "plain"]
 _SHARES = (0.1587, 0.5, 0.8413)
 _EDGES = (0.0005, 0.9995)
 _LEAST = 1e-6
+_SPREAD_SD = 1.5
+SPREAD = "spread"
+"""Name of the term for the spread between people."""
 
 
 class Belief(Struct, frozen=True, kw_only=True):
@@ -56,6 +60,18 @@ def from_scale(value: Any, scale: Scale) -> Any:
     if scale == "log":
         return np.exp(value) if isinstance(value, np.ndarray) else math.exp(value)
     return 1.0 / (1.0 + np.exp(-value)) if scale == "logit" else value
+
+
+def spread_term(effect: float) -> Term:
+    """The logarithm of the standard deviation between people, with a wide prior around that of the published people."""
+    centre = math.log(Parameters().sigma * effect)
+    return Term(name=SPREAD, start=centre, mean=centre, sd=_SPREAD_SD)
+
+
+def fit_ability(likelihood: Likelihood, names: Sequence[str], person: Array, beliefs: Beliefs, *more: Term) -> Fit:
+    """Fit the parameters of these names, ``more`` terms, and the spread of the first parameter between people."""
+    terms = [*(beliefs[name].term() for name in names), *more]
+    return fit_mixed_model(likelihood, terms, person, spread_term(parameter(names[0]).effect))
 
 
 def scale_of(parameter: Parameter) -> Scale:

@@ -1,19 +1,28 @@
-"""How fast people walk, turn, start, handle and read: log-normal distributions with an effect per person."""
+"""How fast people walk, turn, start, handle and read: log-normal distributions with an effect per person.
+
+The time from a message to its answer is noticing and then reading; their sum is treated as log-normal with its own mean
+and variance (Fenton and Wilkinson). A message without an answer was either not handled yet, or will never get one.
+"""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from msgspec import Struct
 
+from hthor.calibration.from_logs.features.messages import Reading
 from hthor.calibration.from_logs.models.mixed_effects import Array, Fit, Term, fit_mixed_model
+from hthor.calibration.from_logs.models.priors import Belief, fit_ability, spread_term
+from hthor.humans.communication.message_reading import LEAST_WORDS, REFERENCE_WORDS, REREADING_SHARE
 from hthor.humans.population.parameters import Parameters
 
-SPREAD, NOISE, LEARN = "spread", "noise", "learn"
-_SPREAD_SD = 1.5
+NOISE, LEARN = "noise", "learn"
+READING_TERMS = ("t_read", "t_notice")
 _LEAST_NOISE = 0.01
 """No measurement is more precise than 1 %."""
+_LOST = Term(name="lost", start=-2.0, mean=-2.0, sd=1.0)
+"""Logit of the share of messages that never get an answer."""
 
 
 class Sample(Struct, frozen=True, kw_only=True):
@@ -27,11 +36,6 @@ class Sample(Struct, frozen=True, kw_only=True):
     index: Array
     censored: Array
 
-    @property
-    def people(self) -> int:
-        """How many people there are."""
-        return len(np.unique(self.person))
-
 
 def make_sample(rows: Sequence[tuple[float, int, int, int]]) -> Sample:
     """From rows of number, person, index and censoring; people are renumbered from 0."""
@@ -39,12 +43,6 @@ def make_sample(rows: Sequence[tuple[float, int, int, int]]) -> Sample:
     table = table[np.isfinite(table[:, 0]) & (table[:, 0] > 0.0)]
     person = np.unique(table[:, 1], return_inverse=True)[1].astype(int)
     return Sample(y=table[:, 0], person=person, index=table[:, 2], censored=table[:, 3])
-
-
-def spread_term(effect: float) -> Term:
-    """The logarithm of the standard deviation between people, with a wide prior around that of the published people."""
-    centre = math.log(Parameters().sigma * effect)
-    return Term(name=SPREAD, start=centre, mean=centre, sd=_SPREAD_SD)
 
 
 def fit_log_normal(
@@ -83,3 +81,41 @@ def fit_log_normal(
     if is_free:
         terms.append(learn)
     return fit_mixed_model(likelihood, terms, data.person, spread_term(effect) if effect else None)
+
+
+def fit_noticing(rows: Sequence[tuple[float, int, int, int]], belief: Belief) -> Fit:
+    """Fit ``t_notice`` to the seconds until people who walked slowed down.
+
+    Args:
+        rows: as `hthor.calibration.from_logs.models.timing_models.make_sample` takes them.
+    """
+    return fit_log_normal(make_sample(rows), belief.term(), 0.0, noise=Parameters().read_sd, noise_sd=0.3)
+
+
+def fit_reading(readings: Sequence[Reading], person: Array, beliefs: Mapping[str, Belief]) -> Fit:
+    """Fit ``t_read`` and ``t_notice``, with the spread of ``t_read`` between people.
+
+    Args:
+        person: (N,) int, the person of each.
+        beliefs: of both; that of ``t_notice`` may come from these logs already.
+    """
+    from scipy.special import log_ndtr
+
+    y = np.log([one.seconds for one in readings])
+    answered = np.array([one.answered for one in readings])
+    length = np.array(
+        [max(LEAST_WORDS, one.words) / REFERENCE_WORDS * (REREADING_SHARE if one.known else 1.0) for one in readings]
+    )
+    spread = Parameters().read_sd ** 2
+
+    def likelihood(values: dict[str, float], effects: Array) -> Array:
+        first, second = math.exp(values["t_notice"]), np.exp(values["t_read"] + effects) * length
+        variance = np.log1p(math.expm1(spread) * (first**2 + second**2) / (first + second) ** 2)
+        sd = np.sqrt(variance)
+        z = (y - np.log(first + second) - 0.5 * (spread - variance)) / sd
+        lost = 1.0 / (1.0 + math.exp(-values[_LOST.name]))
+        found = math.log1p(-lost) - 0.5 * z * z - np.log(sd)
+        waiting = np.logaddexp(math.log(lost), math.log1p(-lost) + log_ndtr(-z))
+        return np.where(answered, found, waiting)
+
+    return fit_ability(likelihood, READING_TERMS, person, beliefs, _LOST)

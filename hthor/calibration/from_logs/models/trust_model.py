@@ -1,7 +1,8 @@
 """How people's trust moved, from their ratings: a hierarchical Beta model (Guo and Yang 2021).
 
 Trust is Beta(alpha, beta); each trial adds counts for the value of the robots in it, and the rating is its mean on
-the scale of 1 to 7 with some noise. The first mean differs from person to person.
+the scale of 1 to 7 with some noise. The first mean differs from person to person. Which messages are accepted at that
+trust is a logistic regression with an intercept for each person.
 """
 
 import math
@@ -11,14 +12,14 @@ import numpy as np
 from msgspec import Struct
 
 from hthor import rules
-from hthor.calibration.from_logs.models.mixed_effects import Array, Fit, fit_mixed_model
-from hthor.calibration.from_logs.models.priors import Belief
-from hthor.calibration.from_logs.models.timing_models import spread_term
-from hthor.humans.population.parameter_registry import parameter
+from hthor.calibration.from_logs.features.messages import Offer
+from hthor.calibration.from_logs.models.mixed_effects import Array, Fit
+from hthor.calibration.from_logs.models.priors import Belief, fit_ability
 from hthor.humans.population.parameters import Parameters
 
 TERMS = ("mu0", "n0", "w_s", "w_f", "tau_s")
 _LEAST = 1e-12
+ACCEPTANCE_TERMS = ("a0", "a_trust", "a_gain", "a_load", "a_again")
 
 
 class Experience(Struct, frozen=True, kw_only=True):
@@ -97,9 +98,7 @@ def fit_trust(data: TrustData, beliefs: Mapping[str, Belief]) -> Fit:
         high = np.where(rated >= rules.TRUST_MAX, np.inf, (rated + 0.5 - mean) / noise)
         return np.log(np.maximum(ndtr(high) - ndtr(low), _LEAST))
 
-    return fit_mixed_model(
-        likelihood, [beliefs[name].term() for name in TERMS], owner, spread_term(parameter("mu0").effect)
-    )
+    return fit_ability(likelihood, TERMS, owner, beliefs)
 
 
 def _signals(data: TrustData, tau: float, fixed: Parameters) -> Array:
@@ -109,3 +108,25 @@ def _signals(data: TrustData, tau: float, fixed: Parameters) -> Array:
     value = np.where(data.misled > 0.0, 0.0, value)
     value = np.where(helped, 0.5 + 0.5 * np.exp(-data.helped / tau), value)
     return np.where(data.met > 0.0, value, value * fixed.s_failed)
+
+
+def fit_acceptance(offers: Sequence[Offer], trust: Array, person: Array, beliefs: Mapping[str, Belief]) -> Fit:
+    """Fit the terms of the logit of accepting, with the spread of ``a0`` between people.
+
+    People sometimes press the wrong button (``p_slip``), so neither answer is ever certain.
+
+    Args:
+        offers: (N) messages about the task that were read.
+        trust: (N,) mean trust at the time, 0 to 1, from the ratings.
+        person: (N,) int, the person of each.
+    """
+    gain, load, again = (np.array([getattr(one, name) for one in offers]) for name in ("gain", "load", "again"))
+    confirmed, slip = np.array([one.confirmed for one in offers]), Parameters().p_slip
+
+    def likelihood(values: dict[str, float], effects: Array) -> Array:
+        logit = values["a0"] + effects + values["a_trust"] * (trust - 0.5) + values["a_gain"] * np.log1p(gain)
+        logit = logit - values["a_load"] * load - values["a_again"] * again
+        share = slip + (1.0 - 2.0 * slip) / (1.0 + np.exp(-logit))
+        return np.log(np.where(confirmed, share, 1.0 - share))
+
+    return fit_ability(likelihood, ACCEPTANCE_TERMS, person, beliefs)

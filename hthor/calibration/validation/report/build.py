@@ -1,14 +1,17 @@
-"""The findings of a validation, computed from the runs, the targets and the evidence."""
+"""The findings of a validation, computed from the runs' records, the targets and the evidence."""
 
 from collections.abc import Mapping, Sequence
 
 import msgspec
+import numpy as np
 from msgspec import Struct
 
 from hthor.calibration.evidence import FIGURES, Evidence
+from hthor.calibration.simulation import trial_table
+from hthor.calibration.simulation.session_simulation import OUTCOMES, outcome_row
 from hthor.calibration.simulation.trial_table import Table
-from hthor.calibration.targets import Targets
-from hthor.calibration.validation.report import criteria, known_misfits, measures, phrases, study_groups
+from hthor.calibration.targets import CONDITIONS, Targets
+from hthor.calibration.validation.report import criteria, measures, phrases, study_groups
 from hthor.calibration.validation.report.findings import (
     Findings,
     ModelFigures,
@@ -19,6 +22,8 @@ from hthor.calibration.validation.report.findings import (
     Setting,
 )
 from hthor.calibration.validation.report.study_groups import Array, StudyGroups
+from hthor.eval.records.trial_record import TrialRecord
+from hthor.tasks import Suite
 
 
 class PlayedTrials(Struct, frozen=True, kw_only=True, eq=False):
@@ -68,7 +73,7 @@ def make_findings(
         evidence_missing=evidence_missing,
         scope=phrases.SCOPE,
     )
-    return msgspec.structs.replace(bare, gates=criteria.judge_findings(bare), misfits=known_misfits.find_misfits(bare))
+    return msgspec.structs.replace(bare, gates=criteria.judge_findings(bare), misfits=criteria.find_misfits(bare))
 
 
 def _with_rivals(evidence: Evidence | None, scored: Sequence[ModelScore]) -> Evidence | None:
@@ -109,3 +114,32 @@ def published_study(targets: Targets) -> PublishedStudy:
         figures={name: round(targets.published[name] / 100.0, 6) for name in FIGURES if name in targets.published},
         design=targets.design.note,
     )
+
+
+def records_table(runs: dict[str, Sequence[TrialRecord]], suite: Suite) -> Table:
+    """The trials of one human model in every condition.
+
+    Args:
+        runs: records by condition.
+    """
+    numbers = {task.id: number for number, task in enumerate(suite.tasks)}
+    rows = [_row(condition, numbers, record) for condition in CONDITIONS for record in runs.get(condition, ())]
+    columns = {name: [row[name] for row in rows] for name in trial_table.COLUMNS}
+    return trial_table.build_table(("none",), np.zeros((1, 1)), columns)
+
+
+def _row(condition: str, numbers: dict[str, int], record: TrialRecord) -> dict[str, int]:
+    spec, number = record.spec, CONDITIONS.index(condition)
+    outcomes = dict(zip(OUTCOMES, outcome_row(numbers[spec.task.id], spec, record.log), strict=True))
+    return {
+        **outcomes,
+        "study": -1,
+        "session": number * 100_000 + spec.participant,
+        "point": 0,
+        "condition": number,
+        "participant": spec.participant,
+        "index": spec.index,
+        "trust": outcomes["trust"] if spec.robots else 0,
+        "valid": 1,
+        "counted": int(bool(spec.robots)),
+    }

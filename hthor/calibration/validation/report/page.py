@@ -8,7 +8,7 @@ from html import escape
 
 from hthor.calibration.targets import CONDITIONS
 from hthor.calibration.validation.report import calibration_sections, phrases, tables
-from hthor.calibration.validation.report.figures import predictions, sessions
+from hthor.calibration.validation.report.figures import predictions
 from hthor.calibration.validation.report.findings import Findings
 from hthor.report.html import elements, matplotlib_svg, style
 
@@ -130,7 +130,7 @@ def _sessions(found: Findings) -> list[str]:
         elements.paragraph(phrases.minima(found.differences)),
         elements.figure(
             matplotlib_svg.to_svg(
-                sessions.spent(found.spent), "spent", "Box plots of the time spent in each condition"
+                predictions.spent(found.spent), "spent", "Box plots of the time spent in each condition"
             ),
             "Time spent: minimum, quartiles and maximum over all trials of each condition.",
         ),
@@ -145,7 +145,7 @@ def _sessions(found: Findings) -> list[str]:
         elements.paragraphs(phrases.trust(found.trust)),
         elements.figure(
             matplotlib_svg.to_svg(
-                sessions.trust(found.trust), "trust", "Mean trust by trial in the frontier robot and in the oracle"
+                predictions.trust(found.trust), "trust", "Mean trust by trial in the frontier robot and in the oracle"
             ),
             "Mean rating by trial, 1 to 7, with bars of one standard error over people.",
         ),
