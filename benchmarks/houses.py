@@ -18,7 +18,7 @@ from tqdm import tqdm
 
 from hthor import jsonio
 from hthor.houses import generator, loader
-from hthor.world.validation import generate_valid
+from hthor.world.validation import house_soundness
 from hthor.world.validation.house_soundness import check_soundness
 
 
@@ -45,7 +45,7 @@ def main() -> None:
     options.add_argument("--first", type=int, default=0, help="the first of them")
     options.add_argument("--reasons", type=int, default=12, help="how many faults to print in words")
     given = options.parse_args()
-    generate_valid.generate_valid_home(given.first, 5)  # so that compiling is not counted
+    house_soundness.generate_valid_home(given.first, 5)  # so that compiling is not counted
     seeds = range(given.first, given.first + given.seeds)
     tries = [_try(seed, 4 + seed % 4) for seed in tqdm(seeds, disable=None, leave=False)]
     _print(tries, given.reasons)
@@ -56,11 +56,11 @@ def _try(seed: int, rooms: int) -> Try:
     document, errors = _first(seed, rooms)
     made = time.process_time()
     if document is not None:
-        house = loader.house_from_document(document, generate_valid.home_name(seed, rooms))
-        found = check_soundness(house, generate_valid.RADIUS_M)
+        house = loader.house_from_document(document, house_soundness.home_name(seed, rooms))
+        found = check_soundness(house, house_soundness.RADIUS_M)
         errors = tuple((finding.rule, str(finding)) for finding in found if finding.severity == "error")
     proved = time.process_time()
-    home = generate_valid.generate_valid_home(seed, rooms) if errors else None
+    home = house_soundness.generate_valid_home(seed, rooms) if errors else None
     whole = time.process_time()
     same = jsonio.canonical(_first(seed, rooms)[0]) == jsonio.canonical(document)
     return Try(
@@ -86,7 +86,7 @@ def _first(seed: int, rooms: int) -> tuple[dict[str, Any] | None, tuple[tuple[st
 def _print(tries: Sequence[Try], reasons: int) -> None:
     count = len(tries)
     sound = sum(not one.errors for one in tries)
-    print(f"{count} seeds, rooms 4 to 7 in turn, radius {generate_valid.RADIUS_M} m")
+    print(f"{count} seeds, rooms 4 to 7 in turn, radius {house_soundness.RADIUS_M} m")
     print(f"sound before any retry  {sound:5d}  {sound / count:7.1%}")
     print(f"sound after retries     {count:5d}  {1:7.1%}   attempts at most {max(one.attempts for one in tries)}")
     print(f"same bytes when made again  {sum(one.same for one in tries)} of {count}")

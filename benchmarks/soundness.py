@@ -27,7 +27,7 @@ from hthor.tasks.generation import custom_suite
 from hthor.tasks.generation.custom_suite import Recipe
 from hthor.tasks.suites import suite_files
 from hthor.tasks.suites.suite_files import HouseSource
-from hthor.world.validation import generate_valid
+from hthor.world.validation import house_soundness
 
 
 def main() -> None:
@@ -79,8 +79,8 @@ def _generated(given: argparse.Namespace, folder: Path) -> list[str]:
     paths = []
     for seed in range(given.first, given.first + given.generated):
         rooms = 4 + seed % 4
-        path = folder / f"{generate_valid.home_name(seed, rooms)}.json"
-        jsonio.write(path, jsonio.pretty(generate_valid.generate_valid_home(seed, rooms).document))
+        path = folder / f"{house_soundness.home_name(seed, rooms)}.json"
+        jsonio.write(path, jsonio.pretty(house_soundness.generate_valid_home(seed, rooms).document))
         paths.append(str(path))
     return paths
 

@@ -11,7 +11,7 @@ from hthor.types import HUMAN, Action, Briefing, Detection, Motion, Observation,
 if TYPE_CHECKING:
     from hthor.agents.skills.explorer import Explorer
     from hthor.agents.skills.multi_object_frontier import MultiObjectFrontier
-    from hthor.navigation.yielding import Courtesy
+    from hthor.navigation.path_follower import Courtesy
 
 
 class Agent:
@@ -27,7 +27,7 @@ class Agent:
     def begin(self, briefing: Briefing) -> None:
         """Start with an empty map."""
         from hthor.agents.skills.explorer import Explorer
-        from hthor.navigation.yielding import Courtesy
+        from hthor.navigation.path_follower import Courtesy
 
         self.briefing = briefing
         self.multi_object: MultiObjectFrontier | None = None

@@ -1,9 +1,8 @@
 """Parametric kitchen and laundry machines with doors: microwave ovens, stoves, washers."""
 
 from hthor.catalog.colors import BLACK, IRON, STEEL
-from hthor.catalog.hollow import flap, hinge, inside, shell
 from hthor.catalog.kind import Form
-from hthor.catalog.solids import box, rest
+from hthor.catalog.solids import box, flap, hinge, inside, rest, shell
 from hthor.types import Rgba, Surface, Vec3
 
 

@@ -5,9 +5,8 @@ the others are drawn on. Fronts stand ``size[1]`` deep when closed, handles incl
 """
 
 from hthor.catalog.colors import IRON, STEEL
-from hthor.catalog.hollow import PULL, hinge, inside, shell, slide, tray
 from hthor.catalog.kind import Form
-from hthor.catalog.solids import box, rest
+from hthor.catalog.solids import PULL, box, hinge, inside, rest, shell, slide, tray
 from hthor.types import Joint, Part, Rgba, Surface, Vec3
 
 _DOORS_M = 1.2

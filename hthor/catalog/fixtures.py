@@ -1,16 +1,15 @@
 """Parametric fixtures: the fridge with its door, basins, and what stands in a bathroom."""
 
 from hthor.catalog.colors import GLASS, GREY, STEEL, WHITE
-from hthor.catalog.hollow import hinge
 from hthor.catalog.kind import Form
-from hthor.catalog.solids import box, pillar, rest, rounded
+from hthor.catalog.solids import box, hinge, pillar, rest, rounded
 from hthor.types import Part, Rgba, Vec3
 
 
 def fridge(size: Vec3, *, body: Rgba, inner: Rgba) -> Form:
     """A hollow shell with two shelves behind a door that is hinged at the left front edge, seen from inside it.
 
-    Closed, the door seals the shell; open, it has swung out by `hollow.SWING_RAD` and the shelves lie bare.
+    Closed, the door seals the shell; open, it has swung out by `solids.SWING_RAD` and the shelves lie bare.
     """
     w, d, h = size
     t, leaf, grip = min(0.05, 0.1 * w, 0.05 * h), min(0.06, 0.12 * d), min(0.03, 0.06 * d)

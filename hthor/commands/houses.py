@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from hthor.houses.checks.findings import Finding
     from hthor.types import HouseSpec
-    from hthor.world.validation.generate_valid import ValidHome
+    from hthor.world.validation.house_soundness import ValidHome
 
 app = typer.Typer(no_args_is_help=True, help="Floor plans.")
 
@@ -213,12 +213,12 @@ def _made(seed: int, rooms: int | None, count: int) -> Iterable[ValidHome]:
     """The homes of ``count`` seeds one by one, with progress on standard error where somebody watches."""
     from tqdm import tqdm
 
-    from hthor.world.validation import generate_valid
+    from hthor.world.validation import house_soundness
 
     low, high = _ROOMS
     watched = output.live() and count > 1
     for number in tqdm(range(seed, seed + count), disable=not watched, leave=False, unit="house"):
-        yield generate_valid.generate_valid_home(
+        yield house_soundness.generate_valid_home(
             number, rooms if rooms is not None else low + number % (high - low + 1)
         )
 

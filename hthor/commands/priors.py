@@ -66,11 +66,11 @@ def build(
 ) -> None:
     """Recompute the table from scenes and a sentence encoder (needs the extra 'priors'; downloads nothing)."""
     from hthor import jsonio
-    from hthor.catalog.priors import making, scenes, words
+    from hthor.catalog.priors import making, scenes
 
-    words.need()
+    making.need()
     seen = scenes.read_scenes(wheel)
-    table = making.make_table(seen, words.vectors, words.origin())
+    table = making.make_table(seen, making.vectors, making.origin())
     if out is not None:
         jsonio.write(out, making.encoded(table))
         output.say(f"wrote {out}")

@@ -13,10 +13,9 @@ if TYPE_CHECKING:
     from hthor.navigation.distance_field import Field
     from hthor.navigation.frontier import Frontier, Survey, frontiers, unvisited
     from hthor.navigation.grid_map import FREE, OCCUPIED, UNKNOWN, GridMap
-    from hthor.navigation.path_follower import Follower, face
+    from hthor.navigation.path_follower import Courtesy, Follower, face
     from hthor.navigation.planner import Planner
     from hthor.navigation.waiting_spots import park, retreat
-    from hthor.navigation.yielding import Courtesy
 
 _HOMES = {
     "Courtesy": "yielding",

@@ -1,14 +1,22 @@
-"""Turns a path into motions of a body."""
+"""Turns a path into motions of a body, and makes way for the person."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from hthor.geometry.plane import turn, wrap
-from hthor.types import Motion, Move, Pose, Rotate, Vec2, Vec3
+from hthor.types import HUMAN, BodySpec, Detection, Motion, Move, Observation, Pose, Rotate, Vec2, Vec3, Wait
 
 TURN_RAD = math.radians(25.0)
 """Heading error above which a body turns before it moves [rad]."""
 _ARRIVED_M = 0.04
+NEAR_M = 0.9
+"""A person in front closer than this has the right of way [m]."""
+PATIENCE_S = 2.0
+"""How long to stand aside before going on [s]."""
+_PAUSE_S = 0.5
+_STEP_M = 0.5
+_FRONT_RAD = math.radians(70.0)
+_DIRECTIONS = 16
 
 
 class Follower:
@@ -85,3 +93,89 @@ def face(pose: Pose, point: Vec3, eye_height: float, pitch_limit: float = math.p
     if abs(yaw) < math.radians(2.0) and abs(pitch) < math.radians(2.0):
         return None
     return Rotate(yaw=yaw, pitch=pitch)
+
+
+class Courtesy:
+    """Makes room when the person is in the way, for up to two seconds at a time, then goes on.
+
+    Args:
+        fits: ``fits(a, b)`` says whether the body can go straight from ``a`` to ``b`` [m].
+    """
+
+    def __init__(self, body: BodySpec, fits: Callable[[Vec2, Vec2], bool]) -> None:
+        self.body, self.fits = body, fits
+        self._seen, self._stepped = False, False
+        self._until = -1.0
+        self._rest = -1.0
+
+    def motion(self, observation: Observation, seconds: float) -> Motion | None:
+        """A motion that makes room, or None to carry on.
+
+        Args:
+            observation: of this body; its detections are read.
+            seconds: time since the trial began.
+        """
+        person = self._look(observation)
+        bumped = observation.outcome is not None and observation.outcome.by == HUMAN
+        if seconds < self._until:
+            if person is None and self._seen:
+                self._until = -1.0
+                return None
+            self._seen = self._seen or person is not None
+            return self._make_room(observation, person)
+        if seconds < self._rest and not bumped:
+            return None
+        if not bumped and not self._in_front(observation, person):
+            return None
+        self._until, self._rest = seconds + PATIENCE_S, seconds + 2.0 * PATIENCE_S
+        self._seen, self._stepped = person is not None, False
+        return self._make_room(observation, person)
+
+    def _make_room(self, observation: Observation, person: Vec2 | None) -> Motion:
+        """A step away while the person is near or has not been seen yet; else wait.
+
+        In a passage it steps back ahead of a person who follows, until there is room to pass.
+        """
+        pose = observation.pose
+        aside = self._aside((pose.x, pose.y), person) if person is not None or not self._stepped else None
+        self._stepped = True
+        return Wait(seconds=_PAUSE_S) if aside is None else shift(pose, aside, _STEP_M)
+
+    def _look(self, observation: Observation) -> Vec2 | None:
+        """Where the nearest person close by is [m]; None when none is."""
+        nearest, best = None, NEAR_M + self.body.radius
+        for seen in observation.detections:
+            if seen.family == "person" and _apart(observation, seen) < best:
+                nearest, best = (seen.position[0], seen.position[1]), _apart(observation, seen)
+        return nearest
+
+    def _in_front(self, observation: Observation, person: Vec2 | None) -> bool:
+        if person is None:
+            return False
+        pose = observation.pose
+        return abs(wrap(math.atan2(person[1] - pose.y, person[0] - pose.x) - pose.yaw)) < _FRONT_RAD
+
+    def _aside(self, here: Vec2, person: Vec2 | None) -> Vec2 | None:
+        """A spot half a metre away that the body can go straight to and that leaves the person most room."""
+        best, most = None, 0.0 if person is None else math.dist(here, person) + 0.05
+        for k in range(_DIRECTIONS):
+            angle = 2.0 * math.pi * k / _DIRECTIONS
+            spot = (here[0] + _STEP_M * math.cos(angle), here[1] + _STEP_M * math.sin(angle))
+            if not self.fits(here, spot):
+                continue
+            room = self._room(here, angle) if person is None else math.dist(spot, person)
+            if room > most + 1e-9:
+                best, most = spot, room
+        return best
+
+    def _room(self, here: Vec2, angle: float) -> float:
+        """How far [m] the body can go that way, up to 1.5 m."""
+        for k in (3, 2, 1):
+            spot = (here[0] + 0.5 * k * math.cos(angle), here[1] + 0.5 * k * math.sin(angle))
+            if self.fits(here, spot):
+                return 0.5 * k
+        return 0.0
+
+
+def _apart(observation: Observation, seen: Detection) -> float:
+    return math.hypot(seen.position[0] - observation.pose.x, seen.position[1] - observation.pose.y)

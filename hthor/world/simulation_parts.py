@@ -1,29 +1,80 @@
-"""The parts of a simulation, made in the order in which they need one another."""
+"""The parts of a simulation, made in the order in which they need one another; which of them decides on an action."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from hthor.houses.space.free_space import FreeSpace
-from hthor.types import BodySpec, DetectorSpec, HouseSpec
-from hthor.world.carrying.joint_carrying import JointCarrying
+from hthor.types import (
+    BodySpec,
+    Close,
+    DetectorSpec,
+    Drop,
+    HouseSpec,
+    Motion,
+    Move,
+    Open,
+    Pick,
+    Place,
+    Rotate,
+    Vec2,
+    Wait,
+)
+from hthor.world.carrying.joint_carrying import CarryMotion, CarryRotation, JointCarrying
 from hthor.world.ground_truth import GroundTruth
-from hthor.world.interaction.action_dispatch import ActionDispatch
-from hthor.world.interaction.manipulation import Manipulation
+from hthor.world.interaction.manipulation import HandMotion, Manipulation
 from hthor.world.interaction.opening import DoorHandling
 from hthor.world.interaction.scene_editing import SceneEditor
 from hthor.world.model.composer_env import LazyComposerEnv
 from hthor.world.model.composer_task import HouseTask
 from hthor.world.model.geom_index import GeomIndex
 from hthor.world.model.inventory import Contents
+from hthor.world.motion import locomotion
+from hthor.world.motion.locomotion import ObstacleFootprints
 from hthor.world.perception.detector_noise import NoisyDetector
 from hthor.world.perception.range_scanner import RangeScanner
 from hthor.world.perception.visibility import Visibility
-from hthor.world.state.body_state import BodyState, BodyStates
-from hthor.world.state.doors import Doors
-from hthor.world.state.doorways import Doorways
+from hthor.world.state.body_state import Activity, BodyState, BodyStates, RoomTracker
+from hthor.world.state.doors import Doors, Doorways
 from hthor.world.state.objects import Objects
 from hthor.world.state.overlap_test import OverlapTest
-from hthor.world.state.room_tracker import RoomTracker
 from hthor.world.state.support_surfaces import SupportSurfaces
+
+
+class ActionDispatch:
+    """Checks actions of one world's bodies and starts them."""
+
+    def __init__(self, house: HouseSpec, manipulation: Manipulation, doors: Doors, seats: Sequence[BodyState]) -> None:
+        self._manipulation, self._doors, self._obstacles = manipulation, doors, ObstacleFootprints(house)
+        self._joint_carrying = manipulation.joint_carrying
+        self._others = {seat.name: tuple(other for other in seats if other is not seat) for seat in seats}
+
+    def refusal(self, seat: BodyState, action: object) -> str:
+        """Why the motion cannot be started, empty when it can."""
+        if isinstance(action, (Move, Rotate, Wait)):
+            reason = locomotion.refusal(seat, action)
+            return reason or (self._joint_carrying.stuck(seat) if seat.holding and isinstance(action, Move) else "")
+        if isinstance(action, (Pick, Place, Drop, Open, Close)):
+            return self._manipulation.refusal(seat, action)
+        return f"{type(action).__name__} is not a motion; valid: Move, Rotate, Pick, Place, Drop, Open, Close, Wait"
+
+    def activity(self, seat: BodyState, action: Motion) -> Activity:
+        """The motion under way."""
+        load = self._joint_carrying.of(seat) if seat.holding else None
+        if load is not None and isinstance(action, Move):
+            return CarryMotion(seat, action, load, self._culprit)
+        if load is not None and isinstance(action, Rotate):
+            return CarryRotation(seat, action)
+        if isinstance(action, Move):
+            return locomotion.MoveMotion(seat, action, self._others[seat.name], self._culprit)
+        if isinstance(action, Rotate):
+            return locomotion.RotateMotion(seat, action)
+        if isinstance(action, Wait):
+            return locomotion.WaitMotion(action)
+        return HandMotion(seat, action, self._manipulation)
+
+    def _culprit(self, seat: BodyState, step: Vec2) -> str:
+        """What the body would have run into: the nearest thing's id, or "wall"."""
+        shut = [leaf.opening for leaf in self._doors if leaf.opening is not None and not leaf.open]
+        return self._obstacles.nearest((seat.pose.x + step[0], seat.pose.y + step[1]), seat.spec.height, shut)
 
 
 class SimulationParts:

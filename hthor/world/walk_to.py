@@ -12,7 +12,7 @@ from hthor.houses.space.geodesic import Geodesics
 from hthor.types import BodySpec, Pose, Rotate, Vec2, Vec3
 from hthor.world import numbers
 from hthor.world.interactive_simulation import InteractiveSimulation
-from hthor.world.state import doorways
+from hthor.world.state import doors
 
 _REACH_SHARES = (0.8, 0.97, 0.9999)
 """How close a body goes to an object, in shares of its reach (metres for a body without hands); the next share is tried
@@ -127,7 +127,7 @@ def _space_around_others(world: InteractiveSimulation, seat: str) -> FreeSpace:
         if name != seat:
             radius = world.bodies[name].radius + _MARGIN_M
             rows += [(pose.x, pose.y, a * radius, b * radius, 0.0) for a, b in _ROUND]
-    return doorways.with_obstacles(world.space[seat], rows)
+    return doors.with_obstacles(world.space[seat], rows)
 
 
 def _standing_place(world: InteractiveSimulation, seat: str, paths: Geodesics, here: Vec2, target: str) -> Vec2:

@@ -16,7 +16,7 @@ from typer.testing import CliRunner
 
 from hthor import catalog, houses
 from hthor.catalog import priors
-from hthor.catalog.priors import scenes, words
+from hthor.catalog.priors import making, scenes
 from hthor.cli import app
 from hthor.errors import UnknownName
 from hthor.tasks.arrangement import scene_graph
@@ -70,7 +70,7 @@ def test_every_part_has_its_source() -> None:
         assert row.source.frequency.startswith(packages["frequency"])
         assert row.source.similarity.startswith(packages["similarity"])
         assert all(kind in row.source.frequency for kind in scenes.types(row.reference))
-        assert all(words.phrase(name) in row.source.similarity for name in (row.target, row.reference))
+        assert all(making.phrase(name) in row.source.similarity for name in (row.target, row.reference))
 
 
 def test_an_unknown_target_names_the_nearest() -> None:

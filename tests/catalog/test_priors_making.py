@@ -15,7 +15,7 @@ import pytest
 from typer.testing import CliRunner
 
 from hthor.catalog import priors
-from hthor.catalog.priors import making, scenes, words
+from hthor.catalog.priors import making, scenes
 from hthor.cli import app
 from hthor.errors import HthorError, MissingExtra, UnknownName
 
@@ -105,11 +105,11 @@ def test_differences_are_found() -> None:
 
 def test_what_ships_is_what_the_sources_give() -> None:
     try:
-        words.need()
+        making.need()
         seen = scenes.read_scenes()
     except MissingExtra as absent:
         pytest.skip(str(absent))
-    assert making.encoded(making.make_table(seen, words.vectors, words.origin())) == making.encoded(priors.table())
+    assert making.encoded(making.make_table(seen, making.vectors, making.origin())) == making.encoded(priors.table())
 
 
 @pytest.fixture
@@ -121,9 +121,9 @@ def hthor(monkeypatch: pytest.MonkeyPatch):
 @pytest.fixture
 def encoder(monkeypatch: pytest.MonkeyPatch) -> None:
     """A fake one, installed."""
-    monkeypatch.setattr(words, "need", lambda: None)
-    monkeypatch.setattr(words, "vectors", one_hot)
-    monkeypatch.setattr(words, "origin", lambda: ORIGIN)
+    monkeypatch.setattr(making, "need", lambda: None)
+    monkeypatch.setattr(making, "vectors", one_hot)
+    monkeypatch.setattr(making, "origin", lambda: ORIGIN)
 
 
 def test_show(hthor) -> None:
@@ -158,7 +158,7 @@ def test_check_of_the_same(hthor, encoder: None, wheel: Path, monkeypatch: pytes
 
 
 def test_without_the_extra_one_sentence_names_it(hthor, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(words, "_NEEDED", ("no_such_module",))
+    monkeypatch.setattr(making, "_NEEDED", ("no_such_module",))
     said = hthor("build").exception
     assert isinstance(said, MissingExtra)
     assert "pip install 'hthor[priors]'" in str(said)

@@ -14,10 +14,9 @@ from hthor import catalog
 from hthor.errors import HthorError
 from hthor.houses.checks.findings import error, is_sound
 from hthor.houses.checks.house_checks import check
-from hthor.world.validation import drop_test, generate_valid, penetration
-from hthor.world.validation.drop_test import drop_findings
+from hthor.world.validation import house_soundness, physics_checks
 from hthor.world.validation.house_soundness import check_soundness
-from hthor.world.validation.penetration import PENETRATION_MAX_M, penetration_findings
+from hthor.world.validation.physics_checks import PENETRATION_MAX_M, drop_findings, penetration_findings
 
 FURNITURE = [
     name for name in catalog.names() if not catalog.kind(name).pickable and not catalog.kind(name).wall_mounted
@@ -28,7 +27,7 @@ RECEPTACLES = [name for name in FURNITURE if catalog.kind(name).rests()]
 def pairs(*things):
     return {
         pair: depth
-        for pair, depth in penetration.penetration_depths(house(*things)).items()
+        for pair, depth in physics_checks.penetration_depths(house(*things)).items()
         if depth > PENETRATION_MAX_M
     }
 
@@ -77,7 +76,7 @@ def test_both_things_are_named():
 @pytest.mark.parametrize("name", RECEPTACLES)
 def test_every_surface_of_every_kind_takes_every_target(name: str):
     spec = house(thing("it", name, 2.5, 2.5, math.pi / 2))
-    trials = list(drop_test._trials(spec))
+    trials = list(physics_checks._trials(spec))
     assert len(trials) == len(catalog.kind(name).rests()) * len(catalog.TARGETS)
     assert [str(finding) for finding in drop_findings(spec)] == []
 
@@ -99,7 +98,7 @@ def test_what_does_not_stay_is_told(monkeypatch: pytest.MonkeyPatch):
     def edge(place, size, solids, near):
         return [(place.centre[0] + place.half[0] + 0.05, place.centre[1], place.centre[2] + size[2] / 2 + 0.005)]
 
-    monkeypatch.setattr(drop_test, "free_spots", edge)
+    monkeypatch.setattr(physics_checks, "free_spots", edge)
     problems = [finding.problem for finding in drop_findings(house(table))]
     assert any("the apple put on the top of the side table strays" in problem for problem in problems)
 
@@ -107,7 +106,7 @@ def test_what_does_not_stay_is_told(monkeypatch: pytest.MonkeyPatch):
 def test_objects_tried_together_do_not_meet():
     """Six targets at the same spot, none pushes another."""
     spec = house(thing("it", "stool", 2.5, 2.5))
-    spots = {trial.at[:2] for trial in drop_test._trials(spec) if trial.at is not None}
+    spots = {trial.at[:2] for trial in physics_checks._trials(spec) if trial.at is not None}
     assert len(spots) == 1
     assert drop_findings(spec) == ()
 
@@ -124,23 +123,23 @@ def test_a_home_that_the_proof_refuses_is_followed_by_the_next_attempt(monkeypat
 
     refusal = error("penetration", "sofa", "is deep in the wall")
     verdicts = iter([(refusal,), ()])
-    monkeypatch.setattr(generate_valid.generator, "generate", generate)
-    monkeypatch.setattr(generate_valid.loader, "house_from_document", lambda document, name: house())
-    monkeypatch.setattr(generate_valid, "check_soundness", lambda spec, radius: next(verdicts))
-    home = generate_valid.generate_valid_home(7, 5)
-    assert tried == [(7, 5, 0, generate_valid.ATTEMPTS), (7, 5, 2, generate_valid.ATTEMPTS)]
+    monkeypatch.setattr(house_soundness.generator, "generate", generate)
+    monkeypatch.setattr(house_soundness.loader, "house_from_document", lambda document, name: house())
+    monkeypatch.setattr(house_soundness, "check_soundness", lambda spec, radius: next(verdicts))
+    home = house_soundness.generate_valid_home(7, 5)
+    assert tried == [(7, 5, 0, house_soundness.ATTEMPTS), (7, 5, 2, house_soundness.ATTEMPTS)]
     assert (home.attempt, home.refused) == (3, (refusal,))
-    monkeypatch.setattr(generate_valid, "check_soundness", lambda spec, radius: (refusal,))
+    monkeypatch.setattr(house_soundness, "check_soundness", lambda spec, radius: (refusal,))
     with pytest.raises(HthorError, match=r"seed 7 gave no sound home of 5 rooms.*deep in the wall.*another seed"):
-        generate_valid.generate_valid_home(7, 5)
+        house_soundness.generate_valid_home(7, 5)
 
 
 def test_a_home_is_sound_and_the_same_every_time():
-    home = generate_valid.generate_valid_home(11, 4)
-    assert check_soundness(home.house, generate_valid.RADIUS_M) == home.findings
+    home = house_soundness.generate_valid_home(11, 4)
+    assert check_soundness(home.house, house_soundness.RADIUS_M) == home.findings
     assert is_sound(home.findings)
     assert len(home.house.rooms) == 4
-    assert generate_valid.generate_valid_home(11, 4).document == home.document
+    assert house_soundness.generate_valid_home(11, 4).document == home.document
 
 
 # --------------------------------------------------------------------------------------------------------------- proof

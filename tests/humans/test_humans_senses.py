@@ -29,7 +29,7 @@ from hthor.humans.population.participant import Participant
 from hthor.types import HUMAN, Briefing, Detection, Job, Observation, Open, Pose, Sighting
 from hthor.world import World
 from hthor.world.model.bodies import avatar
-from hthor.world.perception import view_frustum, visible_fraction
+from hthor.world.perception import occlusion_kernel, view_frustum
 from hthor.world.perception.occluders import Occluders
 
 TRAITS = Parameters()
@@ -102,7 +102,7 @@ def test_a_closer_look_finds_what_ray_after_ray_finds(seed, yaw, pitch):
     middle = np.array([0.1, -0.2, 1.0]) + chance.uniform(0.3, 4.0) * np.array([math.cos(ahead), math.sin(ahead), 0.0])
     others = middle + chance.normal(0.0, 0.4, (count, 3))
     size = tuple(chance.uniform(0.03, 0.4, 3))
-    points = visible_fraction.sample_points(tuple(middle), size, float(chance.uniform(-3, 3)), (tuple(middle),))
+    points = occlusion_kernel.sample_points(tuple(middle), size, float(chance.uniform(-3, 3)), (tuple(middle),))
     others[0] = middle
     begin = chance.integers(0, 58, count)
     wanted = np.column_stack([chance.choice([0.0, 1.0], count, p=[0.2, 0.8]), begin, begin + 2]).astype(float)
@@ -122,7 +122,7 @@ def test_a_closer_look_finds_what_ray_after_ray_finds(seed, yaw, pitch):
         and math.acos(
             min(1.0, float((others[k] - view[:3]) @ to) / np.linalg.norm(others[k] - view[:3]) / np.linalg.norm(to))
         )
-        <= visible_fraction.BESIDE_RAD
+        <= occlusion_kernel.BESIDE_RAD
     ]
     crowd = slowly(
         view, 0, [others[k][None] for k in near], [99.0] * len(near), [tuple(wanted[k, 1:]) for k in near], *bodies
@@ -131,7 +131,7 @@ def test_a_closer_look_finds_what_ray_after_ray_finds(seed, yaw, pitch):
     occluders.follow(1)
     around = occluders.arrays
     eye = pose.x, pose.y, avatar.HUMAN.eye, yaw, pitch, *view_frustum.half_fov_tangents(avatar.HUMAN)
-    found = visible_fraction.measure(*eye, points, 0, others, wanted, *around)
+    found = occlusion_kernel.measure(*eye, points, 0, others, wanted, *around)
     assert found == (len(whole) / len(points), len(crowd))
     assert view_frustum.view_axes(*eye) == pytest.approx(tuple(view))
 

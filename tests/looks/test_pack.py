@@ -373,7 +373,7 @@ def test_detailed_models_need_the_extra(monkeypatch: pytest.MonkeyPatch) -> None
 
 def test_a_world_takes_a_pack_before_our_own(built: making.ConvertedModel) -> None:
     from hthor.world import World
-    from hthor.world.rendering.scene.asset_source import AssetSource
+    from hthor.world.rendering.scene.asset_registry import AssetSource
 
     fabric, size = AssetSource(built.pack), catalog.kind("dining_table").size
     texture = fabric.look("dining_table", size, 0)[0].material.texture

@@ -20,11 +20,11 @@ from hthor.types import HUMAN, Close, Open, Pick, Pose
 from hthor.world import World
 from hthor.world.model import inventory
 from hthor.world.rendering import contact_sheet
-from hthor.world.rendering.scene import lights, outdoors, wall_meshes
-from hthor.world.rendering.scene.asset_source import AssetSource
+from hthor.world.rendering.scene import lights, wall_meshes
+from hthor.world.rendering.scene.asset_registry import AssetSource
 from hthor.world.rendering.scene.compile_scene import SceneBuilder
-from hthor.world.rendering.scene.grids import facet, slab
 from hthor.world.rendering.scene.pose_sync import PoseSync
+from hthor.world.rendering.scene.scene_mesh import facet, slab
 
 AT_THE_FRIDGE = Pose(x=0.75, y=2.5, yaw=math.pi / 2)
 
@@ -138,8 +138,8 @@ def test_every_room_has_lamps_of_its_own(name: str) -> None:
 
 
 def test_the_sky_is_bright_blue_above_and_the_same_every_time() -> None:
-    sky = outdoors.sky()
-    assert np.array_equal(sky, outdoors.sky())
+    sky = lights.sky()
+    assert np.array_equal(sky, lights.sky())
     right, _, up, *_ = np.split(sky, 6)
     assert sky.min() > 40
     red, _, blue = up[100:156, 100:156].reshape(-1, 3).mean(axis=0)

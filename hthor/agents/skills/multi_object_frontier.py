@@ -17,7 +17,7 @@ from hthor.agents.skills.message_timing import (
 from hthor.agents.skills.task_allocation import TaskAllocation, can_do
 from hthor.agents.skills.viewpoints import outline_distance
 from hthor.agents.skills.yielding import Yielding
-from hthor.navigation.yielding import Courtesy
+from hthor.navigation.path_follower import Courtesy
 from hthor.types import HUMAN, Action, Briefing, Job, Motion, Observation, Place, Receipt, Send, ThingState, Vec3
 
 _MOST = 2

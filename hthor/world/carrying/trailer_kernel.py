@@ -1,5 +1,7 @@
 """A rectangle pulled by its handles between obstacles in the plane: position-based dynamics, compiled.
 
+Also the paths that a bearer or the thing follows, as points: where to head for, how long they are.
+
 A state is ``(x, y, yaw)`` [m, rad] of a rectangle with half extents ``half`` [m]. Obstacles are rectangles, rows
 ``(x, y, half width, half depth, yaw)``, and discs, rows ``(x, y, radius)``. Constraints are met one after another, a
 few times over, each by the smallest shift and turn of a thin uniform plate.
@@ -9,18 +11,27 @@ the unit vector n, applied at arm r = p × n from the centre, is met by the impu
 l / (1 + r² k) and turns it by r k l / (1 + r² k), with k = 3 / (a² + b²); see `_displace`.
 """
 
+import itertools
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numba
 import numpy as np
 
 from hthor.geometry.ray_casting import Floats
+from hthor.types import Vec2
 
 _END_SLACK_M, _TOLERANCE_M = 0.005, 1e-6
 """[m] A line may start or end this much closer to a rectangle than its margin; errors below the second count as 0."""
 _PULL_ROUNDS, _PUSH_ROUNDS, _WALL_PASSES = 12, 6, 2
 """Rounds of pulling and pushing it out of obstacles, then of pushing alone; passes over the walls in each round."""
+MARGINS_M = (0.25, 0.15, 0.05)
+"""[m] clear of corners that a follower tries to stay, the largest first; our choice."""
+AHEAD_M = 0.25
+"""[m] A point nearer than this gives no useful direction."""
+TAUT_MARGIN_M = 0.05
+"""[m] clear of corners at which a path is pulled taut."""
 
 
 @numba.njit(cache=True)
@@ -204,3 +215,33 @@ def is_line_blocked(ax: float, ay: float, bx: float, by: float, rows: Floats, ma
         if low <= high and min(hw + near, hd + near) > 0.0:
             return True
     return False
+
+
+def aim_index(path: Sequence[Vec2], obstacles: Floats) -> int:
+    """Index of the last point of a path that can be reached in a straight line from its first, clear of corners.
+
+    The clearance is the largest of `MARGINS_M` with which there is such a point at least `AHEAD_M` away.
+    """
+    for margin in MARGINS_M:
+        for there in range(len(path) - 1, 0, -1):
+            if there < len(path) - 1 and math.dist(path[0], path[there]) < AHEAD_M:
+                break
+            if not is_line_blocked(*path[0], *path[there], obstacles, margin):
+                return there
+    return next((k for k in range(1, len(path)) if math.dist(path[0], path[k]) >= AHEAD_M), len(path) - 1)
+
+
+def taut_length(path: Sequence[Vec2], obstacles: Floats) -> float:
+    """Length [m] of the path when it is pulled taut around walls and furniture."""
+    total, here = 0.0, 0
+    while here < len(path) - 1:
+        there = len(path) - 1
+        while there > here + 1 and is_line_blocked(*path[here], *path[there], obstacles, TAUT_MARGIN_M):
+            there -= 1
+        total, here = total + math.dist(path[here], path[there]), there
+    return total
+
+
+def path_length(path: Sequence[Vec2]) -> float:
+    """Length [m] of the path."""
+    return math.fsum(math.dist(a, b) for a, b in itertools.pairwise(path))

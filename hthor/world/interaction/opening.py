@@ -16,8 +16,7 @@ from hthor.world.model.geom_index import GeomIndex
 from hthor.world.motion.reach import out_of_reach
 from hthor.world.perception import view_frustum
 from hthor.world.state.body_state import BodyState
-from hthor.world.state.doors import Doors, DoorState
-from hthor.world.state.doorways import Doorways, in_doorway
+from hthor.world.state.doors import Doors, DoorState, Doorways, in_doorway
 from hthor.world.state.movable_object import MovableObject
 from hthor.world.state.objects import Objects
 from hthor.world.state.overlap_test import OVERLAP_M

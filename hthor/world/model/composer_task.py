@@ -5,16 +5,15 @@ from typing import Any
 
 import numpy as np
 
-from hthor import rules
-from hthor.types import BodySpec, HouseSpec, Vec3
+from hthor import catalog, rules
+from hthor.types import BodySpec, HouseSpec, Joint, Vec3
 from hthor.world.model import door_geometry, geoms
 from hthor.world.model.arena import HouseArena
-from hthor.world.model.articulated import Door
 from hthor.world.model.bodies.bodies import Body
 from hthor.world.model.composer_env import QPose
-from hthor.world.model.engine import composer, mujoco
+from hthor.world.model.door_geometry import Openable
+from hthor.world.model.engine import Entity, composer, mjcf, mujoco
 from hthor.world.model.inventory import Contents
-from hthor.world.model.props import Prop
 
 PHYSICS_STEP_S = 0.02
 """The longest step at which everything on a table falls asleep (with a sleep tolerance of 5e-3)."""
@@ -26,6 +25,85 @@ _ROTATION_DAMPING_NMS = 1e-5
 """What the air takes from spinning."""
 _PARK: Vec3 = (-500.0, 0.0, 1.0)
 _PARK_STEP_M = 2.0
+
+GRIP = {"friction": (0.8, 0.01, 0.001)}
+"""Sliding, torsional [m] and rolling [m] friction of flat things, as MuJoCo counts them; our choice."""
+ROLLING = {"friction": (0.8, 0.01, 0.003), "condim": 6}
+"""The same for round things: rolling friction lets balls and cups come to rest."""
+THIN_M = 0.006
+"""[m] Thinner parts, such as a key or a screen, are only drawn: what fell on them would come to rest inside."""
+
+_MASS_KG = 4.0
+"""[kg] of all moving parts of one joint; our choice."""
+_STIFF = {"damping": 50.0, "frictionloss": 500.0, "armature": 1000.0}
+"""So stiff that what falls or rolls against a door or drawer does not move it; only hands do."""
+
+
+class Door(Entity):
+    """The moving parts of a thing that opens; the rest of the thing is part of the arena.
+
+    Its frame is the thing's local frame. ``joints`` are its `hthor.types.Joint` records in order, ``elements`` the
+    engine's joints for them: 0 is closed, ``travel`` open. A doorway's leaf is open in the model's own pose, so that
+    nothing needs to be done for it when an episode begins.
+    """
+
+    def _build(self, opens: Openable) -> None:
+        self.id, self.opens, self.thing, self.joints = opens.id, opens, opens.thing, opens.joints
+        self._root = mjcf.RootElement(model=f"door|{opens.id.replace('/', '|')}")
+        self.leaves = tuple(self._leaf(joint) for joint in self.joints)
+        self.elements = tuple(leaf.joint[0] for leaf in self.leaves)
+
+    def _leaf(self, joint: Joint) -> mjcf.Element:
+        start = joint.travel if self.opens.opening is not None else 0.0
+        leaf = self._root.worldbody.add("body", name=joint.name, gravcomp=1.0, **_leaf_frame(joint, start))
+        back = (-joint.anchor[0], -joint.anchor[1], -joint.anchor[2])
+        parts = [part for part in self.opens.parts if part.moves == joint.name]
+        for index, part in enumerate(parts):
+            mass = _MASS_KG / len(parts)
+            bits = geoms.LEAF if joint.kind == "hinge" else geoms.STATIC
+            geoms.add_part(leaf, f"{joint.name}:{index}", part, back, mass=mass, group=geoms.FURNITURE, **bits)
+        leaf.add("joint", name=joint.name, type=joint.kind, axis=joint.axis, ref=start, **_STIFF)
+        return leaf
+
+    @property
+    def mjcf_model(self) -> mjcf.RootElement:
+        return self._root
+
+
+def _leaf_frame(joint: Joint, start: float) -> dict[str, object]:
+    """A leaf's frame at ``start`` [rad] of an upright hinge, or closed."""
+    turn = geoms.quaternion(start * joint.axis[2]) if joint.kind == "hinge" and start else (1.0, 0.0, 0.0, 0.0)
+    return {"pos": joint.anchor, "quat": turn}
+
+
+class Prop(Entity):
+    """An object that can be carried; its frame's origin is the centre of its bounding box.
+
+    Args:
+        id: the object's id. kind: its kind's name. size: [m], the kind's own when None. variant: of its finish.
+    """
+
+    def _build(self, id: str, kind: str, size: Vec3 | None = None, variant: int = 0) -> None:
+        known = catalog.kind(kind)
+        self.id, self.kind, self.size = id, kind, known.size if size is None else size
+        self.mass = known.mass * _ratio(self.size, known.size)
+        self._root = mjcf.RootElement(model=f"object|{id.replace('/', '|')}")
+        parts = known.parts(self.size, variant)
+        total = sum(geoms.volume(part) for part in parts)
+        for index, part in enumerate(parts):
+            surface = GRIP if part.shape == "box" else ROLLING
+            share = self.mass * geoms.volume(part) / total
+            bits = geoms.GHOST if len(parts) > 1 and 2 * min(part.half) < THIN_M else geoms.MOVABLE
+            name = f"part:{index}"
+            geoms.add_part(self._root.worldbody, name, part, mass=share, group=geoms.OBJECTS, **surface, **bits)
+
+    @property
+    def mjcf_model(self) -> mjcf.RootElement:
+        return self._root
+
+
+def _ratio(size: Vec3, own: Vec3) -> float:
+    return (size[0] * size[1] * size[2]) / (own[0] * own[1] * own[2])
 
 
 class HouseTask(composer.Task):

@@ -6,13 +6,17 @@ but one that is too close already may always move away.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 from hthor import rules
+from hthor.geometry import plane
 from hthor.geometry.plane import turn, wrap
-from hthor.types import Event, Move, Outcome, Pose, Rotate, Vec2, Wait
+from hthor.houses.space import solids
+from hthor.houses.space.free_space import STEP_M
+from hthor.types import Event, HouseSpec, Move, Opening, Outcome, Pose, Rotate, Vec2, Wait
 from hthor.world import numbers
 from hthor.world.state.body_state import BodyState
+from hthor.world.state.doors import leaf_rectangle
 
 _EPS = 1e-9
 """[m, rad, ticks] Tolerance for rounding."""
@@ -26,6 +30,9 @@ _FREE, _BLOCKED = "", "*"
 _MOVED, _ROTATED, _WAITED = (Outcome(motion=motion, ok=True) for motion in ("move", "rotate", "wait"))
 
 TickResult = tuple[Outcome | None, tuple[Event, ...]]
+WALL = "wall"
+_JAMB_M = 0.05
+"""[m] by which a wall next to a shut door may be nearer and the door still be named."""
 
 
 def refusal(seat: BodyState, motion: Move | Rotate | Wait) -> str:
@@ -174,3 +181,29 @@ def _too_close(seat: BodyState, other: BodyState, x: float, y: float) -> bool:
     if abs(dx) >= least or abs(dy) >= least or math.hypot(dx, dy) >= least:
         return False
     return math.hypot(dx, dy) < math.hypot(seat.pose.x - there.x, seat.pose.y - there.y)
+
+
+class ObstacleFootprints:
+    """The footprints of a house's walls and furniture."""
+
+    def __init__(self, house: HouseSpec) -> None:
+        self._slabs = [(WALL, slab) for slab in solids.wall_slabs(house)]
+        self._slabs += [(thing.id, slab) for thing, slab in solids.furniture_slabs(house) if slab.high > STEP_M]
+
+    def nearest(self, place: Vec2, height: float, shut: Iterable[Opening] = ()) -> str:
+        """Id of the thing nearest to ``place`` [m] that stands in the way of a body ``height`` [m] tall, or "wall".
+
+        Args:
+            shut: the doorways that are shut now; they count before what is not nearer.
+        """
+        gaps = (
+            (plane.distance_to_rectangle(place, slab.centre, slab.size, slab.yaw), index)
+            for index, (_, slab) in enumerate(self._slabs)
+            if slab.low < height
+        )
+        gap, index = min(gaps, default=(0.0, -1))
+        for opening in shut:
+            x, y, half, deep, yaw = leaf_rectangle(opening)
+            if plane.distance_to_rectangle(place, (x, y), (2 * half, 2 * deep), yaw) <= gap + _JAMB_M:
+                return opening.id
+        return self._slabs[index][0] if index >= 0 else WALL

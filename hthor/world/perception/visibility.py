@@ -11,7 +11,7 @@ from hthor import rules
 from hthor.geometry.ray_casting import Floats, Ints
 from hthor.types import HUMAN, Detection, Opening, Pose, Sighting, Thing, Vec2, Vec3
 from hthor.world.model.geom_index import GeomIndex
-from hthor.world.perception import view_frustum, visibility_kernel, visible_fraction
+from hthor.world.perception import occlusion_kernel, view_frustum, visibility_kernel
 from hthor.world.perception.landmarks import Landmark, landmarks, pack_targets
 from hthor.world.perception.occluders import Occluders
 from hthor.world.state.body_state import BodyState
@@ -118,11 +118,11 @@ class Visibility:
         item, view = self._objects.get(id), self._views[seat.name]
         if item is None or item.number not in view.seen:
             return _NOT_SEEN
-        points = visible_fraction.sample_points(
+        points = occlusion_kernel.sample_points(
             item.position, item.size, item.yaw, view_frustum.look_points(item.position, item.size)
         )
         self._near_ranges[:, 0] = self._objects.present & self._small
-        share, beside = visible_fraction.measure(
+        share, beside = occlusion_kernel.measure(
             *self._eye_numbers(view),
             points,
             item.number,

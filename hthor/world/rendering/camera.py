@@ -1,6 +1,7 @@
 """Where a camera is and how it projects, as records and as the numbers a tracer wants; draws nothing."""
 
 import math
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -8,6 +9,8 @@ from numpy.typing import NDArray
 
 from hthor.types import BodySpec, Camera, CameraSpec, Pose, Vec2
 from hthor.world import numbers
+from hthor.world.model import geoms
+from hthor.world.model.engine import mujoco
 from hthor.world.perception import view_frustum
 
 OWN = CameraSpec()
@@ -16,6 +19,9 @@ NEAR_M, FAR_M = 0.02, 80.0
 """Nothing nearer or farther is in a picture."""
 _UP_M = 1.0e5
 """A camera so far up that its rays are parallel: over a house they part by less than a hundredth of a millimetre."""
+
+FAR_AWAY = (0.0, 0.0, -100.0)
+"""[m] Where a viewer's own body is put while a picture is taken through its eyes."""
 
 
 class Images(NamedTuple):
@@ -102,3 +108,18 @@ def check_size(size: tuple[int, int]) -> None:
 def _stretch(shape: float) -> Vec2:
     """Width and height of a rectangle of that shape and of area 1."""
     return math.sqrt(shape), math.sqrt(1.0 / shape)
+
+
+class PoseSnapshot(NamedTuple):
+    """``qpos``: the engine's positions. ``seats``: each seat's pose and body, in the order of the seats."""
+
+    qpos: Any
+    seats: Mapping[str, tuple[Pose, BodySpec]]
+
+    def restore(self, model: Any, data: Any, without: str = "") -> None:
+        """Set ``data``, a copy that is never stepped, to these poses, with the body ``without`` far away."""
+        data.qpos[:] = self.qpos
+        for index, (name, (pose, _)) in enumerate(self.seats.items()):
+            data.mocap_pos[index] = FAR_AWAY if name == without else (pose.x, pose.y, 0.0)
+            data.mocap_quat[index] = geoms.quaternion(pose.yaw)
+        mujoco.mj_kinematics(model, data)

@@ -28,8 +28,8 @@ from hthor.world.model.bodies import avatar
 from hthor.world.model.composer_env import LazyComposerEnv
 from hthor.world.model.composer_task import HouseTask
 from hthor.world.model.geom_index import GeomIndex
+from hthor.world.rendering.camera import PoseSnapshot
 from hthor.world.rendering.opengl_renderer import OpenGLRenderer
-from hthor.world.state.pose_snapshot import PoseSnapshot
 
 VIEW = (480, 360)
 """Width and height of a view [pixels]."""

@@ -6,20 +6,20 @@ what they stand for, with textures and shadows, through OpenGL; it is loaded whe
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hthor import seeds
 from hthor.types import Camera, CameraSpec, HouseSpec, Vec2, View
 from hthor.world import numbers
 from hthor.world.model.composer_env import LazyComposerEnv
 from hthor.world.model.geom_index import GeomIndex
 from hthor.world.rendering import camera
-from hthor.world.rendering.labels import SegmentationLabels
+from hthor.world.rendering.camera import PoseSnapshot
 from hthor.world.state.body_state import BodyState
-from hthor.world.state.pose_snapshot import PoseSnapshot
 
 if TYPE_CHECKING:
     from hthor.world.rendering.opengl_renderer import OpenGLRenderer
@@ -31,6 +31,33 @@ Size = tuple[int, int] | None
 """Width and height [pixels], None for the camera's own."""
 _MARGIN_M = 0.3
 """[m] shown around the rooms in the view from above."""
+
+
+class SegmentationLabels:
+    """The numbers of owners in a segmentation, shuffled for every episode so that a number alone says nothing.
+
+    Numbers in alphabetic order would reveal names, and constant numbers would identify a thing from one trial to the
+    next. ``names`` are given in the order in which they are counted where pictures are drawn; the attribute of that
+    name has them in the order of the numbers that pictures show.
+    """
+
+    def __init__(self, names: Sequence[str]) -> None:
+        self._counted, self._seed = tuple(names), -1
+        self.names: tuple[str, ...] = ()
+        self._shown = np.zeros(0, np.int32)
+
+    def draw(self, seed: int) -> None:
+        """Shuffle the numbers for an episode; equal seeds give equal numbers."""
+        if self.names and seed == self._seed:
+            return
+        root = seeds.derive(seed, "segmentation")
+        self.names, self._seed = tuple(sorted(self._counted, key=lambda name: seeds.draw(root, name))), seed
+        number = {name: index for index, name in enumerate(self.names)}
+        self._shown = np.array([*(number[name] for name in self._counted), -1], np.int32)
+
+    def of(self, numbers: Any) -> Any:
+        """(H, W) int32, as pictures show what was counted so; -1 stays."""
+        return self._shown[numbers]
 
 
 class LazyImages:

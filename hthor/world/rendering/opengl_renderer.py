@@ -12,22 +12,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hthor.types import BodySpec, CameraSpec, HouseSpec, Pose
+from hthor.types import BodySpec, CameraSpec, HouseSpec, Pose, Vec2
 from hthor.world.model import geoms
 from hthor.world.model.bodies import bodies
 from hthor.world.model.engine import mujoco
 from hthor.world.model.geom_index import GeomIndex
 from hthor.world.model.inventory import Contents
+from hthor.world.perception import view_frustum
 from hthor.world.rendering import camera as projection
 from hthor.world.rendering import opengl_context
-from hthor.world.rendering.camera import Images
-from hthor.world.rendering.scene import scene_camera
-from hthor.world.rendering.scene.asset_source import AssetSource, Pack
+from hthor.world.rendering.camera import Images, PoseSnapshot
+from hthor.world.rendering.scene.asset_registry import AssetSource, Pack
 from hthor.world.rendering.scene.compile_scene import SceneBuilder
-from hthor.world.rendering.scene.items import ABOVE, ALWAYS, INSIDE
 from hthor.world.rendering.scene.lights import RoomLights
 from hthor.world.rendering.scene.pose_sync import PoseSync
-from hthor.world.state.pose_snapshot import PoseSnapshot
+from hthor.world.rendering.scene.scene_mesh import ABOVE, ALWAYS, INSIDE
 
 CODE_PART = "pictures"
 
@@ -35,6 +34,8 @@ _SUPERSAMPLING = 2
 """Colour is drawn finer and averaged: the engine's own smoothing leaves dotted edges where shadows are."""
 _FAR_AWAY = (0.0, 0.0, -200.0)
 _MODES = ("rgb", "depth", "segmentation")
+_NEAR_M, _FAR_M = 0.02, 120.0
+_ABOVE_M = 20.0
 
 
 class OpenGLRenderer:
@@ -89,7 +90,7 @@ class OpenGLRenderer:
         self._pose(moment, without=seat)
         self._compose(INSIDE)
         for eye in self._scene.camera:
-            scene_camera.place_at_eye(eye, pose, spec, projection.image_tangents(spec, size, by))
+            place_at_eye(eye, pose, spec, projection.image_tangents(spec, size, by))
         self._lamps.light(self._scene, pose)
         return self._shoot(mode, size)
 
@@ -99,8 +100,8 @@ class OpenGLRenderer:
         self._pose(moment)
         self._compose(ABOVE)
         for eye in self._scene.camera:
-            scene_camera.place_above(eye, bounds)
-        self._lamps.daylight(self._scene, ((x0 + x1) / 2, (y0 + y1) / 2), scene_camera.ABOVE_M)
+            place_above(eye, bounds)
+        self._lamps.daylight(self._scene, ((x0 + x1) / 2, (y0 + y1) / 2), _ABOVE_M)
         return self._shoot("rgb", (round((x1 - x0) * pixels_per_metre), round((y1 - y0) * pixels_per_metre)))
 
     def _pose(self, moment: PoseSnapshot, without: str = "") -> None:
@@ -151,7 +152,7 @@ class OpenGLRenderer:
     def _depth(self, area: Any) -> NDArray[np.float32]:
         buffer = np.empty((area.height, area.width), np.float32)
         mujoco.mjr_readPixels(None, buffer, area, self._context)
-        near, far = scene_camera.NEAR_M, scene_camera.FAR_M
+        near, far = _NEAR_M, _FAR_M
         depth = near / (1.0 - buffer[::-1].astype(np.float64) * (1.0 - near / far))
         return np.asarray(np.minimum(depth, projection.FAR_M), np.float32)
 
@@ -177,3 +178,24 @@ def _free(gl: Any, context: Any) -> None:
     gl.make_current()
     context.free()
     gl.free()
+
+
+def place_at_eye(camera: Any, pose: Pose, spec: BodySpec, lens: Vec2) -> None:
+    """Put the camera where the body's eye is; ``lens`` are the tangents of half its fields of view."""
+    view = view_frustum.view_vector(pose, spec)
+    camera.pos, camera.forward, camera.up = view[:3], view[3:6], view[9:12]
+    camera.orthographic, camera.frustum_center = 0, 0.0
+    camera.frustum_near, camera.frustum_far = _NEAR_M, _FAR_M
+    top = _NEAR_M * lens[1]
+    camera.frustum_bottom, camera.frustum_top = -top, top
+    camera.frustum_width = _NEAR_M * lens[0]
+
+
+def place_above(camera: Any, bounds: tuple[float, float, float, float]) -> None:
+    """Look straight down on the area x0, y0, x1, y1 [m], north up."""
+    x0, y0, x1, y1 = bounds
+    camera.pos, camera.forward, camera.up = ((x0 + x1) / 2, (y0 + y1) / 2, _ABOVE_M), (0, 0, -1), (0, 1, 0)
+    camera.orthographic = 1
+    camera.frustum_center, camera.frustum_width = 0.0, (x1 - x0) / 2
+    camera.frustum_bottom, camera.frustum_top = -(y1 - y0) / 2, (y1 - y0) / 2
+    camera.frustum_near, camera.frustum_far = _NEAR_M, _FAR_M

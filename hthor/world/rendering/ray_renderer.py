@@ -4,20 +4,21 @@ It draws copied moments on a copy of the model, so a picture never touches the w
 """
 
 import copy
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hthor.looks import finishes
 from hthor.types import CameraSpec, HouseSpec
 from hthor.world.model import geoms
 from hthor.world.model.bodies import bodies
 from hthor.world.model.bodies.primitives import HEAD
 from hthor.world.model.engine import mujoco
 from hthor.world.model.geom_index import GeomIndex
-from hthor.world.rendering import camera, rasterizer, shading, surface_patterns
-from hthor.world.rendering.camera import Images
-from hthor.world.state.pose_snapshot import PoseSnapshot
+from hthor.world.rendering import camera, rasterizer, shading
+from hthor.world.rendering.camera import Images, PoseSnapshot
 
 CODE_PART = "pictures"
 
@@ -26,6 +27,9 @@ _CLEAR = 0.5
 _HIDDEN_GROUP = 5
 _UNSET = (0.5, 0.5, 0.5, 1.0)
 """The engine's own colour, which says that a geom has that of its material."""
+
+_BOARDS = ("planks", "parquet", "herringbone", "wicker")
+_CLOTH = ("armchair", "bed", "cloth", "curtain", "dog_bed", "ottoman", "pillow", "rug", "sofa", "teddy_bear", "towel")
 
 
 class RayRenderer:
@@ -42,7 +46,7 @@ class RayRenderer:
         self._half = _halves(model)
         self._radius = np.linalg.norm(self._half, axis=1)
         self._rgba = _colours(model)
-        self._skin = surface_patterns.geom_patterns(model, scene.owner, house, self._rgba)
+        self._skin = geom_patterns(model, scene.owner, house, self._rgba)
         self._grain = np.argmax(self._half, axis=1).astype(np.int32)
         self._noise = shading.mottle()
         self._heads: dict[str, Any] = {}
@@ -146,3 +150,40 @@ def _colours(model: Any) -> Any:
     plain = (model.geom_matid >= 0) & (np.abs(rgba - _UNSET) < 1e-6).all(axis=1)
     rgba[plain] = model.mat_rgba[model.geom_matid[plain]]
     return rgba
+
+
+def geom_patterns(model: Any, owners: Sequence[str], house: HouseSpec, rgba: Any) -> Any:
+    """(N,) int32: the pattern of each geom, a number of `hthor.world.rendering.shading`."""
+    floors = {f"floor of {room.id}": _floor(room.floor) for room in house.rooms}
+    outside = {wall.id for wall in house.walls if wall.room == "exterior"}
+    walls = {wall.id for wall in house.walls}
+    cloth = {thing.id for thing in house.things if thing.kind in _CLOTH}
+    things = {thing.id for thing in house.things}
+    out = np.zeros(model.ngeom, np.int32)
+    for geom, owner in enumerate(owners):
+        if owner in floors:
+            out[geom] = floors[owner]
+        elif owner.startswith("ceiling of "):
+            out[geom] = shading.GLOWING
+        elif owner == "outdoors":
+            out[geom] = shading.LAWN
+        elif owner in walls:
+            out[geom] = shading.BRICK if owner in outside else shading.PLASTER
+        elif owner in things and model.geom_group[geom] == geoms.FURNITURE and _wooden(rgba[geom]):
+            out[geom] = shading.GRAIN
+        elif owner in cloth:
+            out[geom] = shading.CLOTH
+    return out
+
+
+def _floor(material: str) -> int:
+    texture = finishes.floor(material)[0]
+    if texture == "carpet":
+        return shading.CARPET
+    return shading.PLANKS if texture.startswith(_BOARDS) else shading.TILES
+
+
+def _wooden(rgba: Any) -> bool:
+    """Whether a colour is that of wood, from walnut to birch, and not of rust, mustard or cream."""
+    red, green, blue, _ = (float(value) for value in rgba)
+    return red < 0.88 and red - blue > 0.15 and 0.38 < (green - blue) / (red - blue) < 0.62

@@ -25,7 +25,7 @@ from hthor.types import Pose, RobotSeat, cameras
 from hthor.world import World
 from hthor.world.model.bodies import avatar
 from hthor.world.rendering import camera
-from hthor.world.rendering.labels import SegmentationLabels
+from hthor.world.rendering.lazy_images import SegmentationLabels
 
 BODIES = [avatar.HUMAN, *(plugins.load("robot", name) for name in ("scout", "tender", "puck", "porter"))]
 sides = st.integers(1, 2000)

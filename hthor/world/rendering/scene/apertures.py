@@ -15,8 +15,7 @@ from hthor.looks.furniture import building
 from hthor.types import HouseSpec, Joint, Opening, Rgba, Vec2, Vec3
 from hthor.world.model import door_geometry
 from hthor.world.rendering.scene import materials
-from hthor.world.rendering.scene.grids import slab
-from hthor.world.rendering.scene.items import INSIDE, SceneMesh
+from hthor.world.rendering.scene.scene_mesh import INSIDE, SceneMesh, slab
 from hthor.world.rendering.scene.wall_meshes import wall_of
 
 _CASING_M, _LINING_M, _PROUD_M = 0.06, 0.02, 0.018

@@ -11,14 +11,12 @@ from hthor.world.model import door_geometry, geoms
 from hthor.world.model.bodies import bodies
 from hthor.world.model.engine import mujoco
 from hthor.world.model.inventory import Contents, MovableSpec
-from hthor.world.rendering.scene import materials, outdoors
+from hthor.world.rendering.scene import lights, materials
 from hthor.world.rendering.scene.apertures import apertures, leaf_meshes
-from hthor.world.rendering.scene.asset_registry import AssetRegistry
-from hthor.world.rendering.scene.asset_source import AssetSource
-from hthor.world.rendering.scene.grids import join
-from hthor.world.rendering.scene.items import ABOVE, INSIDE, SceneMesh
+from hthor.world.rendering.scene.asset_registry import AssetRegistry, AssetSource
 from hthor.world.rendering.scene.lights import RoomLights
 from hthor.world.rendering.scene.pose_sync import PoseSync
+from hthor.world.rendering.scene.scene_mesh import ABOVE, INSIDE, SceneMesh, join
 from hthor.world.rendering.scene.shell import shell
 
 _SHADOW_TEXELS, _SAMPLES = 2048, 0
@@ -71,7 +69,7 @@ class SceneBuilder:
         spec.visual.quality.shadowsize, spec.visual.quality.offsamples = _SHADOW_TEXELS, _SAMPLES
         spec.visual.map.shadowclip, spec.visual.map.shadowscale = 1.0, 0.93
         spec.stat.extent = _EXTENT_M
-        image, sky = outdoors.sky(), spec.add_texture()
+        image, sky = lights.sky(), spec.add_texture()
         sky.name, sky.type, sky.nchannel = "sky", mujoco.mjtTexture.mjTEXTURE_SKYBOX, 3
         sky.height, sky.width, sky.data = image.shape[0], image.shape[1], image.tobytes()
         self._lawn(materials.LAWN, INSIDE)

@@ -9,8 +9,7 @@ from hthor.geometry.plane import rectangular_strips
 from hthor.looks import Material, Mesh
 from hthor.types import HouseSpec, Room
 from hthor.world.rendering.scene import materials, wall_meshes
-from hthor.world.rendering.scene.grids import facet, join, slab
-from hthor.world.rendering.scene.items import ABOVE, ALWAYS, INSIDE, SceneMesh
+from hthor.world.rendering.scene.scene_mesh import ABOVE, ALWAYS, INSIDE, SceneMesh, facet, join, slab
 from hthor.world.rendering.scene.wall_meshes import WallSlab
 
 _BOARD_M, _BOARD_OUT_M = 0.09, 0.012

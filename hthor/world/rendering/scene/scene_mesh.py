@@ -1,15 +1,27 @@
-"""Flat meshes cut into small cells, so that light computed at corners looks smooth."""
+"""Meshes of the visual model: flat, and cut into small cells, so that light computed at corners looks smooth."""
 
 import math
 from collections.abc import Iterable
+from typing import NamedTuple
 
 import numpy as np
 
-from hthor.looks import Mesh
+from hthor.looks import Material, Mesh
 from hthor.types import Vec2, Vec3
 
 CELL_M = 0.40
 """Light is worked out at corners and blended between them: a wall of two triangles would stay dark in the middle."""
+ALWAYS, INSIDE, ABOVE = 0, 4, 5
+"""Draw groups: always drawn; left out of the view from above, like ceilings; drawn only there, like cut walls."""
+
+
+class SceneMesh(NamedTuple):
+    """A mesh in the house frame. ``owner`` is what it counts as in a segmentation."""
+
+    owner: str
+    mesh: Mesh
+    material: Material
+    group: int = ALWAYS
 
 
 def facet(origin: Vec3, u: Vec3, v: Vec3, start: Vec2 = (0.0, 0.0), cell: float = CELL_M) -> Mesh:
