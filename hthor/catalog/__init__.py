@@ -2,19 +2,19 @@
 
 import re
 
-from hthor.catalog import household, priors, receptacles, targets
+from hthor.catalog import kinds, priors
 from hthor.catalog.kind import Family, Form, Kind
 from hthor.errors import UnknownName
 from hthor.types import Vec3
 
 __all__ = ["RECEPTACLES", "TARGETS", "Family", "Form", "Kind", "kind", "names", "own_asset", "priors"]
 
-RECEPTACLES = tuple(kind.name for kind in receptacles.KINDS)
+RECEPTACLES = tuple(kind.name for kind in kinds.RECEPTACLES)
 """The benchmark's eight receptacles, by name."""
-TARGETS = tuple(kind.name for kind in targets.KINDS)
+TARGETS = tuple(kind.name for kind in kinds.TARGETS)
 """The benchmark's six target objects, by name."""
 
-_KINDS = {kind.name: kind for kind in (*receptacles.KINDS, *targets.KINDS, *household.KINDS)}
+_KINDS = {kind.name: kind for kind in (*kinds.RECEPTACLES, *kinds.TARGETS, *kinds.HOUSEHOLD)}
 _ASSET = re.compile(r"hthor_([a-z_]+?)(?:_(\d+)x(\d+)x(\d+))?(?:_v(\d+))?")
 
 

@@ -2,14 +2,8 @@
 
 from hthor.catalog.colors import BLACK, IRON, STEEL
 from hthor.catalog.kind import Form
-from hthor.catalog.solids import box, flap, hinge, inside, rest, shell
-from hthor.types import Rgba, Surface, Vec3
-
-
-def _top(size: Vec3, back: float = 0.0, height: float | None = None) -> Surface:
-    w, d, h = size
-    e = min(0.02, 0.05 * w, 0.05 * d)
-    return rest(size, "top", (e, back + e), (w - e, d - e), h if height is None else height)
+from hthor.catalog.solids import box, flap, hinge, inside, rest_on_top, shell
+from hthor.types import Rgba, Vec3
 
 
 def oven_front(size: Vec3, *, body: Rgba, glass: Rgba) -> Form:
@@ -46,7 +40,7 @@ def washer(size: Vec3, *, body: Rgba, glass: Rgba) -> Form:
         box(size, (0.0, front, low), (0.1 * w, front + 0.5 * leaf, high), body),
         box(size, (0.9 * w, front, low), (w, front + 0.5 * leaf, high), body),
     )
-    return Form(parts=(*parts, *sides), surfaces=(drum, _top(size)), joints=(door,))
+    return Form(parts=(*parts, *sides), surfaces=(drum, rest_on_top(size)), joints=(door,))
 
 
 def stove(size: Vec3, *, body: Rgba, glass: Rgba) -> Form:
@@ -63,7 +57,7 @@ def stove(size: Vec3, *, body: Rgba, glass: Rgba) -> Form:
         box(size, (0.1 * w, front + leaf, 0.9 * high), (0.9 * w, d, 0.94 * high), STEEL, moves="door"),
     )
     oven = inside(size, "oven", (wall, wall, low + wall), (w - wall, 0.97 * front, high - wall))
-    return Form(parts=parts, surfaces=(oven, _top(size)), joints=(flap(size, "door", front + leaf, low),))
+    return Form(parts=parts, surfaces=(oven, rest_on_top(size)), joints=(flap(size, "door", front + leaf, low),))
 
 
 def range_hood(size: Vec3, *, body: Rgba) -> Form:

@@ -6,19 +6,13 @@ the others are drawn on. Fronts stand ``size[1]`` deep when closed, handles incl
 
 from hthor.catalog.colors import IRON, STEEL
 from hthor.catalog.kind import Form
-from hthor.catalog.solids import PULL, box, hinge, inside, rest, shell, slide, tray
+from hthor.catalog.solids import PULL, box, hinge, inside, rest_on_top, shell, slide, tray
 from hthor.types import Joint, Part, Rgba, Surface, Vec3
 
 _DOORS_M = 1.2
 """A pair of doors is at most this wide; the rest of a longer cabinet is closed for good."""
 _NARROW_M = 0.7
 """A base cabinet that is narrower than this has no doors."""
-
-
-def _top(size: Vec3) -> Surface:
-    w, d, h = size
-    e = min(0.02, 0.05 * w, 0.05 * d)
-    return rest(size, "top", (e, e), (w - e, d - e), h)
 
 
 def _pair(
@@ -48,7 +42,7 @@ def counter(size: Vec3, *, body: Rgba, top: Rgba) -> Form:
     if w < _NARROW_M:
         closed = box(size, (0.0, 0.0, toe), (w, d - 2 * leaf, h - t), body)
         kick = box(size, (0.0, 0.0, 0.0), (w, 0.88 * d, toe), IRON)
-        return Form(parts=(box(size, (0.0, 0.0, h - t), (w, d, h), top), kick, closed), surfaces=(_top(size),))
+        return Form(parts=(box(size, (0.0, 0.0, h - t), (w, d, h), top), kick, closed), surfaces=(rest_on_top(size),))
     wide, wall, low = min(w, _DOORS_M), min(0.018, 0.05 * h, 0.05 * w), h - t
     front, lip = d - 3 * leaf, min(0.015, 0.5 * leaf)
     doors, joints = _pair(size, (0.0, front, toe), (wide, front + leaf, low), lip, body, STEEL)
@@ -61,7 +55,7 @@ def counter(size: Vec3, *, body: Rgba, top: Rgba) -> Form:
     if w - wide > 1e-6:
         parts.append(box(size, (wide, 0.0, toe), (w, front + leaf, low), body))
     cupboard = inside(size, "cupboard", (wall, wall, toe + wall), (wide - wall, 0.97 * front, low))
-    return Form(parts=tuple(parts), surfaces=(cupboard, _top(size)), joints=joints)
+    return Form(parts=tuple(parts), surfaces=(cupboard, rest_on_top(size)), joints=joints)
 
 
 def wall_cabinet(size: Vec3, *, body: Rgba, inner: Rgba) -> Form:
@@ -121,7 +115,7 @@ def dresser(size: Vec3, *, body: Rgba, fronts: Rgba) -> Form:
         box(size, (x0, d - e, 0.35 * h), (x1, d, 0.62 * h), fronts),
         *drawer,
     )
-    return Form(parts=parts, surfaces=(rests, _top(size)), joints=(joint,))
+    return Form(parts=parts, surfaces=(rests, rest_on_top(size)), joints=(joint,))
 
 
 def nightstand(size: Vec3, *, wood: Rgba, front: Rgba) -> Form:
@@ -139,7 +133,7 @@ def nightstand(size: Vec3, *, wood: Rgba, front: Rgba) -> Form:
         box(size, (wall, 0.02 * d, 0.2 * h), (w - wall, 0.9 * d, 0.2 * h + wall), wood),
         *drawer,
     )
-    return Form(parts=parts, surfaces=(rests, _top(size)), joints=(joint,))
+    return Form(parts=parts, surfaces=(rests, rest_on_top(size)), joints=(joint,))
 
 
 def desk(size: Vec3, *, wood: Rgba, body: Rgba) -> Form:
@@ -161,4 +155,4 @@ def desk(size: Vec3, *, wood: Rgba, body: Rgba) -> Form:
         box(size, (0.0, 0.0, 0.35 * h), (x0, min(0.02, 0.1 * d), low), body),
         *drawer,
     )
-    return Form(parts=parts, surfaces=(rests, _top(size)), joints=(joint,))
+    return Form(parts=parts, surfaces=(rests, rest_on_top(size)), joints=(joint,))

@@ -6,14 +6,8 @@ y from the back to the front while building (see ``solids``).
 
 from hthor.catalog.colors import IRON, WHITE
 from hthor.catalog.kind import Form
-from hthor.catalog.solids import box, pillar, rest, rounded
-from hthor.types import Part, Rgba, Surface, Vec3
-
-
-def _top(size: Vec3) -> tuple[Surface]:
-    w, d, h = size
-    e = min(0.02, 0.05 * w, 0.05 * d)
-    return (rest(size, "top", (e, e), (w - e, d - e), h),)
+from hthor.catalog.solids import box, pillar, rest, rest_on_top, rounded
+from hthor.types import Part, Rgba, Vec3
 
 
 def _legs(size: Vec3, leg: float, height: float, rgba: Rgba) -> tuple[Part, ...]:
@@ -27,7 +21,7 @@ def table(size: Vec3, *, wood: Rgba, legs: Rgba) -> Form:
     w, d, h = size
     t, leg = min(0.04, 0.3 * h), min(0.06, 0.2 * w, 0.2 * d)
     plate = box(size, (0.0, 0.0, h - t), (w, d, h), wood)
-    return Form(parts=(plate, *_legs(size, leg, h - t, legs)), surfaces=_top(size))
+    return Form(parts=(plate, *_legs(size, leg, h - t, legs)), surfaces=(rest_on_top(size),))
 
 
 def low_table(size: Vec3, *, wood: Rgba, legs: Rgba) -> Form:
@@ -50,7 +44,7 @@ def tv_stand(size: Vec3, *, wood: Rgba) -> Form:
         box(size, ((w - t) / 2, b, t), ((w + t) / 2, d, h - t), wood),
         box(size, (t, 0.0, t), (w - t, b, h - t), IRON),
     )
-    return Form(parts=parts, surfaces=_top(size))
+    return Form(parts=parts, surfaces=(rest_on_top(size),))
 
 
 def shelf(size: Vec3, *, wood: Rgba) -> Form:
@@ -69,7 +63,7 @@ def shelf(size: Vec3, *, wood: Rgba) -> Form:
     rests = tuple(
         rest(size, f"board {i + 1}", (t, b), (w - t, d), i * step + t, step - t) for i in range(gaps) if step - t > 0.0
     )
-    return Form(parts=(*shell, *boards), surfaces=(*rests, *_top(size)) if h <= 1.4 else rests)
+    return Form(parts=(*shell, *boards), surfaces=(*rests, rest_on_top(size)) if h <= 1.4 else rests)
 
 
 def bed(size: Vec3, *, frame: Rgba, blanket: Rgba) -> Form:
@@ -137,4 +131,4 @@ def ottoman(size: Vec3, *, fabric: Rgba) -> Form:
     """A padded block."""
     w, d, h = size
     low = box(size, (0.04 * w, 0.04 * d, 0.0), (0.96 * w, 0.96 * d, 0.3 * h), IRON)
-    return Form(parts=(low, box(size, (0.0, 0.0, 0.3 * h), (w, d, h), fabric)), surfaces=_top(size))
+    return Form(parts=(low, box(size, (0.0, 0.0, 0.3 * h), (w, d, h), fabric)), surfaces=(rest_on_top(size),))

@@ -70,6 +70,13 @@ def rest(
     return Surface(name=name, centre=centre, half=width, clearance=clearance, inside=inside, moves=moves)
 
 
+def rest_on_top(size: Vec3) -> Surface:
+    """The thing's top, drawn in by a little on every side."""
+    w, d, h = size
+    e = min(0.02, 0.05 * w, 0.05 * d)
+    return rest(size, "top", (e, e), (w - e, d - e), h)
+
+
 def shell(size: Vec3, lo: Vec3, hi: Vec3, wall: float, rgba: Rgba, inner: Rgba) -> tuple[Part, ...]:
     """Two sides, a back, a floor and a ceiling, each ``wall`` thick, around an empty space that is open in front."""
     (x0, y0, z0), (x1, y1, z1) = lo, hi

@@ -3,7 +3,6 @@ from __future__ import annotations
 import json
 import math
 from collections import Counter
-from functools import partial
 from pathlib import Path
 
 import pytest
@@ -11,8 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hthor import catalog, looks
-from hthor.catalog import colors, household, priors, procthor, props
+from hthor.catalog import colors, priors, procthor, props
 from hthor.catalog.kind import Form, Kind
+from hthor.catalog.kinds import _small
 from hthor.errors import HouseError, UnknownName
 from hthor.geometry.plane import turn
 from hthor.types import Vec3
@@ -236,7 +236,7 @@ def test_a_drawer_s_floor_moves_with_it_and_stays_inside_when_pulled() -> None:
 
 
 def test_a_new_kind_is_one_row(monkeypatch: pytest.MonkeyPatch) -> None:
-    row = household._small("gadget", (0.1, 0.2, 0.05), 0.3, partial(props.block, rgba=colors.RED))
+    row = _small("gadget", (0.1, 0.2, 0.05), 0.3, props.block, rgba=colors.RED)
     monkeypatch.setitem(catalog._KINDS, "gadget", row)
     assert catalog.kind("gadget").indefinite == "a gadget"
     assert catalog.own_asset("hthor_gadget") == (row, row.size, 0)

@@ -19,8 +19,9 @@ from hthor.geometry import plane
 from hthor.types import HUMAN, Close, Open, Pick, Pose
 from hthor.world import World
 from hthor.world.model import inventory
+from hthor.world.model.walls import WallSlab
 from hthor.world.rendering import contact_sheet
-from hthor.world.rendering.scene import lights, wall_meshes
+from hthor.world.rendering.scene import lights, shell
 from hthor.world.rendering.scene.asset_registry import AssetSource
 from hthor.world.rendering.scene.compile_scene import SceneBuilder
 from hthor.world.rendering.scene.pose_sync import PoseSync
@@ -90,7 +91,7 @@ def test_a_facet_has_its_area_and_faces_one_way(width: float, height: float, yaw
 
 @pytest.mark.parametrize("name", houses.names()[:4])
 def test_walls_meet_without_two_in_one_place(name: str) -> None:
-    pieces = list(wall_meshes.wall_slabs(houses.load(name)))
+    pieces = list(shell.wall_slabs(houses.load(name)))
     assert len(pieces) > 20
     for a, b in itertools.combinations(pieces, 2):
         if a.face.id != b.face.id:
@@ -102,7 +103,7 @@ def test_walls_meet_without_two_in_one_place(name: str) -> None:
 @pytest.mark.parametrize("name", houses.names()[:4])
 def test_walls_close_every_corner_and_leave_every_opening(name: str) -> None:
     house = houses.load(name)
-    pieces = list(wall_meshes.wall_slabs(house))
+    pieces = list(shell.wall_slabs(house))
 
     def solid(x: float, y: float, z: float) -> bool:
         return any(
@@ -122,7 +123,7 @@ def test_walls_close_every_corner_and_leave_every_opening(name: str) -> None:
         assert solid(x, y, opening.high + 0.1)
 
 
-def _extent(piece: wall_meshes.WallSlab) -> tuple[float, float, float]:
+def _extent(piece: WallSlab) -> tuple[float, float, float]:
     cos, sin = abs(math.cos(piece.yaw)), abs(math.sin(piece.yaw))
     return (cos * piece.half[0] + sin * piece.half[1], sin * piece.half[0] + cos * piece.half[1], piece.half[2])
 

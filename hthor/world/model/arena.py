@@ -9,10 +9,13 @@ from typing import Any
 
 from hthor import catalog
 from hthor.geometry import plane
-from hthor.types import HouseSpec, Thing
-from hthor.world.model import colors, geoms, walls
+from hthor.looks import finishes
+from hthor.types import HouseSpec, Rgba, Thing
+from hthor.world.model import geoms, walls
 from hthor.world.model.engine import Arena
 
+_CEILING: Rgba = (0.96, 0.96, 0.95, 1.0)
+_GROUND: Rgba = (0.62, 0.68, 0.58, 1.0)
 _SLAB_M = 0.01
 """[m] Thickness of the drawn floors and ceilings."""
 _ROOF_M = 1.0
@@ -58,7 +61,7 @@ class HouseArena(Arena):
         root.visual.map.set_attributes(znear=0.002, zfar=8.0)
         root.statistic.set_attributes(extent=10.0)
         root.asset.add("texture", name="sky", type="skybox", builtin="gradient", width=32, height=192, **_SKY)
-        root.asset.add("material", name="ceiling", rgba=colors.CEILING, emission=0.3)
+        root.asset.add("material", name="ceiling", rgba=_CEILING, emission=0.3)
         for direction, colour in _SUNS:
             light = {"directional": True, "castshadow": False, "pos": (0, 0, 10), "ambient": _DARK, "specular": _DARK}
             root.worldbody.add("light", dir=direction, diffuse=colour, **light)
@@ -76,12 +79,12 @@ class HouseArena(Arena):
         roof = ((min(x) + max(x)) / 2, (min(y) + max(y)) / 2, house.height + _ROOF_M / 2)
         half = ((max(x) - min(x)) / 2 + 1.0, (max(y) - min(y)) / 2 + 1.0, _ROOF_M / 2)
         geoms.add_box(world, self._name("roof"), roof, half, 0.0, group=5, rgba=(0, 0, 0, 0), **geoms.STATIC)
-        lawn: dict[str, Any] = {"pos": (0, 0, -2 * _SLAB_M), "rgba": colors.GROUND, "group": geoms.FURNITURE}
+        lawn: dict[str, Any] = {"pos": (0, 0, -2 * _SLAB_M), "rgba": _GROUND, "group": geoms.FURNITURE}
         world.add("geom", name=self._name("outdoors"), type="plane", size=(50, 50, 1), **geoms.GHOST, **lawn)
         for room in house.rooms:
             for x0, y0, x1, y1 in plane.rectangular_strips(room.polygon):
                 centre, half = ((x0 + x1) / 2, (y0 + y1) / 2), ((x1 - x0) / 2, (y1 - y0) / 2, _SLAB_M / 2)
-                floor = {"rgba": colors.floor(room.floor), "group": geoms.FURNITURE}
+                floor = {"rgba": (*finishes.floor(room.floor)[1], 1.0), "group": geoms.FURNITURE}
                 ceiling = {"material": "ceiling", "group": geoms.CEILINGS}
                 name = self._name(f"floor of {room.id}")
                 geoms.add_box(world, name, (*centre, -_SLAB_M / 2), half, 0.0, **floor, **geoms.GHOST)

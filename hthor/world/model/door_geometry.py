@@ -7,8 +7,7 @@ from msgspec import Struct
 from hthor import catalog
 from hthor.catalog.colors import STEEL
 from hthor.geometry import plane
-from hthor.types import HouseSpec, Joint, Opening, Part, Thing, Vec3
-from hthor.world.model import colors
+from hthor.types import HouseSpec, Joint, Opening, Part, Rgba, Thing, Vec3
 
 LEAF_M = 0.04
 """[m] Thickness of a door."""
@@ -18,6 +17,7 @@ DOUBLE_M = 1.3
 """[m] Wider doorways have two doors."""
 TURN_RAD = math.pi / 2
 """[rad] by which doors open."""
+_LEAF: Rgba = (0.88, 0.87, 0.85, 1.0)
 _SOLE_M = 0.008
 """[m] Gap below a door."""
 _HANDLE_M = 1.02
@@ -99,7 +99,7 @@ def _leaf(thing: Thing, name: str, hinge: float, rim: float) -> tuple[Part, Part
     grip = rim + math.copysign(0.09, hinge - rim)
     handle = (grip, 0.0, min(_HANDLE_M - thing.size[2] / 2, 0.0))
     return (
-        Part(shape="box", centre=centre, half=half, rgba=colors.LEAF, moves=name),
+        Part(shape="box", centre=centre, half=half, rgba=_LEAF, moves=name),
         Part(shape="box", centre=handle, half=(0.06, LEAF_M / 2 + 0.045, 0.012), rgba=STEEL, moves=name),
     )
 

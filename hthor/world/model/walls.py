@@ -6,8 +6,8 @@ from typing import Literal, NamedTuple
 
 from hthor.geometry import plane
 from hthor.houses.space.solids import WALL_M
+from hthor.looks import finishes
 from hthor.types import HouseSpec, Opening, Rgba, Vec2, Vec3, Wall
-from hthor.world.model import colors
 
 _LINE_M = 0.08
 """How far an opening's ends may lie from a face's line and still cut it."""
@@ -17,6 +17,81 @@ _CAP_M = 0.002
 """Outdoor faces are this much taller, so that seen from above one colour wins."""
 _PANE_M, _LEAF_M = 0.01, 0.04
 """Thickness of a window pane and of a closed door."""
+_PANE: Rgba = (0.70, 0.84, 0.92, 0.25)
+_DOOR: Rgba = (0.42, 0.28, 0.20, 1.0)
+"""The way out."""
+
+
+class WallSlab(NamedTuple):
+    """A box ``half`` [m] along, across and up, turned by ``yaw`` [rad]; ``low`` and ``top`` [m] are its heights."""
+
+    face: Wall
+    centre: Vec3
+    half: Vec3
+    yaw: float
+
+    @property
+    def low(self) -> float:
+        return self.centre[2] - self.half[2]
+
+    @property
+    def top(self) -> float:
+        return self.centre[2] + self.half[2]
+
+
+class FaceLine:
+    """The line on the floor along which a wall's face stands, from its end ``a`` to ``b``."""
+
+    def __init__(self, face: Wall) -> None:
+        self.face, self.length = face, math.dist(face.a, face.b)
+        self.along = ((face.b[0] - face.a[0]) / self.length, (face.b[1] - face.a[1]) / self.length)
+
+    def at(self, along: float, left: float) -> Vec2:
+        """A point so far [m] along the line and to the left of it."""
+        (x, y), (dx, dy) = self.face.a, self.along
+        return (x + dx * along - dy * left, y + dy * along + dx * left)
+
+    def cut(self, opening: Opening) -> Vec2:
+        """The stretch [m] along the face that an opening takes out, (0, 0) when it is in another wall."""
+        dx, dy = self.along
+        offsets = [(x - self.face.a[0], y - self.face.a[1]) for x, y in (opening.a, opening.b)]
+        if any(abs(dx * oy - dy * ox) > _LINE_M for ox, oy in offsets):
+            return (0.0, 0.0)
+        ends = sorted(dx * ox + dy * oy for ox, oy in offsets)
+        return max(ends[0], 0.0), min(ends[1], self.length)
+
+    def slabs(self, house: HouseSpec, side: float, first: float, last: float, top: float) -> Iterator[WallSlab]:
+        """The face's pieces, from ``first`` to ``last`` [m] along it and up to ``top`` [m]: beside, below, above holes.
+
+        ``side`` is +1 for a face that stands left of its line, -1 for right.
+        """
+        start = first
+        for begin, end, low, high in sorted(self._cuts(house, first, last)):
+            yield from self._slab(side, (start, begin), (0.0, top))
+            yield from self._slab(side, (begin, end), (0.0, low))
+            yield from self._slab(side, (begin, end), (high, top))
+            start = max(start, end)
+        yield from self._slab(side, (start, last), (0.0, top))
+
+    def _cuts(self, house: HouseSpec, first: float, last: float) -> Iterator[tuple[float, float, float, float]]:
+        """Stretches (begin, end) [m] along the face and the heights (low, high) that its openings take out."""
+        for opening in house.openings:
+            begin, end = self.cut(opening)
+            if end - begin > 1e-6:
+                begin, end = begin if begin > 1e-6 else first, end if end < self.length - 1e-6 else last
+                yield (begin, end, opening.low, opening.high)
+
+    def _slab(self, side: float, reach: Vec2, heights: Vec2) -> Iterator[WallSlab]:
+        (begin, end), (low, high) = reach, heights
+        if end - begin > 1e-6 and high - low > 1e-6:
+            x, y = self.at((begin + end) / 2, side * WALL_M / 4)
+            half = ((end - begin) / 2, WALL_M / 4, (high - low) / 2)
+            yield WallSlab(self.face, (x, y, (low + high) / 2), half, math.atan2(self.along[1], self.along[0]))
+
+
+def face_lines(house: HouseSpec) -> Iterator[FaceLine]:
+    """The lines of all faces that have a length."""
+    return (FaceLine(face) for face in house.walls if math.dist(face.a, face.b) > 1e-6)
 
 
 class Panel(NamedTuple):
@@ -32,61 +107,27 @@ class Panel(NamedTuple):
 
 def wall_panels(house: HouseSpec) -> Iterator[Panel]:
     """Every wall piece, sill, lintel, window pane and closed door of the house."""
-    for face in house.walls:
-        yield from _face(house, face)
+    for line in face_lines(house):
+        face = line.face
+        top, colour = face.height + (_CAP_M if face.room == "exterior" else 0.0), _colour(face)
+        for slab in line.slabs(house, _side(house, line), -_OVERLAP_M, line.length + _OVERLAP_M, top):
+            yield Panel(face.id, "lintel" if slab.low > 0.0 else "wall", *slab[1:], colour)
     for opening in house.openings:
         if not opening.passable:
             yield _filling(opening)
 
 
-def _face(house: HouseSpec, face: Wall) -> Iterator[Panel]:
-    length = math.dist(face.a, face.b)
-    if length < 1e-6:
-        return
-    along = ((face.b[0] - face.a[0]) / length, (face.b[1] - face.a[1]) / length)
-    side = _side(house, face, along)
-    top = face.height + (_CAP_M if face.room == "exterior" else 0.0)
-    start = -_OVERLAP_M
-    for begin, end, low, high in sorted(_cuts(house, face, along, length)):
-        yield from _slab(face, along, side, (start, begin), (0.0, top))
-        yield from _slab(face, along, side, (begin, end), (0.0, low))
-        yield from _slab(face, along, side, (begin, end), (high, top))
-        start = max(start, end)
-    yield from _slab(face, along, side, (start, length + _OVERLAP_M), (0.0, top))
-
-
-def _side(house: HouseSpec, face: Wall, along: Vec2) -> float:
+def _side(house: HouseSpec, line: FaceLine) -> float:
     """On which side of its line a face stands: +1 left of it, -1 right; a room's face on the room's side."""
-    middle = ((face.a[0] + face.b[0]) / 2, (face.a[1] + face.b[1]) / 2)
-    left = (middle[0] - along[1] * WALL_M / 2, middle[1] + along[0] * WALL_M / 2)
-    polygons = [room.polygon for room in house.rooms if face.room in (room.id, "exterior")]
-    within = any(plane.inside(left, polygon) for polygon in polygons)
-    return 1.0 if within == (face.room != "exterior") else -1.0
+    left, owner = line.at(line.length / 2, WALL_M / 2), line.face.room
+    within = any(plane.inside(left, room.polygon) for room in house.rooms if owner in (room.id, "exterior"))
+    return 1.0 if within == (owner != "exterior") else -1.0
 
 
-def _cuts(house: HouseSpec, face: Wall, along: Vec2, length: float) -> Iterator[tuple[float, float, float, float]]:
-    """Stretches (begin, end) [m] along the face and the heights (low, high) that its openings take out."""
-    for opening in house.openings:
-        offsets = [(x - face.a[0], y - face.a[1]) for x, y in (opening.a, opening.b)]
-        if any(abs(along[0] * dy - along[1] * dx) > _LINE_M for dx, dy in offsets):
-            continue
-        ends = sorted(along[0] * dx + along[1] * dy for dx, dy in offsets)
-        begin, end = max(ends[0], 0.0), min(ends[1], length)
-        if end - begin > 1e-6:
-            begin = begin if begin > 1e-6 else -_OVERLAP_M
-            yield (begin, end if end < length - 1e-6 else length + _OVERLAP_M, opening.low, opening.high)
-
-
-def _slab(face: Wall, along: Vec2, side: float, reach: Vec2, heights: Vec2) -> Iterator[Panel]:
-    (begin, end), (low, high) = reach, heights
-    if end - begin < 1e-6 or high - low < 1e-6:
-        return
-    middle, off = (begin + end) / 2, side * WALL_M / 4
-    x = face.a[0] + along[0] * middle - along[1] * off
-    y = face.a[1] + along[1] * middle + along[0] * off
-    half = ((end - begin) / 2, WALL_M / 4, (high - low) / 2)
-    yaw = math.atan2(along[1], along[0])
-    yield Panel(face.id, "lintel" if low > 0.0 else "wall", (x, y, (low + high) / 2), half, yaw, colors.wall(face))
+def _colour(face: Wall) -> Rgba:
+    """A face's own colour when the house gives one, brick outdoors when it names nothing."""
+    name = face.material or ("brick" if face.room == "exterior" else "")
+    return (*(finishes.wall(name)[1] if face.rgb is None else face.rgb), 1.0)
 
 
 def _filling(opening: Opening) -> Panel:
@@ -96,4 +137,4 @@ def _filling(opening: Opening) -> Panel:
     half = (math.dist(opening.a, opening.b) / 2, (_PANE_M if window else _LEAF_M) / 2, (opening.high - opening.low) / 2)
     centre = ((ax + bx) / 2, (ay + by) / 2, (opening.low + opening.high) / 2)
     yaw = math.atan2(by - ay, bx - ax)
-    return Panel(opening.id, "pane" if window else "door", centre, half, yaw, colors.PANE if window else colors.DOOR)
+    return Panel(opening.id, "pane" if window else "door", centre, half, yaw, _PANE if window else _DOOR)

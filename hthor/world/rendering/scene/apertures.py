@@ -16,7 +16,7 @@ from hthor.types import HouseSpec, Joint, Opening, Rgba, Vec2, Vec3
 from hthor.world.model import door_geometry
 from hthor.world.rendering.scene import materials
 from hthor.world.rendering.scene.scene_mesh import INSIDE, SceneMesh, slab
-from hthor.world.rendering.scene.wall_meshes import wall_of
+from hthor.world.rendering.scene.shell import wall_of
 
 _CASING_M, _LINING_M, _PROUD_M = 0.06, 0.02, 0.018
 _GAP_M, _STRIP_M = 0.003, 0.006

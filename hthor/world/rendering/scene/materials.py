@@ -4,7 +4,6 @@ from msgspec import structs
 
 from hthor.looks import Material, materials, textures
 from hthor.types import Wall
-from hthor.world.rendering.scene.wall_meshes import is_exterior
 
 CEILING = Material(rgba=(0.95, 0.95, 0.94, 1.0), emission=0.38, specular=0.0)
 TRIM = Material(rgba=(0.93, 0.92, 0.90, 1.0), emission=0.12, specular=0.15, shininess=0.3)
@@ -20,6 +19,11 @@ _WALL_GLOW, _FLOOR_GLOW = 0.10, 0.04
 def floor(name: str) -> Material:
     """A floor's material by the name that its house gives it."""
     return structs.replace(materials.floor(name), emission=_FLOOR_GLOW)
+
+
+def is_exterior(face: Wall) -> bool:
+    """Whether a face looks outdoors; ProcTHOR's own files say so in its id only."""
+    return face.room == "exterior" or face.id.startswith("wall|exterior|")
 
 
 def wall(face: Wall) -> Material:

@@ -1,19 +1,27 @@
-"""Floors, ceilings, walls and baseboards of a house as meshes."""
+"""Floors, ceilings, walls and baseboards of a house as meshes.
+
+The boxes of `hthor.world.model.walls`, which bodies run into, overlap at their ends, where materials would flicker:
+here corners close and no two faces lie in one plane.
+"""
 
 import math
 from collections.abc import Iterator
 
 import numpy as np
 
-from hthor.geometry.plane import rectangular_strips
+from hthor.geometry.plane import inside, rectangular_strips
+from hthor.houses.space.solids import WALL_M
 from hthor.looks import Material, Mesh
-from hthor.types import HouseSpec, Room
-from hthor.world.rendering.scene import materials, wall_meshes
+from hthor.types import HouseSpec, Opening, Room, Vec2, Wall
+from hthor.world.model import walls
+from hthor.world.model.walls import FaceLine, WallSlab
+from hthor.world.rendering.scene import materials
 from hthor.world.rendering.scene.scene_mesh import ABOVE, ALWAYS, INSIDE, SceneMesh, facet, join, slab
-from hthor.world.rendering.scene.wall_meshes import WallSlab
 
 _BOARD_M, _BOARD_OUT_M = 0.09, 0.012
 """Height of a baseboard and how far it stands off the wall."""
+_BIT_M = 0.02
+"""How far past the end of a wall its corner is looked for."""
 _CAP_M = 0.006
 """How far above the walls their cut faces are drawn in the view from above."""
 CUT = Material(rgba=(0.30, 0.31, 0.33, 1.0), emission=0.4, specular=0.0)
@@ -49,14 +57,41 @@ def scaled(mesh: Mesh, repeat: float) -> Mesh:
 
 
 def _walls(house: HouseSpec) -> Iterator[SceneMesh]:
-    for piece in wall_meshes.wall_slabs(house):
+    for piece in wall_slabs(house):
         face, material = piece.face, materials.wall(piece.face)
         group = INSIDE if piece.low > house.height / 2 else ALWAYS
         yield SceneMesh(face.id, scaled(_slab(piece), materials.repeat(material)), material, group)
-        if piece.low < 1e-6 and not wall_meshes.is_exterior(face):
+        if piece.low < 1e-6 and not materials.is_exterior(face):
             yield SceneMesh(face.id, _baseboard(piece), materials.TRIM)
         if group == ALWAYS and piece.top > house.height - 0.01:
             yield SceneMesh(face.id, _cap(piece), CUT, ABOVE)
+
+
+def wall_slabs(house: HouseSpec) -> Iterator[WallSlab]:
+    """Every piece of wall of the house."""
+    for line in walls.face_lines(house):
+        side = 1.0 if _within(house, line.face, line.at(line.length / 2, WALL_M / 2)) else -1.0
+        first, last = -_reach(house, line, side, 0.0, -1.0), line.length + _reach(house, line, side, line.length, 1.0)
+        yield from line.slabs(house, side, first, last, line.face.height)
+
+
+def _reach(house: HouseSpec, line: FaceLine, side: float, end: float, way: float) -> float:
+    """How far a slab goes on past an end: round an outward corner if it runs along x, else not at all."""
+    beyond = end + way * _BIT_M
+    outward = all(_within(house, line.face, line.at(beyond, side * off)) for off in (_BIT_M, -_BIT_M))
+    return WALL_M / 2 if outward and abs(line.along[0]) > 0.5 else 0.0
+
+
+def _within(house: HouseSpec, face: Wall, point: Vec2) -> bool:
+    if materials.is_exterior(face):
+        return not any(inside(point, room.polygon) for room in house.rooms)
+    return any(room.id == face.room and inside(point, room.polygon) for room in house.rooms)
+
+
+def wall_of(house: HouseSpec, opening: Opening) -> str:
+    """Id of a wall face that the opening is in, empty for none."""
+    cuts = ((line.face.id, line.cut(opening)) for line in walls.face_lines(house))
+    return next((id for id, (begin, end) in cuts if end - begin > 1e-6), "")
 
 
 def _slab(piece: WallSlab) -> Mesh:
