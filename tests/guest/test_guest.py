@@ -130,7 +130,7 @@ def test_an_exception_in_begin_is_a_fault_too(write: Write) -> None:
         ("os.write(WIRE, b'\\x05\\0\\0\\0hello'); return Action()", "garbage", "no message"),
         ("os.write(WIRE, b'\\xff\\xff\\xff\\xff'); return Action()", "oversized", "4294967295"),
         ("os.close(WIRE); return Action()", "died", ""),
-        ("observation.senses._get('walls', bytes); return Action()", "garbage", "'walls'"),
+        ("observation.senses._get('walls'); return Action()", "garbage", "'walls'"),
     ],
 )
 def test_every_misdeed_is_a_fault(started: Callable[..., Guest], act: str, kind: str, told: str) -> None:
