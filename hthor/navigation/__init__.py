@@ -17,23 +17,15 @@ if TYPE_CHECKING:
     from hthor.navigation.planner import Planner
     from hthor.navigation.waiting_spots import park, retreat
 
-_HOMES = {
-    "Courtesy": "yielding",
-    "park": "waiting_spots",
-    "retreat": "waiting_spots",
-    "Follower": "path_follower",
-    "face": "path_follower",
-    "Frontier": "frontier",
-    "Survey": "frontier",
-    "frontiers": "frontier",
-    "unvisited": "frontier",
-    "FREE": "grid_map",
-    "OCCUPIED": "grid_map",
-    "UNKNOWN": "grid_map",
-    "GridMap": "grid_map",
-    "Field": "distance_field",
-    "Planner": "planner",
+_NAMES = {
+    "distance_field": ("Field",),
+    "frontier": ("Frontier", "Survey", "frontiers", "unvisited"),
+    "grid_map": ("FREE", "OCCUPIED", "UNKNOWN", "GridMap"),
+    "path_follower": ("Courtesy", "Follower", "face"),
+    "planner": ("Planner",),
+    "waiting_spots": ("park", "retreat"),
 }
+_HOMES = {name: module for module, names in _NAMES.items() for name in names}
 
 __all__ = [
     "FREE",

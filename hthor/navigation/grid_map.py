@@ -65,41 +65,16 @@ class GridMap:
         ranges = np.array(scan.ranges, dtype=np.float64)  # a copy: arrays from another process are read-only
         bearings = self._as_bearings(scan.bearings)
         tops = np.zeros(len(ranges)) if scan.tops is None else np.array(scan.tops, dtype=np.float64)
+        place = self.left, self.bottom, CELL_M, origin.x, origin.y, origin.yaw
+        looks = LOW_M, scan.limit, look_m, look_rad
+        known = self.bounds, self._obstacles
         self._count = scan_kernel.integrate(
-            self.cells,
-            self.near,
-            self.left,
-            self.bottom,
-            CELL_M,
-            origin.x,
-            origin.y,
-            origin.yaw,
-            bearings,
-            ranges,
-            tops,
-            LOW_M,
-            scan.limit,
-            look_m,
-            look_rad,
-            self.bounds,
-            self._obstacles,
-            self._count,
+            self.cells, self.near, *place, bearings, ranges, tops, *looks, *known, self._count
         )
         if scan.beyond is not None:
             beyond = np.array(scan.beyond, dtype=np.float64)
-            place = CELL_M, origin.x, origin.y, origin.yaw
             self._count = scan_kernel.beyond(
-                self.cells,
-                self.left,
-                self.bottom,
-                *place,
-                bearings,
-                ranges,
-                beyond,
-                scan.limit,
-                self.bounds,
-                self._obstacles,
-                self._count,
+                self.cells, *place, bearings, ranges, beyond, scan.limit, *known, self._count
             )
         scan_kernel.surround(self.beside, self._obstacles, first, self._count, self.left, self.bottom, _BESIDE_CELLS)
         self.version += 1

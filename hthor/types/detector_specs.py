@@ -48,12 +48,11 @@ def canonical_name(text: str) -> str:
 
 
 def _rate(name: str, number: str) -> float:
-    most = 1.0
     try:
         value = float(number)
     except ValueError:
         value = math.nan
-    if not 0.0 <= value <= most:
+    if not 0.0 <= value <= 1.0:
         unit = "m" if name == "position_sigma" else "a chance"
         raise HthorError(f"detector: {name} must be from 0 to 1 ({unit}), got '{number}'. Valid: {_VALID}.")
     return value

@@ -106,45 +106,17 @@ class SimulationParts:
         seats = tuple(self.seats.values())
         self.rooms = RoomTracker(house, tuple(self.seats))
         self.doorways = Doorways(seats, space)
-        self.door_handling = DoorHandling(
-            geoms=self.geoms,
-            objects=self.objects,
-            doors=self.doors,
-            surfaces=surfaces,
-            doorways=self.doorways,
-            seats=seats,
-        )
-        self.joint_carrying = JointCarrying(house, objects=self.objects, doors=self.doors, overlap=overlap, seats=seats)
+        geoms, objects, doors = self.geoms, self.objects, self.doors
+        self.door_handling = DoorHandling(geoms, objects, doors, surfaces, doorways=self.doorways, seats=seats)
+        self.joint_carrying = JointCarrying(house, objects, doors, overlap, seats)
         self.manipulation = Manipulation(
-            house,
-            geoms=self.geoms,
-            objects=self.objects,
-            doors=self.doors,
-            surfaces=surfaces,
-            overlap=overlap,
-            door_handling=self.door_handling,
-            joint_carrying=self.joint_carrying,
+            house, geoms, objects, doors, surfaces, overlap, self.door_handling, self.joint_carrying
         )
-        self.dispatch = ActionDispatch(house, manipulation=self.manipulation, doors=self.doors, seats=seats)
-        self.editor = SceneEditor(
-            house,
-            task=self.task,
-            env=self.env,
-            geoms=self.geoms,
-            objects=self.objects,
-            surfaces=surfaces,
-            overlap=overlap,
-        )
+        self.dispatch = ActionDispatch(house, self.manipulation, doors, seats)
+        self.editor = SceneEditor(house, self.task, self.env, geoms, objects, surfaces, overlap)
         self.scanners = {seat.name: RangeScanner(seat.spec, seat.space, house) for seat in seats}
-        self.visibility = Visibility(
-            geoms=self.geoms,
-            objects=self.objects,
-            doors=self.doors,
-            statics=contents.statics,
-            openings=house.openings,
-            seats=seats,
-        )
-        self.truth = GroundTruth(self.objects, self.doors, self.visibility, seats)
+        self.visibility = Visibility(geoms, objects, doors, contents.statics, house.openings, seats)
+        self.truth = GroundTruth(objects, doors, self.visibility, seats)
         self.detectors = {
             name: NoisyDetector(spec, self.seats[name], self.geoms, surfaces)
             for name, spec in detectors.items()

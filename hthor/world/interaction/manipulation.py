@@ -238,7 +238,7 @@ class Manipulation:
         gap = nearest.distance(seat.pose.x, seat.pose.y)
         if gap > seat.spec.reach:
             return f"{motion.on} is {gap:.2f} m away; reach is {seat.spec.reach:.2f} m", _NO_POSE
-        boxes = self._geoms.boxes(motion.on)
+        boxes = self._geoms.boxes_but(motion.on)
         lean = max(item.size[:2]) / 2 + rules.GRID_M
         w, d, h = item.size
         reason = f"no room on {motion.on}: {item.id} needs {w:.2f} x {d:.2f} m"

@@ -13,7 +13,7 @@ from hthor.world.model.bodies.bodies import Body
 from hthor.world.model.composer_env import QPose
 from hthor.world.model.door_geometry import Openable
 from hthor.world.model.engine import Entity, composer, mjcf, mujoco
-from hthor.world.model.inventory import Contents
+from hthor.world.model.inventory import Contents, MovableSpec
 
 PHYSICS_STEP_S = 0.02
 """The longest step at which everything on a table falls asleep (with a sleep tolerance of 5e-3)."""
@@ -77,18 +77,12 @@ def _leaf_frame(joint: Joint, start: float) -> dict[str, object]:
 
 
 class Prop(Entity):
-    """An object that can be carried; its frame's origin is the centre of its bounding box.
+    """An object that can be carried; its frame's origin is the centre of its bounding box."""
 
-    Args:
-        id: the object's id. kind: its kind's name. size: [m], the kind's own when None. variant: of its finish.
-    """
-
-    def _build(self, id: str, kind: str, size: Vec3 | None = None, variant: int = 0) -> None:
-        known = catalog.kind(kind)
-        self.id, self.kind, self.size = id, kind, known.size if size is None else size
-        self.mass = known.mass * _ratio(self.size, known.size)
-        self._root = mjcf.RootElement(model=f"object|{id.replace('/', '|')}")
-        parts = known.parts(self.size, variant)
+    def _build(self, item: MovableSpec) -> None:
+        self.id, self.mass = item.id, item.mass
+        self._root = mjcf.RootElement(model=f"object|{item.id.replace('/', '|')}")
+        parts = catalog.kind(item.kind).parts(item.size, item.variant)
         total = sum(geoms.volume(part) for part in parts)
         for index, part in enumerate(parts):
             surface = GRIP if part.shape == "box" else ROLLING
@@ -102,10 +96,6 @@ class Prop(Entity):
         return self._root
 
 
-def _ratio(size: Vec3, own: Vec3) -> float:
-    return (size[0] * size[1] * size[2]) / (own[0] * own[1] * own[2])
-
-
 class HouseTask(composer.Task):
     """Everything in one model, compiled once; an episode only writes poses.
 
@@ -117,7 +107,7 @@ class HouseTask(composer.Task):
 
     def __init__(self, house: HouseSpec, contents: Contents, seats: Mapping[str, BodySpec]) -> None:
         self._arena = HouseArena(house, contents.statics)
-        self.props = tuple(Prop(item.id, item.kind, item.size, item.variant) for item in contents.movables)
+        self.props = tuple(Prop(item) for item in contents.movables)
         opening = (
             *(door_geometry.openable_thing(thing) for thing in contents.doors),
             *door_geometry.doorway_leaves(house),

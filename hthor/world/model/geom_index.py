@@ -71,15 +71,8 @@ class GeomIndex:
         return next(met, "") if is_blocked(*ends, *solids, ids, 0, 0) else ""
 
     def boxes_but(self, *without: str) -> tuple[Any, Any]:
-        """As `boxes`, without those of several owners."""
+        """Centres (M, 3) and half extents (M, 3) [m] of upright boxes around all solids but those of these owners."""
         keep = self.ids[~np.isin(self.numbers[self.ids], [self._number[owner] for owner in without])]
-        return self._upright(keep)
-
-    def boxes(self, without: str) -> tuple[Any, Any]:
-        """Centres (M, 3) and half extents (M, 3) [m] of upright boxes around all solids but those of ``without``."""
-        return self._upright(self._without(without))
-
-    def _upright(self, keep: Any) -> tuple[Any, Any]:
         rotation = np.abs(self.mat[keep].reshape(-1, 3, 3))
         return self.pos[keep], np.einsum("nij,nj->ni", rotation, self.half[keep])
 

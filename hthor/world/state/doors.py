@@ -98,14 +98,9 @@ class Doors:
         self._env.model.geom_contype[leaf.geoms] = geoms.SWUNG if leaf.share > 0.0 else geoms.SHUT
 
     def states(self) -> Iterator[ThingState]:
-        """True states of all things that open."""
-        return (door_state(leaf) for leaf in self)
-
-
-def door_state(leaf: DoorState) -> ThingState:
-    """The true state of a thing that opens, or of a doorway with a leaf, whose kind is "door"."""
-    thing = leaf.thing
-    return ThingState(id=thing.id, kind=thing.kind, position=thing.centre, open=leaf.open)
+        """True states of all things that open, and of doorways with leaves, whose kind is "door"."""
+        for leaf in self:
+            yield ThingState(id=leaf.thing.id, kind=leaf.thing.kind, position=leaf.thing.centre, open=leaf.open)
 
 
 class Doorways:
