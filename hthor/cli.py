@@ -1,5 +1,6 @@
 """The command line: every command of `hthor`, put together. A command's work is imported when it is called."""
 
+import contextlib
 import os
 import sys
 
@@ -12,14 +13,14 @@ from typing import Annotated
 import typer
 
 from hthor import __version__
-from hthor.commands import assets, compare, doctor, houses, merge, priors, replay, report, runs, score, suite
+from hthor.commands import assets, calibrate, compare, doctor, houses, merge, priors, replay, report, runs, score, suite
 from hthor.commands.agent import agent, serve
-from hthor.commands.calibrate import calibrate
 from hthor.commands.eval import evaluate
 from hthor.commands.humans import humans
 from hthor.commands.leaderboard import board, list_entries, verify
 from hthor.commands.tasks import make, tasks
-from hthor.console import completion, exit_status, help_text, startup, waiting_notice
+from hthor.console import completion, exit_status, help_text, waiting_notice
+from hthor.errors import HthorError
 
 app = typer.Typer(
     name="hthor",
@@ -70,15 +71,38 @@ def root(
     ] = False,
 ) -> None:
     """Evaluate robots that help people in a shared house."""
-    startup.check_arguments()
+    _check_arguments()
     from hthor import code_identity
 
     code_identity.keep_compiled()  # here, so that no command can miss it
 
 
+def _open_streams() -> None:
+    """Give a process that was started without standard streams, as some job runners do, empty ones."""
+    for handle, name, mode in ((0, "stdin", "r"), (1, "stdout", "w"), (2, "stderr", "w")):
+        if getattr(sys, name) is None:
+            if (null := os.open(os.devnull, os.O_RDWR)) != handle:
+                os.dup2(null, handle)
+                os.close(null)
+            os.set_inheritable(handle, True)
+            setattr(sys, name, os.fdopen(handle, mode))
+
+
+def _check_arguments() -> None:
+    """Refuse names that are not UTF-8: file names may be any bytes, but what hthor writes is UTF-8."""
+    from hthor import jsonio
+
+    for given in sys.argv[1:]:
+        if not jsonio.is_text(given):
+            raise HthorError(f"{given!a} is not UTF-8. Rename the file or folder, or type the name again.")
+    with contextlib.suppress(OSError):
+        if not jsonio.is_text(os.getcwd()):
+            raise HthorError(f"the name of this folder, {os.getcwd()!a}, is not UTF-8. Rename it, or go elsewhere.")
+
+
 def main() -> None:
     """Run `hthor` with the arguments of this process, and turn the user's errors into one clear line."""
-    startup.open_streams()
+    _open_streams()
     if "FORCE_COLOR" not in os.environ and not sys.stdout.isatty():
         os.environ["_TYPER_FORCE_DISABLE_TERMINAL"] = "1"  # typer would also colour for GITHUB_ACTIONS and PY_COLORS
     if completion.VARIABLE in os.environ:

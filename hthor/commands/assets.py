@@ -60,7 +60,7 @@ def build(
         return
     sys.stdout.write(f"{folder}\n")
     models, kinds = len(made.pack.contents.models), len(made.pack.kinds)
-    talk.print(f"{models} models of {kinds} kinds, {_megabytes(made.pack):.1f} MB.", markup=False, highlight=False)
+    output.say(f"{models} models of {kinds} kinds, {_megabytes(made.pack):.1f} MB.", talk)
     if (folder / "ATTRIBUTION.md").exists():
         output.say(f"Publish {folder}/ATTRIBUTION.md together with its images.", talk)
 
@@ -77,9 +77,7 @@ def list_packs(json: Json = False) -> None:
     if not rows:
         sys.stdout.write("no packs yet; 'hthor assets build' makes one\n")
         return
-    shown = [{**row, "sha256": str(row["sha256"])[:10], "kinds": len(row["kinds"])} for row in rows]
-    headings = list(shown[0])
-    output.put_table(headings, [[row[heading] for heading in headings] for row in shown])
+    output.put_rows([{**row, "kinds": len(row["kinds"])} for row in rows], ("sha256",))
 
 
 @app.command("path")

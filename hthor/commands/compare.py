@@ -49,17 +49,11 @@ def compare(
                     output.put_rich(comparison_tables.groups_table(pair, by), shape)
             for line in comparison_tables.comparison_lines(pair):
                 output.put_line(line, shape)
-    talk = output.console(talk=True)
     if len(found.pairs) > 1 and not json:
-        talk.print(
-            "compare two runs, or use --json, to see kinds, splits, difficulties and scenes",
-            markup=False,
-            highlight=False,
-        )
+        output.say("compare two runs, or use --json, to see kinds, splits, difficulties and scenes")
     for party in found.runs:
         if party.trials < party.planned:
-            lacks = f"{party.name}: {party.planned - party.trials} of {party.planned} trials are not played yet."
-            output.say(lacks, talk)
+            output.say(f"{party.name}: {party.planned - party.trials} of {party.planned} trials are not played yet.")
     if fail_if_worse and found.worse:
         raise typer.Exit(_WORSE_EXIT)
 

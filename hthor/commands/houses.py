@@ -27,11 +27,6 @@ _ROOMS = (4, 7)
 _SHOWN = 4
 
 
-@app.callback()
-def _group() -> None:
-    """Floor plans."""
-
-
 @app.command("list")
 def list_houses(shape: Shape = Format.TABLE, json: Json = False) -> None:
     """List the houses that ship with hthor."""

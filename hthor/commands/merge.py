@@ -35,26 +35,21 @@ def merge(
         output.console().print(result_tables.result_table(done.result))
         for note in result_tables.result_notes([done.result]):
             output.put_line(note)
-    talk = output.console(talk=True)
-
-    def say(text: str) -> None:
-        output.say(text, talk)
-
     if dry_run:
         would = f"{done.trials} of {done.plan.trials} trials would be in {out}/, {done.new} of them new"
-        say(f"{would}; nothing was written.")
+        output.say(f"{would}; nothing was written.")
         raise typer.Exit(0 if done.trials == done.plan.trials else _MISSING_EXIT)
-    say(f"{done.trials} of {done.plan.trials} trials are in {out}/, {done.new} of them new.")
+    output.say(f"{done.trials} of {done.plan.trials} trials are in {out}/, {done.new} of them new.")
     if done.result is not None:
         if done.result.counts.faults:
             raise typer.Exit(_FAULTS_EXIT)
         return
     for gap in done.gaps:
         lacks = "is missing" if gap.trials is None else f"lacks {gap.trials} trials"
-        say(f"{f'shard {gap.number}/{gap.of}' if gap.of > 1 else 'the run'} {lacks}: {gap.command}")
+        output.say(f"{f'shard {gap.number}/{gap.of}' if gap.of > 1 else 'the run'} {lacks}: {gap.command}")
     for name in dict.fromkeys(seat.agent.source.partition(":")[0] for seat in done.plan.robots):
         if name.endswith(".py"):
-            say(f"Replace {name} by the path of the agent's file.")
+            output.say(f"Replace {name} by the path of the agent's file.")
     if any(gap.of > 1 for gap in done.gaps):
-        say("Then merge again.")
+        output.say("Then merge again.")
     raise typer.Exit(_MISSING_EXIT)

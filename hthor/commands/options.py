@@ -26,6 +26,12 @@ Readable = Annotated[
 ]
 
 Run = Annotated[Path, typer.Argument(metavar="RUN", help="The folder of a run, such as runs/demo/frontier.")]
+Trial = Annotated[
+    str,
+    typer.Argument(
+        metavar="TRIAL", help="The trial: its key or the start of it, a task id, or a number counted from 0."
+    ),
+]
 Json = Annotated[bool, typer.Option("--json", help="Write JSON to standard output and messages to standard error.")]
 
 Camera = Annotated[

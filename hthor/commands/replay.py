@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hthor.commands.options import AgentArgs, Readable, Run
+from hthor.commands.options import AgentArgs, Readable, Run, Trial
 from hthor.console import output
 
 if TYPE_CHECKING:
@@ -18,12 +18,7 @@ if TYPE_CHECKING:
 
 def replay(
     run: Run,
-    trial: Annotated[
-        str,
-        typer.Argument(
-            metavar="TRIAL", help="The trial: its key or the start of it, a task id, or a number counted from 0."
-        ),
-    ],
+    trial: Trial,
     out: Annotated[
         Path | None, typer.Option(help="The file to write.", show_default="RUN/replays/TASK-KEY.png, or .webm")
     ] = None,
@@ -82,11 +77,9 @@ def _replay_mind(
         RunFolder(run), record, RunFiles(agents=tuple(agents), humans=humans), inputs=given
     )
     if not stream.same:
-        talk = output.console(talk=True)
-        talk.print(
+        output.say(
             "the replayed trial differs from the log, so something here is not reproducible. What follows is the "
-            "trace of the replay.",
-            soft_wrap=True,
+            "trace of the replay."
         )
     if json:
         output.put_json(stream)

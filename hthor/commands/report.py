@@ -14,9 +14,7 @@ _PAPER = "paper"
 
 
 def report(
-    runs: Runs,
-    out: Annotated[Path, typer.Option(help="Folder of the report.")] = Path("report"),
-    json: Json = False,
+    runs: Runs, out: Annotated[Path, typer.Option(help="Folder of the report.")] = Path("report"), json: Json = False
 ) -> None:
     """Write a report on runs of one suite: results against no robot and the paper, figures, best and worst trials.
 

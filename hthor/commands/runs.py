@@ -18,11 +18,6 @@ if TYPE_CHECKING:
 app = typer.Typer(no_args_is_help=True, help="Finished and unfinished runs.")
 
 
-@app.callback()
-def _group() -> None:
-    """Finished and unfinished runs."""
-
-
 @app.command("list")
 def list_runs(
     folder: Annotated[

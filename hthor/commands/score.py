@@ -19,8 +19,7 @@ if TYPE_CHECKING:
 def score(
     run: Run,
     everything: Annotated[
-        bool,
-        typer.Option("--all", help="Also show messages, idle time, interference and shares of the work."),
+        bool, typer.Option("--all", help="Also show messages, idle time, interference and shares of the work.")
     ] = False,
     shape: Shape = Format.TABLE,
     json: Json = False,
@@ -31,11 +30,6 @@ def score(
     from hthor.report.terminal import result_tables
 
     plan, result, stored = scoring.rescore(run)
-    talk = output.console(talk=True)
-
-    def say(text: str) -> None:
-        output.say(text, talk)
-
     if formats.asks_json(json, shape):
         output.put_json(result)
     elif shape is Format.CSV:
@@ -45,17 +39,17 @@ def score(
         if everything and len(result.by_kind) > 1:
             output.put_rich(result_tables.kinds_table(result), shape)
     for note in result_tables.result_notes([result]):
-        say(note)
+        output.say(note)
     missing = plan.trials - result.counts.trials
     if missing:
-        say(f"{missing} of {plan.trials} trials are missing, so the result is incomplete and was not stored.")
+        output.say(f"{missing} of {plan.trials} trials are missing, so the result is incomplete and was not stored.")
         return
     if stored is None:
-        say(f"stored as {run / 'result.json'}.")
+        output.say(f"stored as {run / 'result.json'}.")
     elif stored != result:
-        say(f"differs from {run / 'result.json'} in {_difference(stored, result)}; stored again.")
+        output.say(f"differs from {run / 'result.json'} in {_difference(stored, result)}; stored again.")
     else:
-        say(f"equal to {run / 'result.json'}.")
+        output.say(f"equal to {run / 'result.json'}.")
         return
     result_file.store_result(run, result)
 

@@ -16,7 +16,6 @@ from hthor.console import output
 if TYPE_CHECKING:
     from hthor.tasks.generation.secret_suites import MapHouses, Proof
     from hthor.tasks.suites.commitment import Commitment
-    from hthor.types import HouseSpec, TaskSpec
 
 app = typer.Typer(no_args_is_help=True, help="Official suites, generated from a secret salt in unseen houses.")
 
@@ -28,8 +27,7 @@ SaltFile = Annotated[Path, typer.Option("--salt-file", help=_SALT)]
 
 @app.command("salt")
 def salt(
-    out: Annotated[Path, typer.Option(help="The file to write, readable only by you.")],
-    json: Json = False,
+    out: Annotated[Path, typer.Option(help="The file to write, readable only by you.")], json: Json = False
 ) -> None:
     """Make a secret salt of 256 bits. Keep it: the suite cannot be revealed without it."""
     from hthor.tasks.suites import secret_salt as salts
@@ -50,7 +48,6 @@ def make(
     json: Json = False,
 ) -> None:
     """Make a suite from a salt: houses, tasks, and a commitment that can be published at once."""
-    from hthor import code_identity, installation
     from hthor.errors import HthorError
     from hthor.tasks.generation import secret_suites
     from hthor.tasks.suites import commitment
@@ -62,8 +59,7 @@ def make(
         raise HthorError(f"{folder} exists and is not empty. Choose another folder with --out.")
     order = secret_suites.SuiteOrder(name=name, houses=houses, tasks=tasks)
     files = secret_suites.make_files(order, held, _proof(), _each(jobs, houses))
-    made_with = {**installation.versions(), "code": code_identity.makers_sha256()}
-    path = secret_suites.write_suite(order, held, folder, files, made_with)
+    path = secret_suites.write_suite(order, held, folder, files, _made_with())
     made = commitment.load_commitment(path)
     if json:
         output.put_json({"folder": str(folder), "commitment": made})
@@ -88,8 +84,7 @@ def reveal(folder: Folder, salt_file: SaltFile, json: Json = False) -> None:
 def verify(
     folder: Folder,
     published: Annotated[
-        Path | None,
-        typer.Option("--commitment", help="The published commitment. [default: FOLDER/commitment.json]"),
+        Path | None, typer.Option("--commitment", help="The published commitment. [default: FOLDER/commitment.json]")
     ] = None,
     salt_file: Annotated[
         Path | None, typer.Option("--salt-file", help="The salt, if you have it before it is revealed.")
@@ -129,13 +124,19 @@ def _verdict(held: Commitment, state: str, problems: int) -> str:
 
 def _tell_versions(held: Commitment) -> None:
     """Say what of hthor is not as it was when the suite was made: the honest reason for a difference."""
-    from hthor import code_identity, installation
-
-    here = {**installation.versions(), "code": code_identity.makers_sha256()}
-    other = [f"{key} {held.made_with.get(key, 'unknown')[:10]} (here {value[:10]})" for key, value in here.items()]
-    changed = [text for text, key in zip(other, here, strict=True) if held.made_with.get(key) != here[key]]
+    changed = [
+        f"{key} {held.made_with.get(key, 'unknown')[:10]} (here {value[:10]})"
+        for key, value in _made_with().items()
+        if held.made_with.get(key) != value
+    ]
     if changed:
         sys.stderr.write(f"it was made with {', '.join(changed)}; another version may give another result\n")
+
+
+def _made_with() -> dict[str, str]:
+    from hthor import code_identity, installation
+
+    return {**installation.versions(), "code": code_identity.makers_sha256()}
 
 
 def _salt(path: Path, folder: Path) -> Any:
@@ -152,16 +153,11 @@ def _salt(path: Path, folder: Path) -> Any:
 
 def _proof() -> Proof:
     """Houses are proved as by `hthor houses check --full`, tasks as by `hthor tasks check`."""
+    from hthor.eval.task_check import solvability
     from hthor.tasks.generation.secret_suites import Proof
     from hthor.world.validation.house_soundness import check_soundness
 
-    return Proof(house=check_soundness, task=_possible)
-
-
-def _possible(task: TaskSpec, house: HouseSpec) -> bool:
-    from hthor.eval.task_check import solvability
-
-    return not solvability.check_task(task, house).faults
+    return Proof(house=check_soundness, task=solvability.is_solvable)
 
 
 def _each(jobs: int | None, total: int) -> MapHouses:

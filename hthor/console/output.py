@@ -109,6 +109,12 @@ def put_table(headings: Sequence[str], rows: Iterable[Sequence[object]], shape: 
     console().print(table)
 
 
+def put_rows(rows: Sequence[Mapping[str, Any]], short: Sequence[str] = (), shape: Format = Format.TABLE) -> None:
+    """Write rows as a table with their names as headings; of hashes in the columns ``short`` only the beginning."""
+    headings = list(rows[0]) if rows else ["nothing"]
+    put_table(headings, [[row[name][:10] if name in short else row[name] for name in headings] for row in rows], shape)
+
+
 def _word(cell: object) -> object:
     if isinstance(cell, (tuple, list, frozenset)):
         return ", ".join(str(part) for part in cell)

@@ -18,17 +18,7 @@ from hthor.humans.core.behaviour_log import BehaviourRecorder
 from hthor.humans.model import HumanModel
 from hthor.tasks.kind import TaskKind
 from hthor.thinking_time import Decision, Thinking
-from hthor.types import (
-    HUMAN,
-    Action,
-    Briefing,
-    Event,
-    Mind,
-    Observation,
-    Send,
-    TrialSpec,
-    Wait,
-)
+from hthor.types import HUMAN, Action, Briefing, Event, Mind, Observation, Send, TrialSpec, Wait
 
 _T = TypeVar("_T")
 

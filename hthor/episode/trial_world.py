@@ -3,18 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
 
-from hthor.types import (
-    BodySpec,
-    Event,
-    HouseSpec,
-    Motion,
-    Outcome,
-    Pose,
-    Senses,
-    Snapshot,
-    TaskSpec,
-    ThingState,
-)
+from hthor.types import BodySpec, Event, HouseSpec, Motion, Outcome, Pose, Senses, Snapshot, TaskSpec, ThingState
 from hthor.types.sensors import RgbImage
 
 

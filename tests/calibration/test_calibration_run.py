@@ -252,13 +252,13 @@ def test_wrong_input_is_told_before_anything_is_done(tmp_path, monkeypatch):
 
 
 def test_a_folder_that_is_called_like_a_target_is_not_taken_for_logs(tmp_path, monkeypatch):
-    from hthor.commands.calibrate import from_logs
+    from hthor.commands import calibrate
 
     monkeypatch.chdir(tmp_path)
     for name in ("paper", "mine"):
         (tmp_path / name).mkdir()
     asked = []
-    monkeypatch.setattr(from_logs, "run", lambda targets, *_: asked.append(targets))
+    monkeypatch.setattr(calibrate, "_fit_logs", lambda targets, *_: asked.append(targets))
     monkeypatch.setattr(run, "run_calibration", lambda options, _: asked.append(options.targets))
     for name in ("paper", "mine"):
         CliRunner().invoke(app, ["calibrate", "--target", name, "--quiet"])

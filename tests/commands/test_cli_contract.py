@@ -16,7 +16,7 @@ from typer.testing import CliRunner
 
 from hthor import code_identity, houses, plugins, tasks
 from hthor.cli import app
-from hthor.console import completion, completion_values, exit_status
+from hthor.console import completion, exit_status
 from hthor.eval.config import human_populations, robot_team
 from hthor.eval.runner import engines
 from hthor.guest.confinement import LEVELS
@@ -196,25 +196,25 @@ def test_the_shell_completes_values(both: Path) -> None:
 
 
 def test_what_is_offered_is_what_there_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    assert completion_values.agents() == list(plugins.names("agent"))
-    assert completion_values.suites() == list(tasks.suite_names())
-    assert completion_values.houses() == list(houses.names())
-    assert completion_values.engines() == sorted(engines.engine_names())
-    assert completion_values.robots() == sorted((*plugins.names("robot"), *robot_team.ALIASES))
-    assert completion_values.levels() == ["auto", *LEVELS]
+    assert completion.agents() == list(plugins.names("agent"))
+    assert completion.suites() == list(tasks.suite_names())
+    assert completion.houses() == list(houses.names())
+    assert completion.engines() == sorted(engines.engine_names())
+    assert completion.robots() == sorted((*plugins.names("robot"), *robot_team.ALIASES))
+    assert ["auto", *LEVELS] == completion.LEVELS
     loaded = [plugins.load("task kind", name) for name in plugins.names("task kind")]
-    assert completion_values.kinds() == sorted({name for kind in loaded for name in (kind.name, kind.short)})
+    assert completion.kinds() == sorted({name for kind in loaded for name in (kind.name, kind.short)})
     everybody = (*population_file.names(), *kinds.names(), *plugins.names("human model"), *human_populations.WORDS)
-    assert completion_values.people() == sorted(set(everybody))
+    assert completion.people() == sorted(set(everybody))
     names = {param.name for _, one in cli_reference.leaves() for param in one.params}
     assert {offer.rpartition(" ")[2] for offer in completion.OFFERS} <= names
     (tmp_path / "runs" / "one" / "control").mkdir(parents=True)
     for folder in ("one", "one/control"):
         (tmp_path / "runs" / folder / "run.json").write_text("{}")
     monkeypatch.chdir(tmp_path)
-    assert completion_values.runs() == ["runs/one", "runs/one/control"]
-    assert completion_values.runs("runs/o") == completion_values.runs("runs/") == completion_values.runs()
-    assert completion_values.runs("nowhere/") == []
+    assert completion.runs() == ["runs/one", "runs/one/control"]
+    assert completion.runs("runs/o") == completion.runs("runs/") == completion.runs()
+    assert completion.runs("nowhere/") == []
 
 
 @pytest.mark.parametrize(

@@ -100,6 +100,5 @@ def _put(rows: Sequence[dict[str, Any]], json: bool, shape: Format) -> None:
     """Rows as JSON, or as a table."""
     if formats.asks_json(json, shape):
         output.put_json(rows)
-        return
-    headings = list(rows[0]) if rows else ["nothing"]
-    output.put_table(headings, [[row[name] for name in headings] for row in rows], shape)
+    else:
+        output.put_rows(rows, shape=shape)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hthor.commands.options import AgentArgs, Camera, CameraSize, Json, Readable, Run
+from hthor.commands.options import AgentArgs, Camera, CameraSize, Json, Readable, Run, Trial
 from hthor.console import output
 
 if TYPE_CHECKING:
@@ -26,12 +26,7 @@ Isolation = Annotated[
 
 def run(
     run: Run,
-    trial: Annotated[
-        str,
-        typer.Argument(
-            metavar="TRIAL", help="The trial: its key or the start of it, a task id, or a number counted from 0."
-        ),
-    ],
+    trial: Trial,
     agent: Annotated[
         list[str] | None,
         typer.Option(

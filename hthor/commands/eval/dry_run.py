@@ -27,13 +27,9 @@ def show_forecast(options: RunOptions, watcher: Callable[[str], Watcher], contex
     names = [str(one.name) for one in context.command.params if one.name in context.params]
     origins = {name: _origin(context, name) for name in names if name not in _LEFT_OUT}
     found: list[Forecast] = []
-    talk = output.console(talk=True)
-
-    def say(text: str) -> None:
-        output.say(text, talk)
 
     def agree(intent: ResolvedRuns) -> bool:
-        found.append(forecast.make_forecast(options, intent, origins, say))
+        found.append(forecast.make_forecast(options, intent, origins, output.say))
         return False
 
     for _ in experiment.run_experiment(options, watcher, agree):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
@@ -13,7 +14,6 @@ from hthor.console import output
 
 if TYPE_CHECKING:
     from hthor.eval.runner.experiment import FinishedRun
-    from hthor.eval.runner.progress import Watcher
 
 _FAULTS_EXIT = 3
 
@@ -227,12 +227,7 @@ def evaluate(
 
     allowed = run_options.parse_max_faults(max_faults)
     talk = output.console(talk=True)
-
-    def watcher(name: str) -> Watcher:
-        if quiet:
-            return progress.Silent()
-        return progress.Live(talk, name) if output.live() else progress.Plain(talk, name)
-
+    watcher = partial(progress.make_watcher, talk, quiet=quiet, live=output.live())
     options = run_options.RunOptions(
         agents=tuple(agent or ()),
         robots=robots,

@@ -35,11 +35,6 @@ Name = Annotated[
 ]
 
 
-@app.callback()
-def _group() -> None:
-    """Populations, kinds of people and human models."""
-
-
 @app.command("list")
 def list_humans(shape: Shape = Format.TABLE, json: Json = False) -> None:
     """List every population, kind of people and human model that --humans accepts by name."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -12,7 +13,6 @@ from hthor.console import output
 
 if TYPE_CHECKING:
     from hthor.calibration.validation.plan import ValidationOptions
-    from hthor.eval.runner.progress import Watcher
 
 
 def validate(
@@ -70,12 +70,7 @@ def validate(
     from hthor.eval.runner import progress
 
     talk = output.console(talk=True)
-
-    def watcher(title: str) -> Watcher:
-        if quiet:
-            return progress.Silent()
-        return progress.Live(talk, title) if output.live() else progress.Plain(talk, title)
-
+    watcher = partial(progress.make_watcher, talk, quiet=quiet, live=output.live())
     options = ValidationOptions(
         name=name,
         calibration=calibration,
@@ -98,12 +93,9 @@ def validate(
         output.put_json(done.findings)
     for note in done.findings.subject.notes:
         output.say(f"note: {note}", talk)
-    words = f"report: {done.folder}/validation.html, validation.json"
-    output.say(words, talk)
-    failed = criteria.failed_gates(done.findings.gates)
-    if failed:
-        listed = ", ".join(gate.name for gate in failed)
-        output.say(f"not cleared: {listed}.", talk)
+    output.say(f"report: {done.folder}/validation.html, validation.json", talk)
+    if failed := criteria.failed_gates(done.findings.gates):
+        output.say(f"not cleared: {', '.join(gate.name for gate in failed)}.", talk)
         raise typer.Exit(1)
 
 
@@ -123,15 +115,7 @@ def _foretell(options: ValidationOptions, json: bool) -> None:
     output.put_table(
         ("people", "as", "suite", "run", "trials", "played", "time"),
         [
-            (
-                one.word,
-                one.role,
-                one.suite,
-                run.name,
-                run.trials,
-                run.played,
-                dry_run.time(run.seconds) or "unknown",
-            )
+            (one.word, one.role, one.suite, run.name, run.trials, run.played, dry_run.time(run.seconds) or "unknown")
             for one, run in found
         ],
     )

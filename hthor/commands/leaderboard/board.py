@@ -1,6 +1,7 @@
 """`hthor leaderboard`."""
 
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -14,11 +15,6 @@ app = typer.Typer(no_args_is_help=True, help="The files of the leaderboard.")
 Board = Annotated[Path, typer.Option(help="The leaderboard's folder.")]
 BOARD = Path("leaderboard")
 _WRONG_EXIT = 1
-
-
-@app.callback()
-def _group() -> None:
-    """The files of the leaderboard."""
 
 
 @app.command("check")
@@ -66,8 +62,7 @@ def add(
     run: Annotated[Path, typer.Argument(metavar="RUN", help="The folder of a run, or a folder of runs.")],
     board: Board = BOARD,
     submission: Annotated[
-        Path | None,
-        typer.Option(help="The submitted folder or archive of the agent.", show_default=False),
+        Path | None, typer.Option(help="The submitted folder or archive of the agent.", show_default=False)
     ] = None,
     json: Json = False,
 ) -> None:
@@ -84,11 +79,7 @@ def add(
         with submissions.submission_folder(submission) as folder:
             added = enter.add_runs(run, board, submissions.read_submission(folder))
     publish.build_board(board)
-    if json:
-        output.put_json({"entries": [str(path) for _, path in added]})
-        return
-    for _, path in added:
-        sys.stdout.write(f"{path}\n")
+    _put_entries([path for _, path in added], json)
 
 
 @app.command("validate")
@@ -127,12 +118,7 @@ def build(
     if check:
         _tell(publish.differences(board), json, f"{board} agrees with its entries")
         return
-    written = publish.build_board(board)
-    if json:
-        output.put_json({"files": [str(path) for path in written]})
-        return
-    for path in written:
-        sys.stdout.write(f"{path}\n")
+    output.put_files(publish.build_board(board), json)
 
 
 @app.command("rescore")
@@ -143,19 +129,15 @@ def rescore(board: Board = BOARD, json: Json = False) -> None:
 
     changed = rescoring.rescore(board)
     publish.build_board(board)
-    if json:
-        output.put_json({"entries": [str(path) for path in changed]})
-        return
-    for path in changed:
-        sys.stdout.write(f"{path}\n")
-    sys.stderr.write(f"{len(changed)} of {len(list(board.glob('entries/*.json')))} entries have changed\n")
+    _put_entries(changed, json)
+    if not json:
+        sys.stderr.write(f"{len(changed)} of {len(list(board.glob('entries/*.json')))} entries have changed\n")
 
 
 @app.command("open")
 def open_(
     season: Annotated[
-        Path | None,
-        typer.Argument(metavar="[COMMITMENT]", help="The commitment of an official suite to be ranked."),
+        Path | None, typer.Argument(metavar="[COMMITMENT]", help="The commitment of an official suite to be ranked.")
     ] = None,
     board: Board = BOARD,
     json: Json = False,
@@ -175,6 +157,13 @@ def open_(
         written.append(board / files.SUITES / f"{made.name}.json")
         files.write_document(written[1], made)
     output.put_files(written, json)
+
+
+def _put_entries(paths: Sequence[Path], json: bool) -> None:
+    if json:
+        output.put_json({"entries": [str(path) for path in paths]})
+    else:
+        output.put_files(paths, json)
 
 
 def _tell(found: list, json: bool, well: str) -> None:  # type: ignore[type-arg]

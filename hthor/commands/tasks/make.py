@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 from hthor.commands.options import Json
-from hthor.commands.tasks.tasks import put_rows
 from hthor.console import output
 
 if TYPE_CHECKING:
@@ -128,7 +127,7 @@ def check_tasks(
     else:
         for fault in faults:
             sys.stdout.write(f"{fault.task}: {fault.field}: {fault.reason}\n")
-        put_rows(rows)
+        output.put_rows(rows)
     if faults:
         raise typer.Exit(1)
 

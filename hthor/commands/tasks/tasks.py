@@ -26,11 +26,6 @@ Own = Annotated[
 ]
 
 
-@app.callback()
-def _group() -> None:
-    """Tasks and suites of tasks."""
-
-
 @app.command("list")
 def list_tasks(
     suite: Annotated[
@@ -57,14 +52,14 @@ def list_tasks(
             given = next(name for name, value in wanted.items() if value)
             raise typer.BadParameter("name a suite; this option selects among its tasks", param_hint=f"--{given}")
         rows = [_suite_row(rooms.load_suite(name)) for name in rooms.suite_names()]
-        output.put_json(rows) if formats.asks_json(json, shape) else put_rows(rows, ("sha256",), shape)
+        output.put_json(rows) if formats.asks_json(json, shape) else output.put_rows(rows, ("sha256",), shape)
         return
     found = rooms.load_suite(suite)
     rows = [row for row in map(_task_row, found.tasks) if _fits(row, wanted)]
     if formats.asks_json(json, shape):
         output.put_json(rows)
         return
-    put_rows([{name: row[name] for name in _told(rows)} for row in rows], shape=shape)
+    output.put_rows([{name: row[name] for name in _told(rows)} for row in rows], shape=shape)
     part = f"{len(rows)} of " if any(wanted.values()) else ""
     whole = f"{len(found.tasks)} tasks, suite {found.name}, version {found.version}, {found.sha256[:10]}"
     (sys.stdout if shape is Format.TABLE else sys.stderr).write(f"{part}{whole}\n")
@@ -101,7 +96,7 @@ def show_task(task: TaskId, suite: Own = None, json: Json = False) -> None:
     targets = {job.target for job in spec.goal.todo}
     rows = [{"object": _starred(one, targets), "where": _where(one), "x": one.position[0], "y": one.position[1],
              "z": round(one.position[2], 3)} for one in spec.objects]  # fmt: skip
-    put_rows(rows)
+    output.put_rows(rows)
     sys.stdout.write("* what the task is about\n")
     sys.stderr.write(f"next:  hthor tasks draw {spec.id} --out task.png\n")
 
@@ -185,10 +180,3 @@ def _where(placed: Placement) -> str:
 
 def _pose(pose: Any) -> str:
     return f"({pose.x:.2f}, {pose.y:.2f}) m, heading {pose.yaw:.2f} rad"
-
-
-def put_rows(rows: Sequence[dict[str, Any]], short: Sequence[str] = (), shape: Format = Format.TABLE) -> None:
-    """Rows as a table, long hashes cut short."""
-    headings = list(rows[0]) if rows else ["nothing"]
-    cells = [[row[name][:10] if name in short else row[name] for name in headings] for row in rows]
-    output.put_table(headings, cells, shape)

@@ -144,6 +144,13 @@ class Live(Watcher):
             self._bar.stop()
 
 
+def make_watcher(console: Console, name: str, *, quiet: bool, live: bool) -> Watcher:
+    """What follows the progress of a run of this name; ``live`` where somebody watches the console."""
+    if quiet:
+        return Silent()
+    return Live(console, name) if live else Plain(console, name)
+
+
 def _clock(seconds: float) -> str:
     minutes, rest = divmod(round(seconds), 60)
     hours, minutes = divmod(minutes, 60)

@@ -8,7 +8,7 @@ from hthor.eval.task_check import solvability
 from hthor.tasks.generation import custom_suite
 from hthor.tasks.generation.custom_suite import Recipe
 from hthor.tasks.suites.suite_files import HouseSource
-from hthor.types import HouseSpec, TaskSpec
+from hthor.types import TaskSpec
 
 CODE_ROOT = "makers"
 
@@ -25,8 +25,4 @@ def make_tasks(
 
 
 def _column(recipe: Recipe, source: HouseSource) -> tuple[TaskSpec, ...]:
-    return custom_suite.make_tasks(recipe, houses.load(source.given), _possible)
-
-
-def _possible(task: TaskSpec, house: HouseSpec) -> bool:
-    return not solvability.check_task(task, house).faults
+    return custom_suite.make_tasks(recipe, houses.load(source.given), solvability.is_solvable)

@@ -123,6 +123,11 @@ def check_task(task: TaskSpec, house: HouseSpec | HouseLibrary = OURS) -> TaskVe
         return _unsound(task, [("$", str(error))])
 
 
+def is_solvable(task: TaskSpec, house: HouseSpec) -> bool:
+    """Whether nothing is wrong with a task in its house."""
+    return not check_task(task, house).faults
+
+
 def repeated(tasks: Sequence[TaskSpec]) -> list[TaskFault]:
     """A fault for every id that more than one task has."""
     many = Counter(task.id for task in tasks)

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from world_house import TABLE, on, task
 
 from hthor import jsonio, plugins
-from hthor.console import completion_values
+from hthor.console import completion
 from hthor.errors import HthorError, UnknownName
 from hthor.eval.config import cli_command, robot_team, run_config, sessions, task_selection
 from hthor.eval.runner import run_options
@@ -82,7 +82,7 @@ def test_what_is_no_camera_is_refused(name: str, size: str, words: str) -> None:
 
 
 def test_all_names_are_offered() -> None:
-    assert completion_values.cameras() == sorted((cameras.OWN, *cameras.NAMED))
+    assert sorted((cameras.OWN, *cameras.NAMED)) == completion.CAMERAS
 
 
 # --------------------------------------------------------------------------------------------------- projection

@@ -1,12 +1,21 @@
 """`hthor calibrate`."""
 
+from __future__ import annotations
+
+import shlex
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from hthor.commands.options import Json
 from hthor.console import output
+
+if TYPE_CHECKING:
+    from hthor.calibration.from_logs.run import EstimateRow
+
+_FROM_LOGS = Path("calibration") / "logs"
 
 
 def calibrate(
@@ -56,12 +65,11 @@ def calibrate(
     """
     targets = tuple(target or ("paper",))
     if all(_is_log(word) for word in targets):
-        from hthor.commands.calibrate import from_logs
-
+        folder = out or _FROM_LOGS
         if dry_run:
-            _foretell({"targets": list(targets), "prior": prior, "folder": str(out or from_logs.OUT)}, json)
-            return
-        from_logs.run(targets, prior, out, json)
+            _foretell({"targets": list(targets), "prior": prior, "folder": str(folder)}, json)
+        else:
+            _fit_logs(targets, prior, folder, json)
         return
     from hthor.calibration.pipeline import config, run
 
@@ -129,3 +137,41 @@ def _is_log(target: str) -> bool:
     from hthor.calibration import targets
 
     return target not in targets.target_names() and (Path(target).is_dir() or target.endswith(".jsonl"))
+
+
+def _fit_logs(targets: Sequence[str], prior: str, folder: Path, json: bool) -> None:
+    """Estimate parameters from logs, and update a population with them."""
+    from hthor.calibration.from_logs import run
+
+    talk = output.console(talk=True)
+
+    def tell(what: str) -> None:
+        if not json:
+            talk.print(f"estimating: {what}" if what not in ("reading", "updating") else f"{what} ...", highlight=False)
+
+    found, _ = run.estimate_from_logs([Path(word) for word in targets], prior, folder, tell)
+    if json:
+        output.put_json(found)
+        return
+    output.put_table(("parameter", "before", "after", "estimate", "data", "how"), [_cells(row) for row in found.rows])
+    output.put_line(f"{found.trials} trials, {found.sessions} sessions, {found.people} people; before: {found.prior}.")
+    for note in found.notes:
+        output.put_line(note)
+    output.put_line(f"files: {folder}/population.json, population.npz, estimates.json")
+    output.put_line(f"next:  hthor eval --humans {shlex.quote(str(folder))}/population.npz --agent frontier")
+
+
+def _cells(row: EstimateRow) -> tuple[str, ...]:
+    one = row.estimate
+    name = f"{row.name} [{row.unit}]" if row.unit else row.name
+    before, after = (
+        f"{middle:.3g} ({low:.3g} … {high:.3g})"
+        for middle, low, high in (
+            (row.before, row.before_low, row.before_high),
+            (row.after, row.after_low, row.after_high),
+        )
+    )
+    if one is None:
+        return name, before, after, "–", "–", "no direct measure; weighted by the others"
+    how = one.method if one.words == "estimated" else f"{one.words}; {one.method}"
+    return name, before, after, f"{one.value:.3g} ({one.low:.3g} … {one.high:.3g})", str(one.n), how

@@ -1,1 +1,0 @@
-"""`hthor calibrate`."""
