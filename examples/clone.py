@@ -24,7 +24,7 @@ from hthor.errors import HthorError
 from hthor.eval.records import trial_log
 from hthor.humans.population import resolve
 from hthor.humans.population.parameters import Parameters
-from hthor.humans.population.random_effects import with_practice
+from hthor.humans.population.participant import with_practice
 from hthor.humans.search.option_choice import DOORWAY_S, SETTLE_S
 from hthor.types import TrialSpec
 

@@ -97,7 +97,7 @@ def test_a_session_is_what_an_evaluation_would_have_played():
     """The same person out of the same population meets the same trials, whoever asks."""
     from hthor.episode import run_episode
     from hthor.humans.models.proxy import Model
-    from hthor.humans.population import random_effects
+    from hthor.humans.population import participant
     from hthor.humans.population.participant import Participant, participant_root
 
     point = design_points.sobol_points(1, len(parameter_registry.free_parameter_names()), 0, "x")[0]
@@ -106,7 +106,7 @@ def test_a_session_is_what_an_evaluation_would_have_played():
     rows = list(session_simulation.run_session(one, TINY, seats, stage))
 
     dealt = make_sessions(TINY, agent="frontier", seed=5, participants=1)[0]
-    traits = random_effects.add_random_effects(parameter_registry.parameters_at(point.tolist()), participant_root(5, 0))
+    traits = participant.add_random_effects(parameter_registry.parameters_at(point.tolist()), participant_root(5, 0))
     human, logs = Model(Participant(seed=5, number=0, traits=traits)), []
     with stage.enter(dealt) as company:
         for trial in dealt.trials:

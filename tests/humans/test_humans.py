@@ -15,7 +15,7 @@ from hthor.humans.communication.trust import Experience, Trust, initial_trust
 from hthor.humans.memory import location_priors
 from hthor.humans.memory.spatial_memory import SpatialMemory
 from hthor.humans.models.proxy import Model
-from hthor.humans.population import random_effects
+from hthor.humans.population import participant
 from hthor.humans.population.parameters import Parameters
 from hthor.humans.population.participant import Participant
 from hthor.types import HUMAN, Action, Detection, Message, Move, Observation, Outcome, Pick, Pose, Receipt, Rotate
@@ -67,14 +67,14 @@ def test_a_person_continues_from_their_state():
 
 
 def test_traits_are_spread_around_the_population():
-    paces = [random_effects.add_random_effects(TRAITS, seeds.derive(0, k)).v_pace for k in range(400)]
+    paces = [participant.add_random_effects(TRAITS, seeds.derive(0, k)).v_pace for k in range(400)]
     logs = [math.log(pace / TRAITS.v_pace) for pace in paces]
     assert abs(sum(logs) / 400) < 0.03
     assert math.sqrt(sum(value * value for value in logs) / 400) == pytest.approx(0.5 * TRAITS.sigma, rel=0.15)
 
 
 def test_practice_makes_brisk():
-    paces = [random_effects.with_practice(TRAITS, index).v_pace for index in range(10)]
+    paces = [participant.with_practice(TRAITS, index).v_pace for index in range(10)]
     assert paces == sorted(paces)
     assert paces[0] == TRAITS.v_pace
     assert paces[-1] < TRAITS.v_pace * (1 + TRAITS.learn)

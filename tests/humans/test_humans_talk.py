@@ -12,16 +12,16 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hthor import seeds
-from hthor.humans.communication import accept_decision, time_saving
+from hthor.humans.behaviours import follow_message
+from hthor.humans.communication import accept_decision
 from hthor.humans.communication.message_reading import MessageReader, is_same_message
 from hthor.humans.core import policy
 from hthor.humans.core.policy import Offer
 from hthor.humans.core.trial_context import HumanContext
 from hthor.humans.models.proxy import Model
-from hthor.humans.perception import wall_occlusion
 from hthor.humans.population.parameters import Parameters
 from hthor.humans.population.participant import Participant
-from hthor.humans.search.option import Option
+from hthor.humans.search.option_description import Option
 from hthor.navigation.grid_map import GridMap
 from hthor.types import HUMAN, Briefing, Message, Observation, Pose, Scan
 
@@ -223,17 +223,19 @@ def option(name, belief, seconds, kappa=TRAITS.kappa):
 
 
 def test_a_sure_thing_takes_its_time():
-    assert time_saving.expected_search_time([option("a", 1.0, 7.0)], 90.0, TRAITS.kappa) == pytest.approx(7.0)
+    assert accept_decision.expected_search_time([option("a", 1.0, 7.0)], 90.0, TRAITS.kappa) == pytest.approx(7.0)
 
 
 def test_a_search_is_reckoned_in_its_order():
-    found = time_saving.expected_search_time([option("far", 0.5, 20.0), option("near", 0.5, 5.0)], 90.0, TRAITS.kappa)
+    found = accept_decision.expected_search_time(
+        [option("far", 0.5, 20.0), option("near", 0.5, 5.0)], 90.0, TRAITS.kappa
+    )
     assert found == pytest.approx(0.5 * 5.0 + 0.5 * 25.0)
 
 
 def test_what_is_nowhere_takes_all_that_is_left():
-    assert time_saving.expected_search_time([], 40.0, TRAITS.kappa) == 40.0
-    assert time_saving.expected_search_time([option("a", 0.25, 10.0)], 40.0, TRAITS.kappa) == pytest.approx(
+    assert accept_decision.expected_search_time([], 40.0, TRAITS.kappa) == 40.0
+    assert accept_decision.expected_search_time([option("a", 0.25, 10.0)], 40.0, TRAITS.kappa) == pytest.approx(
         0.25 * 10.0 + 0.75 * 40.0
     )
 
@@ -241,7 +243,7 @@ def test_what_is_nowhere_takes_all_that_is_left():
 @given(st.lists(st.tuples(st.floats(0, 1), st.floats(1, 60)), max_size=12), st.floats(0, 90))
 def test_no_search_takes_longer_than_is_left(parts, left):
     options = [option(str(k), belief, seconds) for k, (belief, seconds) in enumerate(parts)]
-    assert 0.0 <= time_saving.expected_search_time(options, left, TRAITS.kappa) <= left + 1e-9
+    assert 0.0 <= accept_decision.expected_search_time(options, left, TRAITS.kappa) <= left + 1e-9
 
 
 # -------------------------------------------------------------------------------------------------------------- follow
@@ -275,10 +277,10 @@ def walled():
 
 def test_walls_hide_and_furniture_does_not():
     grid = walled()
-    behind = wall_occlusion.Walls(grid, (2.5, 0.0), 1.5)
+    behind = follow_message.Walls(grid, (2.5, 0.0), 1.5)
     assert behind.hide((1.2, 0.1))
     assert not behind.hide((3.4, 0.3))
-    over = wall_occlusion.Walls(grid, (0.0, 2.5), 1.5)
+    over = follow_message.Walls(grid, (0.0, 2.5), 1.5)
     assert not over.hide((0.1, 1.2))
 
 

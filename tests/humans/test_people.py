@@ -27,13 +27,12 @@ from hthor.eval.results import result_file
 from hthor.eval.runner import experiment, progress, run_options, trial_runner
 from hthor.eval.runner.sources import Sources
 from hthor.humans.population import (
-    bounds,
     describe,
     kinds,
     parameter_registry,
+    parameters,
     participant,
     population_file,
-    random_effects,
     resolve,
 )
 from hthor.humans.population.parameters import Parameters
@@ -210,11 +209,11 @@ def test_every_kind_changes_what_it_says_and_gives_its_reasons(name: str):
     new = kind.change(means)
     for parameter, value in msgspec.structs.asdict(means).items():
         assert (getattr(new, parameter) != value) == (parameter in changed), parameter
-        assert bounds.range_problem(parameter, getattr(new, parameter)) == ""
+        assert parameters.range_problem(parameter, getattr(new, parameter)) == ""
     for number in range(12):  # the same person but for that: draw and random effects are theirs
         was, now = base.participant(0, number).traits, ours.participant(0, number).traits
-        same = [name for name in bounds.parameter_names() if getattr(was, name) == getattr(now, name)]
-        assert set(bounds.parameter_names()) - set(same) <= changed
+        same = [name for name in parameters.parameter_names() if getattr(was, name) == getattr(now, name)]
+        assert set(parameters.parameter_names()) - set(same) <= changed
         if "v_pace" in changed:
             factor = kind.change(means).v_pace / means.v_pace
             assert now.v_pace == pytest.approx(was.v_pace * factor)
@@ -227,16 +226,16 @@ def test_the_kinds_of_the_issue_are_there():
 
 
 @given(
-    st.sampled_from(bounds.parameter_names()),
+    st.sampled_from(parameters.parameter_names()),
     st.sampled_from(["add", "times", "set"]),
     st.floats(-1e5, 1e5),
     st.floats(0, 1),
 )
 def test_a_change_never_leaves_the_range(name: str, verb: Any, value: float, share: float):
-    low, high = bounds.parameter_range(name)
+    low, high = parameters.parameter_range(name)
     start = low + (min(high, 1e3) - low) * share
     change = kinds.ParameterEdit(parameter=name, verb=verb, value=value, reason="")
-    assert bounds.range_problem(name, change.apply(start)) == ""
+    assert parameters.range_problem(name, change.apply(start)) == ""
 
 
 def test_a_kind_that_is_no_good_is_named_with_its_field(files: Path):
@@ -298,7 +297,7 @@ def test_a_participant_of_a_population_is_the_same_person_in_any_order():
     who = found.participant(1, 3)
     assert who.root == participant.participant_root(1, 3)
     row = found.population.pick(1, 3)
-    assert who.traits == random_effects.add_random_effects(
+    assert who.traits == participant.add_random_effects(
         found.population.parameters(row), who.root, found.population.specs
     )
 

@@ -23,12 +23,12 @@ from hthor import seeds
 from hthor.errors import HthorError
 from hthor.humans.core.policy import Offer, OptionDescription, Situation
 from hthor.humans.llm import backends, policy, prompts
-from hthor.humans.llm.response_cache import ResponseCache
+from hthor.humans.llm.policy import ResponseCache
 from hthor.humans.models import proxy
 from hthor.humans.population.parameters import Parameters
 from hthor.humans.population.participant import Participant
 from hthor.humans.search import option_description
-from hthor.humans.search.option import Option
+from hthor.humans.search.option_description import Option
 from hthor.types import HUMAN, Message
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "examples"))

@@ -19,13 +19,12 @@ from hypothesis import strategies as st
 from hthor import seeds
 from hthor.errors import HthorError, PopulationError, UnknownName
 from hthor.humans.population import (
-    bounds,
     distributions,
     parameter_registry,
+    parameters,
     participant,
     population_file,
     prior_population,
-    random_effects,
 )
 from hthor.humans.population.parameters import Parameters
 from hthor.humans.population.population import Population, Validity
@@ -56,7 +55,7 @@ def test_weights_add_up_and_what_weighs_nothing_is_never_drawn():
 def test_a_participant_is_a_draw_and_random_effects_upon_it():
     few = made()
     row = few.pick(3, 5)
-    assert few.draw_traits(3, 5) == random_effects.add_random_effects(
+    assert few.draw_traits(3, 5) == participant.add_random_effects(
         few.parameters(row), participant.participant_root(3, 5), few.specs
     )
     assert few.draw_traits(3, 5) != few.parameters(row)
@@ -114,7 +113,7 @@ def test_the_cube_and_the_units_are_one_to_one(point: list[float]):
     assert not [
         text
         for name, x in zip(parameter_registry.free_parameter_names(), values[0], strict=True)
-        if (text := bounds.range_problem(name, x))
+        if (text := parameters.range_problem(name, x))
     ]
 
 
@@ -147,14 +146,14 @@ def test_values_out_of_range_are_refused(column: int, value: float):
 
 
 def test_every_parameter_has_a_range_that_holds_its_default():
-    assert set(bounds.parameter_names()) >= set(parameter_registry.free_parameter_names())
-    for name in bounds.parameter_names():
-        assert bounds.range_problem(name, getattr(Parameters(), name)) == ""
-        low, high = bounds.parameter_range(name)
-        assert bounds.clamp(name, low - 1.0) == low
-        assert bounds.clamp(name, high + 1.0) == high
-    for group in (bounds._POSITIVE, bounds._SHARES, bounds._SIGNALS, bounds._LOGITS):
-        assert set(group) <= set(bounds.parameter_names())
+    assert set(parameters.parameter_names()) >= set(parameter_registry.free_parameter_names())
+    for name in parameters.parameter_names():
+        assert parameters.range_problem(name, getattr(Parameters(), name)) == ""
+        low, high = parameters.parameter_range(name)
+        assert parameters.clamp(name, low - 1.0) == low
+        assert parameters.clamp(name, high + 1.0) == high
+    for group in (parameters._POSITIVE, parameters._SHARES, parameters._SIGNALS, parameters._LOGITS):
+        assert set(group) <= set(parameters.parameter_names())
 
 
 # ------------------------------------------------------------------------------------------------------------ files
@@ -213,7 +212,7 @@ def test_the_json_file_says_what_each_column_is(tmp_path: Path):
     assert pace["prior"]["type"] == "log-uniform"
     assert pace["level"] == "population and person"
     assert {"effect", "scale", "grade", "source", "fitted", "contraction", "meaning"} <= set(pace)
-    assert set(document["fixed"]) == set(bounds.parameter_names()) - set(NAMES)
+    assert set(document["fixed"]) == set(parameters.parameter_names()) - set(NAMES)
     assert {"simulation", "mind", "rules_sha256", "suite_sha256", "targets_sha256", "settings"} <= set(
         document["validity"]
     )
@@ -326,4 +325,4 @@ def test_every_population_that_ships_loads_and_draws(name: str):
     assert held.purpose
     for index in range(50):
         for parameter, value in msgspec.structs.asdict(held.draw_traits(seeds.derive(0, name), index)).items():
-            assert bounds.range_problem(parameter, value) == ""
+            assert parameters.range_problem(parameter, value) == ""

@@ -86,14 +86,9 @@ def _parameters(stages: CalibrationStages, population: Population) -> tuple[Para
     column_of = {name: number for number, name in enumerate(checked.names)}
     return tuple(
         ParameterFinding(
-            name=spec.name,
-            unit=spec.unit,
-            meaning=spec.meaning,
-            grade=spec.grade,
-            fitted=spec.fitted,
+            **{name: getattr(spec, name) for name in ("name", "unit", "meaning", "grade", "fitted", "contraction")},
             prior=band([spec.prior.quantile(share) for share in BAND90]),
             posterior=band(posterior[:, number]),
-            contraction=spec.contraction,
             recovery=float(checked.recovery[column_of[spec.name]]),
             coverage=float(checked.covered[column_of[spec.name]]),
             ranks=checked.histogram(column_of[spec.name]) if spec.fitted else (),

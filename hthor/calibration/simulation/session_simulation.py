@@ -1,6 +1,6 @@
 """One participant's session in the simulated world, run for its outcomes alone.
 
-A person is drawn from the population at a point of the prior's cube, as `hthor.humans.population.random_effects` draws
+A person is drawn from the population at a point of the prior's cube, as `hthor.humans.population.participant` draws
 people, and does ten tasks one after the other with the robot of a condition, or without one.
 """
 
@@ -16,9 +16,9 @@ from hthor.eval.runner.messages import TrialOutcome
 from hthor.eval.runner.sources import Sources
 from hthor.eval.runner.trial_runner import TrialRunner
 from hthor.humans.models.proxy import Model
-from hthor.humans.population import parameter_registry, random_effects
+from hthor.humans.population import parameter_registry
 from hthor.humans.population.parameters import Parameters
-from hthor.humans.population.participant import Participant, participant_root
+from hthor.humans.population.participant import Participant, add_random_effects, participant_root
 from hthor.tasks import Suite
 from hthor.types import HUMAN, RobotSeat, TaskSpec, TrialSpec
 
@@ -100,7 +100,7 @@ def run_session(
 def run_trials(trials: Sequence[TrialSpec], population: Parameters, runner: TrialRunner) -> Iterator[EpisodeLog]:
     """Run the trials of one session with a person drawn from the population; the log of each."""
     seed, participant = trials[0].seed, trials[0].participant
-    traits = random_effects.add_random_effects(population, participant_root(seed, participant))
+    traits = add_random_effects(population, participant_root(seed, participant))
     human = Model(Participant(seed=seed, number=participant, traits=traits))
     agents = {seat.seat: plugins.load("agent", seat.agent.name)() for seat in trials[0].robots}
     for trial in trials:

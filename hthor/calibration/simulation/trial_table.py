@@ -18,6 +18,7 @@ from msgspec import Struct
 from hthor import jsonio, rules
 from hthor.errors import RunError
 from hthor.eval.metrics.definitions import success
+from hthor.humans.population.population import encode_npz
 from hthor.tasks import Suite
 
 Array = np.ndarray
@@ -48,7 +49,6 @@ _TYPES: dict[str, str] = {
 }
 COLUMNS = tuple(_TYPES)
 """Names of the columns that have an entry per trial."""
-_EPOCH = (1980, 1, 1, 0, 0, 0)
 
 
 class Table(Struct, frozen=True, kw_only=True, eq=False):
@@ -139,19 +139,8 @@ def twsr(table: Table, t_star: Array) -> Array:
 def save_table(path: Path, table: Table) -> None:
     """Write a table as NPZ; equal tables give equal bytes."""
     columns = {name: getattr(table, name) for name in COLUMNS}
-    jsonio.write(path, encode_npz({"names": np.array(table.names), "points": table.points, **columns}))
-
-
-def encode_npz(arrays: dict[str, Array]) -> bytes:
-    """Arrays as an NPZ file's bytes, without the time of writing that numpy would put into it."""
-    out = io.BytesIO()
-    with zipfile.ZipFile(out, "w") as archive:
-        for name, array in arrays.items():
-            part = io.BytesIO()
-            np.lib.format.write_array(part, np.ascontiguousarray(array), allow_pickle=False)
-            entry = zipfile.ZipInfo(f"{name}.npy", date_time=_EPOCH)
-            archive.writestr(entry, part.getvalue(), zipfile.ZIP_DEFLATED, 6)
-    return out.getvalue()
+    arrays = {"names": np.array(table.names), "points": table.points, **columns}
+    jsonio.write(path, encode_npz(arrays, zipfile.ZIP_DEFLATED))
 
 
 def load_table(path: Path) -> Table:

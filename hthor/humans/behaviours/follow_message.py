@@ -7,6 +7,8 @@ wrong from memory; what reading the map costs is in the pace (``k_map``) and in 
 import math
 from functools import partial
 
+import numpy as np
+
 from hthor.geometry.plane import wrap
 from hthor.humans.core.trial_context import Behaviour, HumanContext
 from hthor.humans.memory.spatial_memory import KnownPlace, SpatialMemory
@@ -14,9 +16,8 @@ from hthor.humans.motor import viewpoints
 from hthor.humans.motor.approach import TRIED_M
 from hthor.humans.motor.locomotion import Walker
 from hthor.humans.perception.perception import Eyes
-from hthor.humans.perception.wall_occlusion import Walls
 from hthor.humans.search.exploration import Exploration
-from hthor.navigation.grid_map import FREE
+from hthor.navigation.grid_map import CELL_M, FREE, GridMap
 from hthor.types import Vec2, Vec3
 
 _REACH_M = 1.14
@@ -33,6 +34,10 @@ _MAX_TRIES = 12
 """[count] Choices of a spot after which the message is given up. Our choice."""
 _GLANCE_S = 0.6
 """[s] A glance that recognises what stands at the position. Our choice."""
+_THICK_M = 0.6 * CELL_M
+"""[m] Half the thickness of a wall on the map. Our choice: a little more than half a cell."""
+_SHORT_M = 0.02
+"""[m] Walls this close to either end of the line do not count. Our choice."""
 
 
 class MessageFollowing:
@@ -139,3 +144,28 @@ class MessageFollowing:
         new = [spot for spot in new if self.walker.grid.at(*spot) == FREE] or new
         ((way, number),) = self.walker.planner.nearest(self.human.here, [new])
         return new[number] if math.isfinite(way) and way <= most else None
+
+
+class Walls:
+    """The walls on the map within ``reach`` metres of ``point`` [m].
+
+    People look over a counter and past a lamp, but not through a wall: only what reaches higher than any furniture
+    counts.
+    """
+
+    def __init__(self, grid: GridMap, point: Vec2, reach: float) -> None:
+        self.point = point
+        met = grid.obstacles
+        walls = (met[met[:, 2] == 0, :2] + 0.5) * CELL_M - point
+        self._offsets = walls[np.abs(walls).max(axis=1) <= reach] if len(walls) else walls
+
+    def hide(self, spot: Vec2) -> bool:
+        """Whether one of them is between the point and ``spot`` [m]."""
+        dx, dy = spot[0] - self.point[0], spot[1] - self.point[1]
+        apart = math.hypot(dx, dy)
+        if apart <= _SHORT_M or not len(self._offsets):
+            return False
+        ux, uy = dx / apart, dy / apart
+        along = self._offsets[:, 0] * ux + self._offsets[:, 1] * uy
+        off = np.abs(self._offsets[:, 1] * ux - self._offsets[:, 0] * uy)
+        return bool(((along > _SHORT_M) & (along < apart) & (off < _THICK_M)).any())

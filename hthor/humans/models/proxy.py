@@ -4,8 +4,8 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from hthor.humans.behaviours.behaviours import Behaviours
+from hthor.humans.communication.accept_decision import time_saved
 from hthor.humans.communication.interpretation import Advice, AdviceTracker
-from hthor.humans.communication.time_saving import time_saved
 from hthor.humans.communication.trust import Trust, initial_trust
 from hthor.humans.core.policy import Policy
 from hthor.humans.core.trial_context import Behaviour, HumanContext
@@ -16,8 +16,7 @@ from hthor.humans.models._dialogue import Dialogue
 from hthor.humans.models._goal_arbitration import BEGIN, REST, SEARCH, Goal, GoalArbiter
 from hthor.humans.motor.locomotion import Walker
 from hthor.humans.perception.perception import GLIMPSE_TICKS, Eyes
-from hthor.humans.population.participant import Participant
-from hthor.humans.population.random_effects import with_practice
+from hthor.humans.population.participant import Participant, with_practice
 from hthor.types import Action, Briefing, Event, Motion, Observation, Reply, Vec2, Wait
 
 _RESTARTS = 2

@@ -11,9 +11,8 @@ as well: the exposure, a measure of how thoroughly it was searched.
 import math
 
 from hthor.humans.core.trial_context import HumanContext
-from hthor.humans.memory.forgetting import Forgetting
 from hthor.humans.memory.location_priors import receptacle_kinds
-from hthor.humans.memory.object_memory import KnownObject, ObjectMemory
+from hthor.humans.memory.object_memory import Forgetting, KnownObject, ObjectMemory
 from hthor.humans.memory.spatial_memory import KnownPlace, SpatialMemory
 from hthor.humans.perception.detection_rate import Head, PlaceDetection, apparent_size, detection_rate, expected_size
 from hthor.humans.perception.exposure_log import ExposureLog, Glimpse

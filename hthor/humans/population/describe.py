@@ -12,6 +12,8 @@ from hthor.humans.population.parameter_registry import Grade
 from hthor.humans.population.population import Population, Validity
 from hthor.humans.population.resolve import ParticipantSource
 
+_COPIED = ("fixed", "statistics", "design_effects", "figures", "notes", "validity", "seed", "command")
+_COPIED_OF_COLUMN = ("name", "unit", "meaning", "prior", "fitted", "grade", "contraction", "source")
 QUANTILES = (0.05, 0.5, 0.95)
 """[probability] Quantiles of every described distribution. Our choice: median and 90 % interval."""
 
@@ -93,14 +95,7 @@ def describe_population(source: ParticipantSource) -> PopulationDescription:
         draws=len(population.draws),
         effective_draws=round(population.ess, 1),
         traits=_parameters(population),
-        fixed=population.fixed,
-        statistics=population.statistics,
-        design_effects=population.design_effects,
-        figures=population.figures,
-        notes=population.notes,
-        validity=population.validity,
-        seed=population.seed,
-        command=population.command,
+        **{name: getattr(population, name) for name in _COPIED},
     )
 
 
@@ -134,12 +129,9 @@ def _changes(source: ParticipantSource, after: Population) -> tuple[ParameterCha
     before, now = source.population.mean(), after.mean()
     return tuple(
         ParameterChange(
-            parameter=change.parameter,
-            verb=change.verb,
-            value=change.value,
+            **msgspec.structs.asdict(change),
             before=getattr(before, change.parameter),
             after=getattr(now, change.parameter),
-            reason=change.reason,
         )
         for change in source.kind.changes
     )
@@ -149,20 +141,13 @@ def _parameters(population: Population) -> tuple[ParameterDescription, ...]:
     mean, quantiles = population.mean(), population.quantiles(QUANTILES)
     return tuple(
         ParameterDescription(
-            name=spec.name,
-            unit=spec.unit,
-            meaning=spec.meaning,
+            **{name: getattr(spec, name) for name in _COPIED_OF_COLUMN},
             mean=getattr(mean, spec.name),
             quantiles=tuple(quantiles[:, column].tolist()),
-            prior=spec.prior,
             prior_quantiles=tuple(spec.prior.quantile(level) for level in QUANTILES),
             person_sd=spec.effect * mean.sigma,
             scale=spec.scale if spec.effect else "",
-            fitted=spec.fitted,
-            grade=spec.grade,
-            contraction=spec.contraction,
             says=spec.word,
-            source=spec.source,
         )
         for column, spec in enumerate(population.specs)
     )

@@ -20,7 +20,7 @@ from msgspec import Struct
 from numpy.typing import NDArray
 
 from hthor import jsonio, rules, seeds
-from hthor.humans.population import bounds, parameter_registry, participant, random_effects
+from hthor.humans.population import parameter_registry, parameters, participant
 from hthor.humans.population.distributions import Prior
 from hthor.humans.population.parameter_registry import Grade
 from hthor.humans.population.parameters import Parameters
@@ -32,8 +32,6 @@ IDENTIFIED_FROM = 0.4
 that is called identified. Our choice."""
 WEAKLY_IDENTIFIED_FROM = 0.1
 """[ratio] Least contraction of a parameter that is called weakly identified. Our choice: sampling makes some .05."""
-_EARLIEST = (1980, 1, 1, 0, 0, 0)
-"""[date] That of every file in an archive, so that equal populations are equal bytes. Source: the ZIP format."""
 
 
 class PopulationColumn(Struct, frozen=True, kw_only=True):
@@ -183,7 +181,13 @@ class Population(Struct, frozen=True, kw_only=True, eq=False, dict=True):
     @cached_property
     def arrays(self) -> bytes:
         """The NPZ file's bytes."""
-        return _pack(self.names, self.draws, self.log_weight)
+        return encode_npz(
+            {
+                "draws": self.draws.astype("<f8"),
+                "log_weight": self.log_weight.astype("<f8"),
+                "names": np.array(self.names, dtype="<U32"),
+            }
+        )
 
     @cached_property
     def sha256(self) -> str:
@@ -214,7 +218,7 @@ class Population(Struct, frozen=True, kw_only=True, eq=False, dict=True):
             change: applied to the draw first, for a kind of people.
         """
         mean = self.parameters(self.pick(seed, index))
-        return random_effects.add_random_effects(
+        return participant.add_random_effects(
             change(mean) if change else mean, participant.participant_root(seed, index), self.specs
         )
 
@@ -236,19 +240,14 @@ class Population(Struct, frozen=True, kw_only=True, eq=False, dict=True):
         return list(np.cumsum(self.weights).tolist())
 
 
-def _pack(names: tuple[str, ...], draws: Floats, log_weight: Floats) -> bytes:
-    """An NPZ archive of these arrays, always the same bytes: stored, and without a date."""
-    arrays = {
-        "draws": draws.astype("<f8"),
-        "log_weight": log_weight.astype("<f8"),
-        "names": np.array(names, dtype="<U32"),
-    }
+def encode_npz(arrays: Mapping[str, NDArray[Any]], compression: int = zipfile.ZIP_STORED) -> bytes:
+    """Arrays as an NPZ file's bytes, without the time of writing that numpy would put into it."""
     file = io.BytesIO()
-    with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
+    with zipfile.ZipFile(file, "w") as archive:
         for name, array in arrays.items():
             member = io.BytesIO()
             np.lib.format.write_array(member, np.ascontiguousarray(array), version=(1, 0), allow_pickle=False)
-            archive.writestr(zipfile.ZipInfo(f"{name}.npy", _EARLIEST), member.getvalue())
+            archive.writestr(zipfile.ZipInfo(f"{name}.npy"), member.getvalue(), compression)
     return file.getvalue()
 
 
@@ -262,7 +261,7 @@ def array_problem(names: Sequence[str], draws: Floats, log_weight: Floats) -> tu
         return "log_weight", "every weight must be a number below infinity, and one at least above minus infinity"
     for column, name in enumerate(names):
         for row in np.unique([draws[:, column].argmin(), draws[:, column].argmax()]).tolist():
-            if problem := bounds.range_problem(name, float(draws[row, column])):
+            if problem := parameters.range_problem(name, float(draws[row, column])):
                 return f"draws[{row}].{name}", problem
     return None
 
@@ -274,15 +273,7 @@ def _spec(name: str, values: Floats, log_weight: Floats) -> PopulationColumn:
     weight, quantiles = np.exp(log_weight), np.array([known.prior.cdf(value) for value in values.tolist()])
     mean = float(weight @ quantiles)
     return PopulationColumn(
-        name=name,
-        unit=known.unit,
-        meaning=known.meaning,
-        prior=known.prior,
+        **msgspec.structs.asdict(known),
         level="population and person" if known.effect else "population",
-        effect=known.effect,
-        scale=known.scale,
-        fitted=known.fitted,
-        grade=known.grade,
-        source=known.source,
         contraction=round(1.0 - 12.0 * float(weight @ (quantiles - mean) ** 2), 4),
     )

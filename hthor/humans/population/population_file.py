@@ -15,7 +15,7 @@ from msgspec import Struct
 
 from hthor import documents, jsonio
 from hthor.errors import PopulationError, UnknownName
-from hthor.humans.population import bounds, prior_population
+from hthor.humans.population import parameters, prior_population
 from hthor.humans.population.parameters import Parameters
 from hthor.humans.population.population import Population, PopulationColumn, Validity, array_problem
 
@@ -60,6 +60,10 @@ class Document(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     arrays: Arrays
 
 
+_SHARED = tuple(name for name in Document.__struct_fields__ if name not in ("schema", "parameters", "arrays"))
+"""Fields that are in a `Population` by the same name."""
+
+
 def names() -> tuple[str, ...]:
     """The populations that ship with hthor."""
     return tuple(sorted({PRIOR_POPULATION, *(population_name(path.stem) for path in FOLDER.glob("*.json"))}))
@@ -91,17 +95,8 @@ def save_population(population: Population, path: Path) -> Path:
     path = path.with_suffix("") if path.suffix in (".npz", ".json") else path
     data = population.arrays
     document = Document(
-        name=population.name,
-        purpose=population.purpose,
+        **{name: getattr(population, name) for name in _SHARED},
         parameters=population.specs,
-        fixed=population.fixed,
-        statistics=population.statistics,
-        design_effects=population.design_effects,
-        figures=population.figures,
-        notes=population.notes,
-        validity=population.validity,
-        seed=population.seed,
-        command=population.command,
         arrays=Arrays(
             draws=len(population.draws), effective=round(population.ess, 3), sha256=_sha256(population.arrays)
         ),
@@ -123,7 +118,7 @@ def _read(path: Path) -> Population:
     numbers = path.with_suffix(".npz")
     draws, log_weight = _arrays(numbers, document)
     columns = [spec.name for spec in document.parameters]
-    known = bounds.parameter_names()
+    known = parameters.parameter_names()
     given = (*columns, *document.fixed)
     for field, name in (*(("parameters", name) for name in columns), *(("fixed", name) for name in document.fixed)):
         if name not in known:
@@ -133,7 +128,7 @@ def _read(path: Path) -> Population:
         if given.count(name) > 1:
             raise PopulationError(str(path), field, f"'{name}' is there twice")
     for name, value in document.fixed.items():
-        if problem := bounds.range_problem(name, value):
+        if problem := parameters.range_problem(name, value):
             raise PopulationError(str(path), f"fixed.{name}", problem)
     if bad := array_problem(columns, draws, log_weight):
         raise PopulationError(str(numbers), *bad)
@@ -142,22 +137,9 @@ def _read(path: Path) -> Population:
     if abs(total - 1.0) > _ROUNDING:
         raise PopulationError(str(numbers), "log_weight", f"the weights add up to {total:g}; expected 1")
     missing = tuple(name for name in known if name not in given)
-    return Population(
-        name=document.name,
-        purpose=document.purpose,
-        specs=document.parameters,
-        draws=draws,
-        log_weight=log_weight,
-        fixed={**document.fixed, **{name: getattr(Parameters(), name) for name in missing}},
-        seed=document.seed,
-        command=document.command,
-        statistics=document.statistics,
-        design_effects=document.design_effects,
-        figures=document.figures,
-        notes=document.notes,
-        validity=document.validity,
-        missing=missing,
-    )
+    shared = {name: getattr(document, name) for name in _SHARED}
+    shared["fixed"] = {**document.fixed, **{name: getattr(Parameters(), name) for name in missing}}
+    return Population(**shared, specs=document.parameters, draws=draws, log_weight=log_weight, missing=missing)
 
 
 def _document(path: Path) -> Document:

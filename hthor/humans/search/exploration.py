@@ -10,8 +10,8 @@ from hthor.humans.memory.spatial_memory import KnownPlace, SpatialMemory
 from hthor.humans.motor.locomotion import Walker, never
 from hthor.humans.motor.manipulation import Hands
 from hthor.humans.perception.perception import Eyes
-from hthor.humans.search.option import Option
 from hthor.humans.search.option_choice import OptionChoice
+from hthor.humans.search.option_description import Option
 from hthor.navigation.frontier import frontiers
 from hthor.types import Motion, Open, Vec2, Vec3, Wait
 

@@ -12,7 +12,7 @@ from hthor.humans.memory.spatial_memory import KnownPlace, SpatialMemory
 from hthor.humans.motor import viewpoints
 from hthor.humans.motor.locomotion import Walker
 from hthor.humans.search import option_description
-from hthor.humans.search.option import Option
+from hthor.humans.search.option_description import Option
 from hthor.types import Vec2
 
 DOORWAY_S = 2.0

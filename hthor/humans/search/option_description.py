@@ -1,15 +1,16 @@
-"""A participant's options in words, for policies, and in numbers, for the journal and for listeners."""
+"""What a participant could do next: in words, for policies, and in numbers, for the journal and for listeners."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
+
+from msgspec import Struct
 
 from hthor import catalog, seeds
 from hthor.errors import HthorError
 from hthor.humans.core.policy import OptionDescription, Situation
 from hthor.humans.core.trial_context import HumanContext
-from hthor.humans.memory.spatial_memory import SpatialMemory
-from hthor.humans.search.option import Option
-from hthor.types import HUMAN, Event
+from hthor.humans.memory.spatial_memory import KnownDoorway, KnownPlace, SpatialMemory
+from hthor.types import HUMAN, Event, Vec2
 
 MAX_RECORDED = 12
 """[count] Options of one choice kept in the journal: the chosen one and a random sample. Our choice."""
@@ -21,6 +22,28 @@ _SEARCHED = 2.0
 """[exposure] From here a place is described as "already searched". Our choice."""
 _HERE_M = 1.0
 """[m] Anything nearer is described as "right here". Our choice."""
+
+
+class Option(Struct, frozen=True, kw_only=True):
+    """Search ``place``, or go through ``doorway``; ``value`` is what it promises for its time.
+
+    ``spot`` [m] is where to go, ``metres`` the way there, ``seconds`` what all takes, ``exposure`` how well the place
+    was searched already.
+    """
+
+    name: str
+    value: float
+    spot: Vec2
+    place: KnownPlace | None = None
+    doorway: KnownDoorway | None = None
+    metres: float = 0.0
+    seconds: float = 0.0
+    exposure: float = 0.0
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether it is a place that must be opened first."""
+        return self.place is not None and self.place.state == "closed"
 
 
 def describe(

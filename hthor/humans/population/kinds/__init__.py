@@ -12,7 +12,7 @@ from msgspec import Struct
 
 from hthor import documents
 from hthor.errors import PopulationError, UnknownName
-from hthor.humans.population import bounds
+from hthor.humans.population import parameters
 from hthor.humans.population.parameters import Parameters
 
 SCHEMA = "hthor.people-kind/1"
@@ -32,7 +32,7 @@ class ParameterEdit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
     def apply(self, value: float) -> float:
         """The parameter's new value."""
         new = {"add": value + self.value, "times": value * self.value, "set": self.value}[self.verb]
-        return bounds.clamp(self.parameter, new)
+        return parameters.clamp(self.parameter, new)
 
 
 class PopulationKind(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -90,12 +90,12 @@ def _read(path: Path) -> PopulationKind:
         raise PopulationError(str(path), "name", f"it is '{kind.name}', but must be the file's name, '{path.stem}'")
     for number, change in enumerate(kind.changes):
         where = f"changes[{number}]"
-        if change.parameter not in bounds.parameter_names():
+        if change.parameter not in parameters.parameter_names():
             raise PopulationError(
                 str(path),
                 f"{where}.parameter",
-                str(UnknownName("parameter", change.parameter, bounds.parameter_names())),
+                str(UnknownName("parameter", change.parameter, parameters.parameter_names())),
             )
-        if change.verb == "set" and (problem := bounds.range_problem(change.parameter, change.value)):
+        if change.verb == "set" and (problem := parameters.range_problem(change.parameter, change.value)):
             raise PopulationError(str(path), f"{where}.value", problem)
     return kind
