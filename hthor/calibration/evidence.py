@@ -41,9 +41,8 @@ class Band(Struct, frozen=True, kw_only=True):
 class PredictedFigure(Struct, frozen=True, kw_only=True):
     """A published figure before and after the fit: medians and 90 % intervals of study groups.
 
-    ``prior`` and ``posterior`` are predicted by the emulator, ``simulated`` comes from whole studies simulated with
-    people of the posterior. ``design_effect`` is the figure's variance over that of independent trials, None where the
-    fit does not use it.
+    ``prior`` and ``posterior`` are predicted by the emulator, ``simulated`` comes from whole studies with people of the
+    posterior. ``design_effect`` is the variance over that of independent trials, None where the fit does not use it.
     """
 
     figure: str
@@ -109,10 +108,7 @@ class ParameterFinding(Struct, frozen=True, kw_only=True):
 
 
 class CoverageFinding(Struct, frozen=True, kw_only=True):
-    """How often the 90 % interval held the true value when simulated studies were fitted like the published one.
-
-    ``low`` and ``high`` are the lowest and the highest of any parameter.
-    """
+    """The share of 90 % intervals that held the truth of simulated studies; ``low`` and ``high``: of single parameters."""
 
     studies: int
     mean: float
@@ -137,10 +133,7 @@ class EmulatorFit(Struct, frozen=True, kw_only=True):
 
 
 class AbcShift(Struct, frozen=True, kw_only=True):
-    """How far ABC's posterior median of a parameter lies from ours, in our posterior standard deviations.
-
-    ``error`` is the standard error of that shift, as ABC rests on few simulated studies.
-    """
+    """How far ABC's posterior median lies from ours, and the standard ``error`` of that, in our posterior sds."""
 
     name: str
     shift: float

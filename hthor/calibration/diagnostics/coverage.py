@@ -31,11 +31,9 @@ _BAND80 = (0.1, 0.5, 0.9)
 class Coverage(Struct, frozen=True, kw_only=True, eq=False):
     """What was found, by parameter (P,).
 
-    Attributes:
-        covered: share of the studies whose 90 % interval held the truth. overall: its mean over all parameters.
-        means: (S, P) posterior means.
-        ranks: (S, P) share of the posterior below the truth; uniform when posteriors are calibrated.
-        recovery: correlation of truth and posterior mean.
+    ``covered`` is the share of studies whose 90 % interval held the truth, ``overall`` its mean over all parameters.
+    ``means`` (S, P) are posterior means, ``ranks`` (S, P) the share of the posterior below the truth, uniform when
+    posteriors are calibrated; ``recovery`` is the correlation of truth and posterior mean.
     """
 
     names: tuple[str, ...]
@@ -54,10 +52,9 @@ class Coverage(Struct, frozen=True, kw_only=True, eq=False):
 def check_coverage(
     emulator: Emulator, points: Array, studies: StudyResults, seed: int = 0, proposals: int = PROPOSALS
 ) -> Coverage:
-    """Fit every study. The emulator must not have seen them; the design effects for one are estimated from others.
+    """Fit every study, simulated at the truths ``points`` (S, P), drawn from the prior.
 
-    Args:
-        points: (S, P) truths, drawn from the prior.
+    The emulator must not have seen them; the design effects for one are estimated from others.
     """
     prior, rates = posterior.sample_prior(emulator, seed, proposals), emulator.rates(points)
     ranks, means = np.zeros(points.shape), np.zeros(points.shape)
@@ -95,13 +92,7 @@ def predict_held_out(
     seed: int = 0,
     rivals: Mapping[str, Rates] | None = None,
 ) -> tuple[HeldOutCondition, ...]:
-    """Leave out each condition in turn, and predict it: SR, TWSR and, with a robot, adoption.
-
-    Args:
-        study: the published one (S = 1).
-        prior: see `posterior.sample_prior`.
-        rivals: rates (N = 1) of models without parameters, by name.
-    """
+    """Leave out each condition of the published study (S = 1) in turn, and predict its figures."""
     found = []
     for condition in CONDITIONS:
         others, only = study.without(condition), study.only(condition)

@@ -28,11 +28,7 @@ def rank_robots(
 ) -> RobotRanking:
     """Judge the order oracle > frontier > none, each robot measured on ``trials`` trials of people of its own.
 
-    Args:
-        rates: expected at the D draws of a posterior.
-        effects: design effects; they say how much a rate measured on so many trials varies.
-        seed: of the noise that measurements are drawn with.
-        suite: name of the suite that the rates are of.
+    ``rates`` are expected at the D draws of a posterior; ``effects`` say how much a rate of so many trials varies.
     """
     chances = {name: float(row.mean()) for name, row in _order_probability(rates, effects, trials, seed).items()}
     ordered: dict[str, list[Array]] = {

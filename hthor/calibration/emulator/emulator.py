@@ -143,11 +143,7 @@ def message_outcomes(table: Table) -> Array:
 
 
 def success_rates(answers: Array) -> tuple[Array, Array, Array]:
-    """(N,) SR, ratio TWSR / SR, and its sd between successes.
-
-    Args:
-        answers: (N, ...) answers to `success_outcomes`, at least the first `SUCCESS_QUESTIONS` of them.
-    """
+    """(N,) SR, ratio TWSR / SR, and its sd between successes, from the answers (N, ...) to `success_outcomes`."""
     met, reached = answers[:, 0], answers[:, 1:SUCCESS_QUESTIONS]
     levels = np.array([0.0, *TWSR_LEVELS])
     chance = np.minimum.accumulate(np.column_stack([met, np.minimum(reached, met[:, None])]), axis=1)

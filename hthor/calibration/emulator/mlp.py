@@ -126,12 +126,9 @@ def fit_ensemble(
     members: int = MEMBERS,
     epochs: int = EPOCHS,
 ) -> tuple[Network, ...]:
-    """An ensemble for inputs (N, F) and outcomes (N, K) of 0 and 1.
+    """An ensemble for inputs (N, F) and outcomes (N, K) of 0 and 1, of the points of these numbers (N,).
 
-    Args:
-        point: (N,) number of each trial's point.
-        width: how many of the inputs, the first ones, are parameters, which are weighted by how much they matter.
-        seed, name: of the networks' chances. epochs: passes over the trials.
+    The first ``width`` inputs are parameters, which are weighted by how much they matter.
     """
     scale = _input_scale(inputs, outcomes, width, seed, name, epochs)
     fold = assign_folds(point, seed, members)

@@ -84,11 +84,7 @@ class Estimate(Struct, frozen=True, kw_only=True):
 
 
 def make_estimate(belief: Belief, at: float, se: float, n: int, method: str) -> Estimate:
-    """An estimate of a parameter with a prior belief.
-
-    Args:
-        at: value on the belief's scale, clipped to the prior's bounds. se: its standard error there.
-    """
+    """An estimate of a parameter with a prior belief; ``at`` and its standard error ``se`` are on that one's scale."""
     needed, what = NEEDS[belief.name]
     at = min(max(at, float(to_scale(belief.low, belief.scale))), float(to_scale(belief.high, belief.scale)))
     value, low, high = (
@@ -147,8 +143,7 @@ class EstimateCollector:
     def median(self, name: str, values: Sequence[float], method: str, *, least: float) -> None:
         """Estimate a number that is the same for everybody by its median, as some measurements are plainly wrong.
 
-        Args:
-            least: the least error that such a measurement can have, in the parameter's unit, however many there are.
+        ``least`` is the least error that a measurement can have, in the parameter's unit, however many there are.
         """
         finite = np.array([value for value in values if math.isfinite(value) and value > 0.0])
         if len(finite):

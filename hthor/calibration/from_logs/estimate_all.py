@@ -25,11 +25,9 @@ READING = "reading"
 
 
 def estimate_parameters(sessions: Sessions, beliefs: Beliefs, tell: Tell = lambda _: None) -> tuple[Estimate, ...]:
-    """All estimates, in the registry's order, and `READING`.
+    """All estimates, in the registry's order, and `READING`; ``tell`` is called with the name of each step.
 
-    Args:
-        beliefs: the prior belief about each parameter, which decides where the logs say little.
-        tell: called with the name of each step, to report progress.
+    The prior belief about each parameter decides where the logs say little.
     """
     collector = EstimateCollector(trial_features.extract_features(sessions), dict(beliefs))
     for name, step in _STEPS.items():

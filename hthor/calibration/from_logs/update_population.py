@@ -42,11 +42,9 @@ class Updated(Struct, frozen=True, kw_only=True):
 def update_draws(
     names: Sequence[str], draws: Any, weights: Any, beliefs: Beliefs, estimates: Sequence[Estimate], seed: int
 ) -> Updated:
-    """Update the draws of a population.
+    """Update the draws (D, P) of a population, of these column names and ``weights`` (D,) that add up to 1.
 
-    Args:
-        names: of the columns (P). draws: (D, P). weights: (D,), adding up to 1.
-        beliefs: of these draws, see `hthor.calibration.from_logs.models.priors.population_beliefs`.
+    ``beliefs`` are those of these draws, see `hthor.calibration.from_logs.models.priors.population_beliefs`.
     """
     used = {one.name: one for one in estimates if one.used and one.name in names}
     scaled = {name: to_scale(draws[:, names.index(name)], beliefs[name].scale) for name in used}

@@ -62,10 +62,9 @@ class DesignEffects(Struct, frozen=True, kw_only=True, eq=False):
 
 
 class EmulatorQuality(Struct, frozen=True, kw_only=True):
-    """How well an emulator predicts studies that neither it nor the design effects have seen.
+    """How well an emulator predicts ``studies`` studies that neither it nor the design effects have seen.
 
-    ``z_sd`` is the sd of standardised errors over all figures, ``by_figure`` that of each; ``studies`` how many there
-    were.
+    ``z_sd`` is the sd of standardised errors over all figures, ``by_figure`` that of each.
     """
 
     z_sd: float

@@ -79,9 +79,7 @@ def _ratios(rates: Rates, study: StudyResults, effects: DesignEffects) -> Array:
 def draw_studies(rates: Rates, design: StudyResults, effects: DesignEffects, seed: int = 0) -> StudyResults:
     """A simulated study for each of N points: counts are beta-binomial, ratios normal.
 
-    Args:
-        design: a study (S = 1) of which only the numbers of trials are used: ``trials`` and ``asked``.
-        seed: of the noise; each condition's is its own.
+    Of ``design`` (S = 1) only the numbers of trials are used; the noise of each condition is its own.
     """
     shape = (len(rates), len(CONDITIONS))
     counts = {name: np.zeros(shape) for name in ("successes", "adopted")}
@@ -114,11 +112,9 @@ def _draw_ratios(rates: Rates, successes: Array, effects: DesignEffects, seed: i
 def compare_figures(
     predictions: dict[str, Array], published: StudyResults, quantiles: tuple[float, float, float]
 ) -> tuple[HeldOutFigure, ...]:
-    """Every figure that the published study reports, with an interval of predictions.
+    """Every figure that the published study reports, with three quantiles of ``predictions``: low, median and high.
 
-    Args:
-        predictions: fractions by figure, of any number of studies, emulated or simulated; NaN where there is none.
-        quantiles: low, median and high end of the interval.
+    They are fractions by figure, of any number of studies, emulated or simulated; NaN where there is none.
     """
     return tuple(
         HeldOutFigure(figure=name, published=float(value[0]), band=band(np.nanquantile(predictions[name], quantiles)))

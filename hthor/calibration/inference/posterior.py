@@ -75,11 +75,7 @@ def sample_posterior(
     prior: PriorSample | None = None,
     proposals: int = PROPOSALS,
 ) -> Posterior:
-    """The posterior given the first study of ``study``.
-
-    Args:
-        prior: points to weight; by default ``proposals`` of them are made.
-    """
+    """The posterior given the first study of ``study``; ``prior`` has points to weight, else ``proposals`` are made."""
     sample = prior or sample_prior(emulator, seed, proposals)
     with single_thread():
         weight, evidence = importance_weights(sample, study, effects)

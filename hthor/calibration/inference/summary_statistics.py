@@ -73,9 +73,7 @@ def published_results(targets: Targets) -> StudyResults:
 def study_results(table: Table, least: Array) -> tuple[Array, StudyResults]:
     """Simulated studies as if they had been published: points (S, P) of the unit cube, and results in that order.
 
-    Args:
-        table: whole studies; trials outside any are passed over.
-        least: T* [s] by task.
+    Trials outside any study are passed over; ``least`` is T* [s] by task.
     """
     held = table.take(table.study >= 0)
     numbers, rows, study = np.unique(held.study, return_index=True, return_inverse=True)

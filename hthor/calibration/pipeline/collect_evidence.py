@@ -134,11 +134,7 @@ def log_score(predicted: Array, observed: Array) -> float:
 
 
 def reliability_bins(predicted: Array, observed: Array) -> tuple[tuple[float, float, int], ...]:
-    """Reliability diagram: predicted and observed frequency and trials, in bins of the prediction, small bins left out.
-
-    Args:
-        predicted: (N,) chances. observed: (N,) bool.
-    """
+    """Reliability diagram of outcomes (N,): frequency predicted and observed, and trials; small bins are left out."""
     bin_of = np.minimum((predicted * _BINS).astype(int), _BINS - 1)
     inside = [bin_of == number for number in range(_BINS)]
     return tuple(

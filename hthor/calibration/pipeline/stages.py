@@ -36,11 +36,9 @@ FITTED = tuple(one.name for one in parameter_registry.PARAMETERS if one.fitted)
 
 
 class ArtifactCache:
-    """Products of one calibration.
+    """Products of one calibration, in a folder of which only files that this program wrote are read.
 
-    Args:
-        folder: where they are stored; only files that this program wrote there are read.
-        key: hash of everything that the products are made from, 64 hexadecimal digits.
+    ``key`` is the hash of everything that the products are made from, 64 hexadecimal digits.
     """
 
     def __init__(self, folder: Path, key: str) -> None:

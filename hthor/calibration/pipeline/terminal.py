@@ -36,10 +36,7 @@ class SilentProgress:
 
 
 class PrintedProgress:
-    """A bar, or lines where there is no terminal, for each stage that simulates; a line for each that computes.
-
-    See `hthor.calibration.pipeline.stages.ProgressReporter`.
-    """
+    """A bar, or lines where there is no terminal, for each stage that simulates; a line for each that computes."""
 
     def __init__(self, console: Console, *, live: bool) -> None:
         self._console, self._live = console, live

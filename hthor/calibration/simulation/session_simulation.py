@@ -61,12 +61,9 @@ class SessionOutcome(Struct, frozen=True, kw_only=True):
 def make_session_runner(
     suite: Suite, robots: tuple[tuple[RobotSeat, ...], ...]
 ) -> Callable[[SessionSpec], Iterator[TrialOutcome]]:
-    """A function that runs sessions in a worker: it reports each trial, and at the end the session.
+    """A function that runs sessions in a worker, with each condition's robots: it reports each trial, then the session.
 
     Called in the worker; keeps worlds for later sessions.
-
-    Args:
-        robots: the robots of each condition.
     """
     runner = TrialRunner(Sources(houses=str(suite.houses.folder or "")))
 
@@ -108,11 +105,7 @@ def run_trials(trials: Sequence[TrialSpec], population: Parameters, runner: Tria
 
 
 def outcome_row(number: int, trial: TrialSpec, log: EpisodeLog) -> OutcomeRow:
-    """What is kept of a trial, in the order of `OUTCOMES`.
-
-    Args:
-        number: of the task in the suite.
-    """
+    """What is kept of a trial of the task of this ``number`` in the suite, in the order of `OUTCOMES`."""
     first: dict[str, int] = {}
     messages, target = 0, trial.task.goal.target
     for event in log.events:

@@ -102,11 +102,7 @@ def run_missing(batch: SessionBatch, folder: Path, jobs: int, watch: Watcher) ->
 
 
 def make_table(batch: SessionBatch, outcomes: Mapping[str, SessionOutcome], **more: Any) -> Table:
-    """The table of a batch's sessions.
-
-    Args:
-        more: columns that replace those of a session outside any study.
-    """
+    """The table of a batch's sessions; ``more`` has columns that replace those of a session outside any study."""
     rows = [
         (study, number, point, spec.condition, spec.participant, index, *row)
         for study, number, point, spec in batch.sessions
@@ -148,10 +144,10 @@ def _run(suite: Suite, left: Sequence[SessionSpec], store: SessionStore, jobs: i
 def simulate_studies(
     points: np.ndarray, suite: Suite, seed: int, folder: Path, jobs: int, watch: Watcher, name: str, design: Design
 ) -> Table:
-    """A study at each point; arguments as of `simulate_sessions`, study number s has people from row s.
+    """A study of the published ``design`` at each point; study number s has people from row s.
 
-    Args:
-        design: of the published study.
+    It has as many people in each condition, assigned their tasks as `hthor eval` assigns them, and loses as many
+    trials, drawn at random. Other arguments as of `simulate_sessions`.
     """
     points, identity = design_points.round_points(points), session_store.trials_identity(suite)
     specs = []

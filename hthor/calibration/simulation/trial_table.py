@@ -128,11 +128,7 @@ def suite_t_star(suite: Suite) -> Array:
 
 
 def twsr(table: Table, t_star: Array) -> Array:
-    """(N,) float64, success weighted by time: T* / max(T*, T), 0 after a failure.
-
-    Args:
-        t_star: T* [s] by task, see `suite_t_star`.
-    """
+    """(N,) float64, success weighted by time: T* / max(T*, T), 0 after a failure; ``t_star`` is T* [s] by task."""
     return success.time_weighted(table.met, t_star[table.task], time_spent_s(table))
 
 

@@ -1,7 +1,6 @@
 """Carrying what is too heavy for one: take hold, wait for another, follow or lead.
 
-Several hold a thing by its handles. Once they are strong enough together it rises, and whoever walks pulls the others
-along; whoever lets go puts it down.
+Once several hold it by its handles, it rises, and whoever walks pulls the others along; whoever lets go puts it down.
 """
 
 import math
@@ -50,10 +49,7 @@ class JointCarrying:
         self._search = OptionChoice(human, memory, self.walker, "room")
 
     def carry(self, subgoal: Subgoal) -> Behaviour:
-        """Take hold, and bring the load where it belongs together with another carrier.
-
-        Anybody may lead; the participant does when nobody has moved for a while.
-        """
+        """Take hold, and bring the load where it belongs; the participant leads when nobody has moved for a while."""
         if not self._holds(subgoal) and not (yield from self._take_hold(subgoal)):
             return False
         alone, still, here = 0.0, 0.0, self.human.here

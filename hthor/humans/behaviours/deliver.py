@@ -38,11 +38,7 @@ class Delivery:
         self.search = OptionChoice(human, memory, self.walker, "destination")
 
     def deliver(self, subgoal: Subgoal, advised: Vec3 | None = None) -> Behaviour:
-        """Bring what is held where it belongs; look for that first when it is not known.
-
-        Args:
-            advised: where a robot says that such a place is [m].
-        """
+        """Bring what is held where it belongs, where a robot ``advised`` [m], or to what is found by searching."""
         if subgoal.spot is not None:
             if self.approach.tries <= PATIENCE or not subgoal.job.destinations:
                 return (yield from self._restore(subgoal, subgoal.spot))

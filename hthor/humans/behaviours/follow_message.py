@@ -123,10 +123,7 @@ class MessageFollowing:
     def _viewpoint(
         self, position: Vec3, place: KnownPlace | None, seen: list[Vec2], failed: list[Vec2], most: float
     ) -> Vec2 | None:
-        """The nearest spot on foot from which the place may be looked at, from a new side.
-
-        None when there is none, or none within ``most`` metres.
-        """
+        """The nearest spot on foot, within ``most`` metres, from which the place may be looked at from a new side."""
         point = position[:2]
         opens = place is not None and bool(place.state)
         spots = viewpoints.viewpoints_of_place(place, self.walker, front=True) if place is not None and opens else []
@@ -147,10 +144,9 @@ class MessageFollowing:
 
 
 class Walls:
-    """The walls on the map within ``reach`` metres of ``point`` [m].
+    """The walls on the map within ``reach`` metres of ``point`` [m]: what reaches higher than any furniture.
 
-    People look over a counter and past a lamp, but not through a wall: only what reaches higher than any furniture
-    counts.
+    People look over a counter and past a lamp, but not through a wall.
     """
 
     def __init__(self, grid: GridMap, point: Vec2, reach: float) -> None:

@@ -38,11 +38,7 @@ def acceptance_terms(traits: Parameters, offer: Offer) -> dict[str, float]:
 
 
 def decide_answer(human: HumanContext, offer: Offer, relevant: bool = True) -> Answer:
-    """The participant's answer, or that of the policy that decides in their place.
-
-    Args:
-        relevant: whether the message is about anything in the task.
-    """
+    """The participant's answer, or that of the policy that decides in their place; ``relevant``: about the task."""
     if human.policy is not None:
         return human.policy.answer(offer)
     traits, number = human.traits, offer.number
@@ -62,12 +58,7 @@ def decide_answer(human: HumanContext, offer: Offer, relevant: bool = True) -> A
 
 
 def expected_search_time(options: list[Option], left: float, kappa: float) -> float:
-    """Seconds that a search is expected to take, one option after the other, at most ``left``.
-
-    Args:
-        options: as a search lists them; their value is belief / seconds^kappa.
-        left: seconds to the end of the trial, which is what a search takes that finds nothing.
-    """
+    """Seconds that a search is expected to take, the best option first, at most ``left``, as when it finds nothing."""
     expected, elapsed, remaining = 0.0, 0.0, 1.0
     beliefs = [option.value * option.seconds**kappa for option in options]
     total = max(1.0, sum(beliefs))

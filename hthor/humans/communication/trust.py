@@ -48,10 +48,7 @@ def initial_trust(traits: Parameters) -> Trust:
 
 
 class Experience(Struct, kw_only=True):
-    """What the robots did for the participant in one trial.
-
-    ``helped`` [s] is when the first confirmed message that did not mislead was answered; None without one.
-    """
+    """What the robots did in one trial; ``helped`` [s] is when the first good message was accepted, if any."""
 
     offered: bool = False
     helped: float | None = None

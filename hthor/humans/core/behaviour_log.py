@@ -33,12 +33,7 @@ _DONE = {"pick": "picked", "place": "placed", "open": "opened", "close": "closed
 
 
 class BehaviourRecorder:
-    """Stick and pitch of one trial, as run lengths.
-
-    Args:
-        body: the participant's; its speed is that of the stick pushed all the way.
-        tick_s: length of a tick [s].
-    """
+    """Stick and pitch of one trial, as run lengths; the body's speed is that of the stick pushed all the way."""
 
     def __init__(self, body: BodySpec, tick_s: float) -> None:
         self.body, self.tick_s, self._step = body, tick_s, body.speed * tick_s
@@ -62,12 +57,7 @@ class BehaviourRecorder:
             self._pitch += (tick, tilt)
 
     def journal(self, own: Iterable[Event], events: Iterable[Event]) -> tuple[Event, ...]:
-        """The whole journal of a trial.
-
-        Args:
-            own: what the human model recorded.
-            events: the trial's log; it has the successes of attempts that the end of the trial cut off.
-        """
+        """The whole journal: what the human model recorded (``own``), with the successes that the trial's log has."""
         stick = Event(tick=0, seat=HUMAN, kind="stick", data={"full": self.body.speed, "runs": self._stick})
         pitch = {"fastest": self.body.turn_rate, "pitch": self._pitch}
         done = [event for event in events if event.seat == HUMAN and event.kind in _DONE.values()]

@@ -87,11 +87,7 @@ def _metres(text: str) -> int:
 
 
 class Endpoint:
-    """An OpenAI-compatible chat endpoint.
-
-    Args:
-        chosen: where and which. temperature, seed: sent along.
-    """
+    """An OpenAI-compatible chat endpoint."""
 
     def __init__(self, chosen: Settings, temperature: float, seed: int) -> None:
         self._chosen, self._temperature, self._seed = chosen, temperature, seed

@@ -38,11 +38,8 @@ Backend = Callable[[str], str]
 class LanguageModelPolicy:
     """Choices and answers of a language model: a `hthor.humans.core.policy.Policy`.
 
-    Args:
-        participant: the traits are given to the model in words, and set its temperature and seed.
-        backend: asks the model; called only for what the cache does not hold.
-        cache: the file of answers.
-        model: the model's name, for the cache.
+    The traits are given to the model in words, and set its temperature and seed; the backend is asked only for what the
+    file of answers does not hold.
     """
 
     def __init__(self, participant: Participant, backend: Backend, cache: Path, model: str) -> None:
@@ -105,12 +102,8 @@ _decoder = msgspec.json.Decoder(CachedResponse)
 class ResponseCache:
     """The answers of one model to one person, kept in a file so that nothing is asked twice.
 
-    One line of JSON per answer, append-only, safe for several processes at once. A run whose answers are all there
-    needs no model and gives the same bytes again; publish the file with the run.
-
-    Args:
-        path: the file; created with the first answer.
-        model: its name. temperature, seed, tokens: its settings, of which the keys are made too.
+    One line of JSON per answer, append-only, safe for several processes at once; its key hashes the model and its
+    settings too. A run whose answers are all there needs no model and gives the same bytes again; publish the file with the run.
     """
 
     def __init__(self, path: Path, *, model: str, temperature: float, seed: int, tokens: int) -> None:
@@ -120,11 +113,7 @@ class ResponseCache:
         self._read = 0
 
     def answer(self, prompt: str, ask: Callable[[str], str], most: int) -> str:
-        """The answer to a question, from the file if it is there.
-
-        Args:
-            ask: asks the model; its answer is cut to ``most`` characters and kept.
-        """
+        """The answer to a question: from the file, or asked, cut to ``most`` characters and kept."""
         key = jsonio.sha256({**self._about, "prompt": prompt})
         self._catch_up()
         if key not in self._known:

@@ -75,7 +75,7 @@ def _differs(a: Detection, b: Detection) -> bool:
 class Forgetting:
     """Says what is forgotten by now.
 
-    Each memory lasts for a random span, drawn by the thing's name and how often it came into view, so that the order of
+    A memory lasts for a random span, drawn by the thing's name and how often it came into view, so that the order of
     questions makes no difference.
     """
 

@@ -36,12 +36,7 @@ class Dialogue:
         self.experience = Experience()
 
     def read(self, now: Observation, trust: float, busy: bool, saving: Saving) -> MessageDecision | None:
-        """Look at the inbox; None while there is nothing to answer.
-
-        Args:
-            trust: mean trust, 0 to 1.
-            busy: whether something is in hand or about to be picked up.
-        """
+        """Look at the inbox, ``busy`` or not with something in hand; None while there is nothing to answer."""
         reader, human = self.reader, self.human
         reader.receive(now.tick, now.inbox)
         self.experience.offered = reader.offered

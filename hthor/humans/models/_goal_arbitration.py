@@ -44,12 +44,9 @@ BEGIN, SEARCH, REST = Goal(activity="begin"), Goal(activity="search"), Goal(acti
 
 
 class GoalArbiter:
-    """Chooses the goal: first what is in hand, then the nearest of what is known or advised, then searching.
+    """Chooses the goal: first what is in hand, then the nearest on foot of what is known or advised, then searching.
 
     A choice stands until something changes. ``missing`` are the subgoals whose objects must be searched for.
-
-    Args:
-        distances: walking distances [m] from a point to others.
     """
 
     def __init__(

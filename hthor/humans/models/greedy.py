@@ -40,11 +40,7 @@ _NOISELESS: dict[str, float] = {
 
 
 class Model(proxy.Model):
-    """The greedy human.
-
-    Args:
-        participant: has the population's mean traits; seed and number make no difference.
-    """
+    """The greedy human, with the population's mean traits; seed and number make no difference."""
 
     alike = True
 

@@ -132,10 +132,7 @@ class Walker:
         return False
 
     def _way(self, goal: Vec2, within: float) -> Route | None:
-        """The way to the goal: over seen floor if that is not much farther, else by a doorway, else straight on.
-
-        None when there is no way or a robot stands on the goal.
-        """
+        """The way to the goal: over seen floor if not much farther, else by a doorway, else straight on, if at all."""
         if self._robot is not None and self.human.now.tick <= self._robot_until:
             x, y, radius = self._robot
             if math.dist((x, y), goal) <= radius + self.human.body.radius + within:

@@ -22,11 +22,9 @@ class Hands:
         self._attempts: dict[str, int] = {}
 
     def do(self, motion: Motion, name: str) -> Generator[Motion, None, str]:
-        """Try until the hands do not miss; returns the world's reason for refusing, empty when it worked.
+        """Try a motion until the hands do not miss; returns the world's reason for refusing, empty when it worked.
 
-        Args:
-            motion: a Pick, Place, Open, Close or Drop.
-            name: of the act, such as "pick apple", for chance.
+        ``name`` is that of the act, such as "pick apple", for chance.
         """
         for _ in range(_MAX_ATTEMPTS):
             number = self._attempts.get(name, 0)

@@ -19,9 +19,9 @@ _SLOWER = 0.75
 
 
 class Reading(Struct, frozen=True, kw_only=True):
-    """A message from when it was shown to its answer: the ``seconds`` between, or until it could not be answered.
+    """A message of so many ``words``, from when it was shown to its answer, or until it could not be answered.
 
-    ``words`` is its length; ``known``: the same message had been shown before.
+    ``known``: the same message had been shown before.
     """
 
     seconds: float

@@ -44,12 +44,9 @@ Likelihood = Callable[[dict[str, float], Array], Array]
 
 
 def fit_mixed_model(likelihood: Likelihood, terms: Sequence[Term], person: Array, spread: Term | None) -> Fit:
-    """Fit a model.
+    """Fit ``terms`` and an effect for each ``person`` (N,), counted from 0, of each datum.
 
-    Args:
-        likelihood: of each datum. terms: what to fit, besides the effects.
-        person: (N,) int, the person of each datum, counted from 0.
-        spread: the logarithm of the effects' standard deviation, None for a model without effects.
+    ``spread`` is the logarithm of the effects' standard deviation, None for a model without effects.
     """
     from scipy.optimize import minimize
 

@@ -23,9 +23,9 @@ _LEAST_RAD, _LEAST = 1e-3, 1e-12
 
 
 class Choice(Struct, frozen=True, kw_only=True):
-    """One choice: rows [knowledge, uniform, metres, exposure, closed, is_door] of the options, and which was chosen.
+    """One choice of a person with this ``pace`` [m/s], and which of the ``options`` was ``chosen``.
 
-    ``pace`` [m/s] is how fast this person walked.
+    Their rows are [knowledge, uniform, metres, exposure, closed, is_door].
     """
 
     options: Sequence[Sequence[float]]
@@ -34,12 +34,7 @@ class Choice(Struct, frozen=True, kw_only=True):
 
 
 def fit_choices(choices: Sequence[Choice], person: Array, beliefs: Mapping[str, Belief]) -> Fit:
-    """Fit ``beta``, ``kappa`` and ``w_prior``, with the spread of ``beta`` between people.
-
-    Args:
-        person: (N,) int, the person of each choice.
-        beliefs: of these three, and of ``t_dwell`` and ``t_manip``, which are not fitted.
-    """
+    """Fit `CHOICE_TERMS` to the choices of each ``person`` (N,); ``t_dwell`` and ``t_manip`` are as believed."""
     width = max(len(choice.options) for choice in choices)
     table = np.zeros((len(choices), width, 6))
     there = np.zeros((len(choices), width), dtype=bool)
@@ -68,10 +63,9 @@ def fit_choices(choices: Sequence[Choice], person: Array, beliefs: Mapping[str, 
 
 
 class Exposure(Struct, frozen=True, kw_only=True):
-    """What was in view of one object until it was ``noticed`` or the trial ended.
+    """What was in view of one object until it was ``noticed``, in the last row, or the trial ended.
 
-    ``rows`` are [seconds, angle, ecc, share, beside, attended], see `hthor.humans.perception.exposure_log`; the
-    last is the glimpse that found it, when one did.
+    ``rows`` are [seconds, angle, ecc, share, beside, attended], see `hthor.humans.perception.exposure_log`.
     """
 
     rows: Sequence[Sequence[float]]
@@ -79,11 +73,7 @@ class Exposure(Struct, frozen=True, kw_only=True):
 
 
 def fit_detection(exposures: Sequence[Exposure], person: Array, beliefs: Mapping[str, Belief]) -> Fit:
-    """Fit ``lam0``, ``a50`` and ``clutter``, with the spread of ``lam0`` between people.
-
-    Args:
-        person: (N,) int, the person of each.
-    """
+    """Fit `DETECTION_TERMS` to the exposures of each ``person`` (N,)."""
     counts = np.array([len(one.rows) for one in exposures])
     table = np.concatenate([np.array(one.rows, dtype=float) for one in exposures])
     owner, last = np.repeat(np.arange(len(exposures)), counts), np.cumsum(counts) - 1

@@ -60,8 +60,7 @@ def fit_log_normal(
     Args:
         middle: the logarithm of the median, in the first trial.
         effect: the spread between people in units of ``sigma``, 0 when there is none.
-        noise: a guess of the standard deviation of one number's logarithm. noise_sd: how rough that guess is, as the
-            standard deviation of its own logarithm.
+        noise: a guess of the sd of one number's logarithm. noise_sd: the sd of that guess's own logarithm.
         practice: 1 when numbers grow with practice, -1 when they shrink, 0 when neither.
         learn: how much: a number, or a `Term` to find.
     """
@@ -84,20 +83,14 @@ def fit_log_normal(
 
 
 def fit_noticing(rows: Sequence[tuple[float, int, int, int]], belief: Belief) -> Fit:
-    """Fit ``t_notice`` to the seconds until people who walked slowed down.
-
-    Args:
-        rows: as `hthor.calibration.from_logs.models.timing_models.make_sample` takes them.
-    """
+    """Fit ``t_notice`` to the seconds until people who walked slowed down; ``rows`` are those of `make_sample`."""
     return fit_log_normal(make_sample(rows), belief.term(), 0.0, noise=Parameters().read_sd, noise_sd=0.3)
 
 
 def fit_reading(readings: Sequence[Reading], person: Array, beliefs: Mapping[str, Belief]) -> Fit:
-    """Fit ``t_read`` and ``t_notice``, with the spread of ``t_read`` between people.
+    """Fit ``t_read``, with its spread between people, and ``t_notice`` to the readings of each ``person`` (N,).
 
-    Args:
-        person: (N,) int, the person of each.
-        beliefs: of both; that of ``t_notice`` may come from these logs already.
+    The belief about ``t_notice`` may come from these logs already.
     """
     from scipy.special import log_ndtr
 

@@ -111,14 +111,9 @@ def _signals(data: TrustData, tau: float, fixed: Parameters) -> Array:
 
 
 def fit_acceptance(offers: Sequence[Offer], trust: Array, person: Array, beliefs: Mapping[str, Belief]) -> Fit:
-    """Fit the terms of the logit of accepting, with the spread of ``a0`` between people.
+    """Fit the logit of accepting the offers (N) that each ``person`` (N,) read, at their mean ``trust`` (N,), 0 to 1.
 
     People sometimes press the wrong button (``p_slip``), so neither answer is ever certain.
-
-    Args:
-        offers: (N) messages about the task that were read.
-        trust: (N,) mean trust at the time, 0 to 1, from the ratings.
-        person: (N,) int, the person of each.
     """
     gain, load, again = (np.array([getattr(one, name) for one in offers]) for name in ("gain", "load", "again"))
     confirmed, slip = np.array([one.confirmed for one in offers]), Parameters().p_slip

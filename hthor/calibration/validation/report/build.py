@@ -117,11 +117,7 @@ def published_study(targets: Targets) -> PublishedStudy:
 
 
 def records_table(runs: dict[str, Sequence[TrialRecord]], suite: Suite) -> Table:
-    """The trials of one human model in every condition.
-
-    Args:
-        runs: records by condition.
-    """
+    """The trials of one human model, from its records by condition."""
     numbers = {task.id: number for number, task in enumerate(suite.tasks)}
     rows = [_row(condition, numbers, record) for condition in CONDITIONS for record in runs.get(condition, ())]
     columns = {name: [row[name] for row in rows] for name in trial_table.COLUMNS}

@@ -28,10 +28,7 @@ class ModelUnderTest(Struct, frozen=True, kw_only=True):
 
 
 class Setting(Struct, frozen=True, kw_only=True):
-    """What was run: participants in each condition, and ``trials`` in all three together.
-
-    ``quick``: too few people for a verdict on the runs.
-    """
+    """What was run, by how many participants in each condition; ``quick``: too few people for a verdict on the runs."""
 
     suite: str
     suite_sha256: str
@@ -55,9 +52,7 @@ class PublishedCount(Struct, frozen=True, kw_only=True):
 
 
 class PublishedStudy(Struct, frozen=True, kw_only=True):
-    """The published study: its counts, TWSR over SR by condition, what it says in words, the eight figures, and its
-    design in a sentence.
-    """
+    """The published study, as in `Targets`; ``figures`` are the eight published ones."""
 
     name: str
     source: str
@@ -147,8 +142,7 @@ class TrustCurve(Struct, frozen=True, kw_only=True):
 class TrustFindings(Struct, frozen=True, kw_only=True):
     """Trust over a session. ``gap`` is oracle less frontier over all trials, ``above`` at how many it is positive.
 
-    ``groups_above`` is the share of simulated study groups in which it is positive at every trial, ``groups_rising``
-    that in which trust in the oracle rises.
+    ``groups_above`` is the share of study groups where it always is, ``groups_rising`` where trust in the oracle rises.
     """
 
     curves: tuple[TrustCurve, ...]

@@ -56,14 +56,9 @@ def make_groups(
     seed: int = 0,
     draws: int = DRAWS,
 ) -> dict[str, StudyGroups]:
-    """Groups of every condition that was run.
+    """Groups of every condition that was run: whole rounds of ``round_size`` people, who together do every task once.
 
-    Args:
-        t_star: T* [s] by task.
-        round_size: people who together do every task once.
-        valid: by condition, trials of a group that count; the rest are dropped at random.
-        counted: by condition, trials in which adoption is counted.
-        seed: of the draws.
+    Of a group's trials ``valid`` count, by condition, and adoption in ``counted``; the rest are dropped at random.
 
     Raises:
         HthorError: when there are too few people for a group.
