@@ -108,7 +108,7 @@ class ParameterFinding(Struct, frozen=True, kw_only=True):
 
 
 class CoverageFinding(Struct, frozen=True, kw_only=True):
-    """The share of 90 % intervals that held the truth of simulated studies; ``low`` and ``high``: of single parameters."""
+    """The share of 90 % intervals that held the truth of simulated studies; ``low``, ``high``: of single parameters."""
 
     studies: int
     mean: float

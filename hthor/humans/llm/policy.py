@@ -103,7 +103,8 @@ class ResponseCache:
     """The answers of one model to one person, kept in a file so that nothing is asked twice.
 
     One line of JSON per answer, append-only, safe for several processes at once; its key hashes the model and its
-    settings too. A run whose answers are all there needs no model and gives the same bytes again; publish the file with the run.
+    settings too. A run whose answers are all there needs no model and gives the same bytes again; publish the file with
+    the run.
     """
 
     def __init__(self, path: Path, *, model: str, temperature: float, seed: int, tokens: int) -> None:
