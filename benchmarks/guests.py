@@ -21,7 +21,7 @@ from hthor.episode import run_episode
 from hthor.eval.config import robot_team
 from hthor.eval.config.sessions import Session
 from hthor.eval.runner import trial_runner
-from hthor.eval.runner.sources import Sources
+from hthor.eval.runner.trial_runner import Sources
 from hthor.guest import Guest
 from hthor.guest.process_tools import resource_usage
 from hthor.types import BodySpec, Briefing, Observation, Pose

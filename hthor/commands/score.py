@@ -57,7 +57,7 @@ def score(
 def _rows(result: RunResult, everything: bool) -> Iterator[dict[str, object]]:
     """A result as spreadsheet rows, one per metric, for all tasks and then for each kind; rates are fractions."""
     from hthor.eval.metrics import registry
-    from hthor.eval.results import uplift
+    from hthor.eval.results import result_file
 
     metrics = registry.SINGLE if everything else registry.MAIN
     parts = {"": result.metrics, **(result.by_kind if len(result.by_kind) > 1 else {})}
@@ -66,7 +66,7 @@ def _rows(result: RunResult, everything: bool) -> Iterator[dict[str, object]]:
             estimate = formats.flat(scores[metric.name])
             yield {"run": result.name, "people": result.humans.name, "kind": kind, "metric": metric.name, **estimate}
     if result.uplift:
-        for name in uplift.METRICS:
+        for name in result_file.UPLIFT_METRICS:
             gain = formats.flat(getattr(result.uplift, name))
             mean = gain.pop("difference")
             known = {key: gain.get(key) for key in ("n", "ci95_low", "ci95_high", "mde80")}

@@ -17,7 +17,7 @@ from hthor import catalog, code_identity, plugins, rules
 from hthor.errors import HthorError, UnknownName
 from hthor.eval.config import robot_team
 from hthor.eval.runner import trial_runner
-from hthor.eval.runner.sources import Sources
+from hthor.eval.runner.trial_runner import Sources
 from hthor.types import Close, Move, Open, Part, Pick, Place, Pose, RobotSpec, Rotate
 from hthor.world import World
 from hthor.world.model.bodies import avatar, bodies

@@ -32,7 +32,7 @@ from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_log import TrialLog
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner import engines, trial_runner
-from hthor.eval.runner.sources import Sources
+from hthor.eval.runner.trial_runner import Sources
 from hthor.leaderboard import enter
 from hthor.leaderboard.entries import entry_metrics, files, trial_outcomes
 from hthor.tasks.suite import encode_suite, make_suite

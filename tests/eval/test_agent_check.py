@@ -13,7 +13,7 @@ from hthor import cli
 from hthor.errors import HthorError
 from hthor.eval.agent_check import checks
 from hthor.eval.runner import trial_runner
-from hthor.eval.runner.sources import Sources
+from hthor.eval.runner.trial_runner import Sources
 
 HEAD = "import random, time\nfrom hthor.types import *\n"
 AGENTS = {

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hthor.errors import HthorError
-from hthor.eval.comparison import robustness
+from hthor.eval.comparison import population_matrix
 from hthor.eval.config import robot_team, run_config
 from hthor.eval.results import aggregate, result_file
 from hthor.eval.statistics import intervals
@@ -54,14 +54,14 @@ def results(**rates: tuple[float, ...]) -> dict[str, list[result_file.RunResult]
     }
 
 
-def flips(found: dict[str, list[result_file.RunResult]]) -> tuple[robustness.Conclusion, ...]:
-    return tuple(one for one in robustness.draw_conclusions(found) if one.verdict == "flips")
+def flips(found: dict[str, list[result_file.RunResult]]) -> tuple[population_matrix.Conclusion, ...]:
+    return tuple(one for one in population_matrix.draw_conclusions(found) if one.verdict == "flips")
 
 
 def test_what_holds_at_both_ends_is_no_flip():
     found = results(paper=(0.6, 0.7, 0.9), greedy=(0.5, 0.8, 0.9), random=(0.1, 0.11, 0.12))
     assert flips(found) == ()
-    told = robustness.draw_conclusions(found)
+    told = population_matrix.draw_conclusions(found)
     assert [(one.better, one.worse, one.metric) for one in told] == [
         (better, worse, metric)
         for metric in ("sr", "twsr")
@@ -92,15 +92,15 @@ def test_a_robot_that_helps_is_said_to_help():
 
 
 def test_no_difference_at_an_end_is_said_and_is_no_flip():
-    told = robustness.draw_conclusions(results(paper=(0.6, 0.7), greedy=(0.5, 0.7), random=(0.1, 0.1)))
+    told = population_matrix.draw_conclusions(results(paper=(0.6, 0.7), greedy=(0.5, 0.7), random=(0.1, 0.1)))
     assert {one.verdict for one in told} == {"vanishes"}
     assert "no difference at all with random people" in told[0].sentence
 
 
 def test_what_holds_only_within_chance_says_so():
-    told = robustness.draw_conclusions(results(paper=(0.6, 0.9), greedy=(0.5, 0.9), random=(0.1, 0.12)))
+    told = population_matrix.draw_conclusions(results(paper=(0.6, 0.9), greedy=(0.5, 0.9), random=(0.1, 0.12)))
     assert told[0].sentence.endswith("holds at both ends, though not everywhere beyond chance")
-    sure = robustness.draw_conclusions(results(paper=(0.6, 0.9), greedy=(0.5, 0.9), random=(0.1, 0.3)))
+    sure = population_matrix.draw_conclusions(results(paper=(0.6, 0.9), greedy=(0.5, 0.9), random=(0.1, 0.3)))
     assert sure[0].sentence.endswith("holds at both ends")
 
 
@@ -110,7 +110,7 @@ def test_every_population_in_between_is_judged():
 
 
 def test_a_tie_of_the_population_is_no_conclusion():
-    assert robustness.draw_conclusions(results(paper=(0.6, 0.6), greedy=(0.5, 0.9), random=(0.1, 0.3))) == ()
+    assert population_matrix.draw_conclusions(results(paper=(0.6, 0.6), greedy=(0.5, 0.9), random=(0.1, 0.3))) == ()
 
 
 RATE = st.integers(0, 20).map(lambda n: n / 20)
@@ -122,7 +122,7 @@ RATE = st.integers(0, 20).map(lambda n: n / 20)
     st.lists(RATE, min_size=3, max_size=3),
 )
 def test_a_flip_is_a_sign_that_changes_and_nothing_else(paper, greedy, random):
-    told = robustness.draw_conclusions(results(paper=tuple(paper), greedy=tuple(greedy), random=tuple(random)))
+    told = population_matrix.draw_conclusions(results(paper=tuple(paper), greedy=tuple(greedy), random=tuple(random)))
     assert len(told) == 2 * len({(a, b) for a in range(3) for b in range(a) if paper[a] != paper[b]})
     place = dict(zip(CREWS, range(3), strict=True))
     for one in told:

@@ -22,7 +22,7 @@ from hthor.eval.comparison import compare, ranking, sample_size, verdict
 from hthor.eval.metrics import registry
 from hthor.eval.metrics.metric import SECONDS, SHARE
 from hthor.eval.records.run_folder import RunFolder
-from hthor.eval.results import aggregate, baseline, paired_difference, pairing, result_file, uplift
+from hthor.eval.results import aggregate, baseline, paired_difference, pairing, result_file
 from hthor.eval.runner import progress, run
 from hthor.eval.statistics import power
 from hthor.report.terminal import result_tables
@@ -242,7 +242,7 @@ def test_a_copied_run_keeps_its_uplift_with_a_note_and_loses_the_note_where_its_
     monkeypatch.chdir(moved.parent)
     result_file.store_result(moved, aggregate.rescore(moved)[1])
     kept = result_file.load_result(moved).uplift
-    assert kept.note == uplift.RECORDED
+    assert kept.note == baseline.RECORDED
     assert msgspec.structs.replace(kept, note=msgspec.UNSET) == before.uplift
     result_file.store_result(moved, aggregate.rescore(moved)[1])
     assert result_file.load_result(moved).uplift == kept, "once more changes nothing"
@@ -256,7 +256,7 @@ def test_an_older_result_does_not_lose_its_uplift_either(tmp_path: Path, monkeyp
     text = (whole / "result.json").read_text(encoding="utf-8").replace(result_file.SCHEMA, "hthor.result/2")
     shutil.rmtree(tmp_path / "runs" / "alone")
     (whole / "result.json").write_text(text, encoding="utf-8")
-    assert aggregate.rescore(whole)[1].uplift.note == uplift.RECORDED
+    assert aggregate.rescore(whole)[1].uplift.note == baseline.RECORDED
 
 
 def test_a_finished_run_that_is_evaluated_again_without_its_control_keeps_its_uplift(tmp_path: Path, monkeypatch):

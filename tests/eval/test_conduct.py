@@ -6,8 +6,8 @@ import msgspec
 import pytest
 
 from hthor.episode import EpisodeLog
-from hthor.eval.agent_check import conduct, criteria
-from hthor.eval.agent_check.probe_trials import ProbeResult
+from hthor.eval.agent_check import criteria
+from hthor.eval.agent_check.probe_trials import ProbeResult, count_repeated_messages, longest_on_one_spot_s
 from hthor.types import HUMAN, Event
 
 NOTES = ProbeResult(
@@ -31,21 +31,19 @@ def answered(kind: str, tick: int) -> Event:
 def test_turning_is_standing_and_driving_is_not():
     turning = [(1000, 2000, 100 * step) for step in range(150)]
     driving = [(100 * step, 2000, 0) for step in range(150)]
-    assert conduct.longest_on_one_spot_s(log(turning), "robot") == pytest.approx(29.8)
-    assert conduct.longest_on_one_spot_s(log(driving), "robot") < 1.0
-    assert conduct.longest_on_one_spot_s(log(driving[:50] + [driving[50]] * 100), "robot") == pytest.approx(
-        19.8, abs=0.5
-    )
+    assert longest_on_one_spot_s(log(turning), "robot") == pytest.approx(29.8)
+    assert longest_on_one_spot_s(log(driving), "robot") < 1.0
+    assert longest_on_one_spot_s(log(driving[:50] + [driving[50]] * 100), "robot") == pytest.approx(19.8, abs=0.5)
 
 
 def test_after_a_confirmed_message_it_may_wait():
     path = [(100 * step, 2000, 0) for step in range(50)] + [(5000, 2000, 0)] * 100
-    assert conduct.longest_on_one_spot_s(log(path, answered("confirmed", 100)), "robot") < 1.0
+    assert longest_on_one_spot_s(log(path, answered("confirmed", 100)), "robot") < 1.0
 
 
 def test_the_same_again_is_a_repetition_unless_it_was_declined():
-    assert conduct.count_repeated_messages(log([], sent("a"), sent("a", 1), sent("a", 2), sent("b", 3)), "robot") == 2
-    assert conduct.count_repeated_messages(log([], sent("a"), answered("declined", 5), sent("a", 100)), "robot") == 0
+    assert count_repeated_messages(log([], sent("a"), sent("a", 1), sent("a", 2), sent("b", 3)), "robot") == 2
+    assert count_repeated_messages(log([], sent("a"), answered("declined", 5), sent("a", 100)), "robot") == 0
 
 
 @pytest.mark.parametrize(

@@ -16,9 +16,10 @@ import pytest
 
 from hthor import code_identity, jsonio, plugins
 from hthor.errors import UnknownName
-from hthor.eval.metrics import reference, registry, trial_metrics
+from hthor.eval.metrics import registry, trial_metrics
 from hthor.eval.records import trial_record
 from hthor.eval.results.result_file import RunResult, Scores
+from scripts import metrics_reference
 
 DOCS = Path(__file__).parents[2] / "docs" / "metrics.md"
 ADDED = '''
@@ -42,7 +43,7 @@ import json, sys
 from pathlib import Path
 from typer.testing import CliRunner
 from hthor.cli import app
-from hthor.eval.metrics import reference
+import metrics_reference
 from hthor.eval.records import trial_record
 from hthor.report.analysis import build, load_runs
 from hthor.report.page import page
@@ -58,7 +59,7 @@ print(json.dumps({
     "compare": typed("compare", alone, helper),
     "json": json.loads(typed("compare", alone, helper, "--json")),
     "page": page.render(found, {}),
-    "docs": reference.page(docs.read_text()),
+    "docs": metrics_reference.page(docs.read_text()),
 }))
 """
 
@@ -80,7 +81,7 @@ def test_a_metric_is_added_by_one_file(tmp_path: Path) -> None:
     done = subprocess.run(
         [sys.executable, "-c", SCRIPT, str(alone), str(helper), str(DOCS)],
         cwd=tmp_path,
-        env={**os.environ, "PYTHONPATH": str(tmp_path)},
+        env={**os.environ, "PYTHONPATH": f"{tmp_path}{os.pathsep}{DOCS.parents[1] / 'scripts'}"},
         capture_output=True,
         text=True,
         check=False,
@@ -103,9 +104,9 @@ def test_a_metric_is_added_by_one_file(tmp_path: Path) -> None:
 
 def test_the_table_in_the_docs_is_made_from_the_records() -> None:
     text = DOCS.read_text(encoding="utf-8")
-    assert reference.page(text) == text, "run: python -m hthor.eval.metrics.reference docs/metrics.md"
+    assert metrics_reference.page(text) == text, "run: python scripts/metrics_reference.py docs/metrics.md"
     with pytest.raises(ValueError, match="lacks the line"):
-        reference.page("no table")
+        metrics_reference.page("no table")
 
 
 def test_every_metric_is_found_and_says_what_it_is() -> None:

@@ -21,14 +21,14 @@ from typer.testing import CliRunner
 from hthor import tasks
 from hthor.cli import app
 from hthor.errors import HthorError, RunError
-from hthor.eval.config import cli_command, robot_team, run_config, sessions, task_selection, task_subset
+from hthor.eval.config import cli_command, robot_team, run_config, sessions, task_selection
 from hthor.eval.config.sessions import Session
 from hthor.eval.dry_run import trial_cost
 from hthor.eval.records import trial_record
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.results import pairing
-from hthor.eval.runner import queue, run_options, trial_runner
-from hthor.eval.runner.sources import Sources
+from hthor.eval.runner import engines, run_options, trial_runner
+from hthor.eval.runner.trial_runner import Sources
 from hthor.guest import GuestFault
 from hthor.leaderboard.entries import overrides
 from hthor.types import Action
@@ -39,7 +39,7 @@ SMOKE = tasks.load_suite("smoke").tasks
 @settings(deadline=None)
 @given(st.integers(1, len(SMOKE) - 1))
 def test_a_larger_choice_contains_a_smaller_one(count: int) -> None:
-    some, more = task_subset.choose_subset(SMOKE, count), task_subset.choose_subset(SMOKE, count + 1)
+    some, more = task_selection.choose_subset(SMOKE, count), task_selection.choose_subset(SMOKE, count + 1)
     assert len(some) == count
     assert set(some) < set(more)
     assert list(some) == [task for task in SMOKE if task in some], "in the suite's order"
@@ -49,7 +49,7 @@ def test_a_larger_choice_contains_a_smaller_one(count: int) -> None:
 def test_a_choice_is_spread_over_houses_and_kinds(count: int) -> None:
     whole, some = (
         tasks.load_suite("standard").tasks,
-        task_subset.choose_subset(tasks.load_suite("standard").tasks, count),
+        task_selection.choose_subset(tasks.load_suite("standard").tasks, count),
     )
     for field in ("house", "kind"):
         every = Counter(getattr(task, field) for task in whole)
@@ -105,8 +105,8 @@ def test_a_deadline_is_part_of_the_trials_of_submitted_agents_alone() -> None:
 
 def test_a_worker_is_given_the_time_that_its_agents_have() -> None:
     one = suite(1).tasks
-    assert queue.trial_limit_s(one, 1, 60.0) >= queue.trial_limit_s(one, 1) + 55.0 * one[0].time_limit / 0.1
-    assert queue.trial_limit_s(one, 1, 0.5) == queue.trial_limit_s(one, 1)
+    assert engines.trial_limit_s(one, 1, 60.0) >= engines.trial_limit_s(one, 1) + 55.0 * one[0].time_limit / 0.1
+    assert engines.trial_limit_s(one, 1, 0.5) == engines.trial_limit_s(one, 1)
 
 
 SLOW = """

@@ -20,12 +20,12 @@ from rich.console import Console
 
 from hthor import cli, plugins, rules, tasks
 from hthor.errors import HthorError, PopulationError, UnknownName
-from hthor.eval.comparison import population_matrix, robustness
+from hthor.eval.comparison import population_matrix
 from hthor.eval.config import human_populations, sessions
 from hthor.eval.config.human_populations import HumanModelRef
 from hthor.eval.results import result_file
 from hthor.eval.runner import experiment, progress, run_options, trial_runner
-from hthor.eval.runner.sources import Sources
+from hthor.eval.runner.trial_runner import Sources
 from hthor.humans.population import (
     describe,
     kinds,
@@ -431,7 +431,6 @@ def test_each_people_is_a_run_of_its_own(files: Path):
 @pytest.mark.usefixtures("fake")
 def test_the_bracket_says_what_becomes_of_each_conclusion(files: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(trial_runner, "make_runner", fakes.leaning_player)
-    assert human_populations.EXTREMES == robustness.ENDS
     words, agents = (f"bracket@{files}/pop.npz", f"slow@{files}/pop.npz"), ("none", "frontier")
     options = run_options.RunOptions(agents=agents, humans=words, suite="fake", jobs=1, out=files / "out")
     whole = population_matrix.make_matrix(
@@ -492,7 +491,7 @@ def test_a_worker_finds_files_by_path(files: Path):
     (one,) = sessions.make_sessions(suite, agent="none", human=found, participants=1)
     code = (
         "import sys, msgspec\nfrom hthor.eval.runner import trial_runner\n"
-        "from hthor.eval.runner.sources import Sources\nfrom hthor.types import TrialSpec\n"
+        "from hthor.eval.runner.trial_runner import Sources\nfrom hthor.types import TrialSpec\n"
         "trial = msgspec.json.decode(sys.stdin.buffer.read(), type=TrialSpec)\n"
         "found = trial_runner.TrialRunner(Sources(humans=sys.argv[1]))._population_of(trial)\n"
         "print(type(found.make_model(trial.seed, 0)).__module__, found.participant(0, 0).traits.v_pace)\n"

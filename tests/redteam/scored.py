@@ -24,7 +24,7 @@ from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_log import read
 from hthor.eval.runner import fault_report, progress, run, trial_runner, worker
 from hthor.eval.runner.run_job import make_sources
-from hthor.eval.runner.sources import Sources
+from hthor.eval.runner.trial_runner import Sources
 from hthor.eval.runner.worker import News
 from hthor.guest import Guest, GuestConfig, GuestPool, IsolationError
 from hthor.tasks.suite import make_suite

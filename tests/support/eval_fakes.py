@@ -29,7 +29,7 @@ from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner import engines, worker
 from hthor.eval.runner.engines import SessionFailed
 from hthor.eval.runner.messages import Failed, News, TrialOutcome
-from hthor.eval.runner.sources import Sources
+from hthor.eval.runner.trial_runner import Sources
 from hthor.humans.population import resolve
 from hthor.humans.population.population import Population, Validity
 from hthor.humans.population.resolve import ParticipantSource

@@ -13,8 +13,7 @@ from hthor import plugins, rules
 from hthor.episode import EpisodeLog, run_episode
 from hthor.errors import HthorError
 from hthor.eval.runner.messages import TrialOutcome
-from hthor.eval.runner.sources import Sources
-from hthor.eval.runner.trial_runner import TrialRunner
+from hthor.eval.runner.trial_runner import Sources, TrialRunner
 from hthor.humans.models.proxy import Model
 from hthor.humans.population import parameter_registry
 from hthor.humans.population.parameters import Parameters

@@ -219,7 +219,7 @@ def evaluate(
     Running the same command again resumes an interrupted run, and only scores a finished one. The same seed gives the
     same records, byte for byte, with any number of jobs.
     """
-    from hthor.eval.comparison import eval_document, population_matrix
+    from hthor.eval.comparison import population_matrix
     from hthor.eval.config import human_populations
     from hthor.eval.runner import experiment, progress, run_options
     from hthor.eval.task_check import custom_houses
@@ -289,7 +289,7 @@ def evaluate(
     for note in result_tables.result_notes(run_results):
         output.say(note, paper)
     if json:
-        held = tuple(eval_document.EvaluatedRun(folder=str(one.folder), result=one.result) for one in done)
-        output.put_json(eval_document.Evaluation(runs=held, peoples=whole))
+        held = tuple(population_matrix.EvaluatedRun(folder=str(one.folder), result=one.result) for one in done)
+        output.put_json(population_matrix.Evaluation(runs=held, peoples=whole))
     if any(one.result.counts.faults > allowed(one.result.counts.trials) for one in done):
         raise typer.Exit(_FAULTS_EXIT)

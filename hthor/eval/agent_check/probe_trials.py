@@ -1,5 +1,6 @@
 """Runs short real trials with one submitted agent and records what it did, saw and spent."""
 
+import math
 import time
 from collections.abc import Sequence
 
@@ -7,8 +8,7 @@ import msgspec
 from msgspec import Struct
 
 from hthor import activity, rules, tasks
-from hthor.episode import Fault, run_episode
-from hthor.eval.agent_check import conduct
+from hthor.episode import EpisodeLog, Fault, run_episode
 from hthor.eval.config import robot_team
 from hthor.eval.config.robot_team import AgentInfo
 from hthor.eval.config.sessions import Session, make_sessions
@@ -19,12 +19,14 @@ from hthor.guest import Guest
 from hthor.guest.process_tools import resource_usage
 from hthor.tasks.suite import make_suite
 from hthor.thinking_time import Timed
-from hthor.types import Action, Briefing, Detection, Observation, Send, TrialSpec, Wait
+from hthor.types import Action, Briefing, Detection, Event, Observation, Send, TrialSpec, Wait
 from hthor.types.cameras import OWN
 
 _TASKS = ("smoke/alder/manipulation-01", "smoke/elder/manipulation-02")
 _LIMIT_S = 30.0
 _LOOK_EVERY = 16
+_SPOT_M = 0.25
+"""A robot that stays within this distance [m] is on one spot, turning or not."""
 
 
 class ProbeResult(Struct, frozen=True, kw_only=True):
@@ -109,10 +111,10 @@ class ProbeTrials:
             lasted_s=log.ticks * rules.TICK_S,
             motions=sum(not isinstance(action.motion, Wait) for _, action in done),
             refused=sum(not outcome.ok for outcome in ended),
-            spot_s=conduct.longest_on_one_spot_s(log, seat),
+            spot_s=longest_on_one_spot_s(log, seat),
             sent=int(kept.metrics["sent"] or 0),
             covered=int(kept.metrics["covered"] or 0),
-            repeated=conduct.count_repeated_messages(log, seat),
+            repeated=count_repeated_messages(log, seat),
             claims=len(about),
             unseen=0 if noted.looked else sum(name not in seen for name, seen in about),
             output=noted.output,
@@ -164,3 +166,36 @@ class _Noted(RecordedAgent):
         if len(self.seen) % _LOOK_EVERY == 1 and (pid := self.mind.pid):
             self.memory_mb = max(self.memory_mb, resource_usage.resident_mb(pid))
         return action
+
+
+def longest_on_one_spot_s(log: EpisodeLog, seat: str) -> float:
+    """The longest time [s] that a seat stayed on one spot, up to the first message of any robot that was confirmed.
+
+    Later it may wait with good reason: the person knows where to go.
+    """
+    until = min((event.tick for event in log.events if event.kind == "confirmed"), default=log.ticks)
+    step = rules.LOG_EVERY_TICKS
+    points = [(x / 1000.0, y / 1000.0) for x, y, _ in log.paths[seat][: until // step + 1]]
+    longest = start = 0
+    for number, point in enumerate(points):
+        if math.dist(point, points[start]) > _SPOT_M:
+            start = number
+        longest = max(longest, number - start)
+    return longest * step * rules.TICK_S
+
+
+def count_repeated_messages(log: EpisodeLog, seat: str) -> int:
+    """How many messages of a seat say what the one before said, although the person had not declined that one."""
+    count, last = 0, None
+    for event in log.events:
+        if event.kind == "sent" and event.seat == seat:
+            said = _said(event)
+            count += said == last
+            last = said
+        elif event.kind == "declined":
+            last = None
+    return count
+
+
+def _said(event: Event) -> tuple[object, ...]:
+    return event.data.get("text"), event.data.get("object")

@@ -6,17 +6,23 @@ better, as `hthor compare` finds it: paired, over tasks and people, adjusted by 
 
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from msgspec import Struct
 
+from hthor import seeds
 from hthor.eval.results import paired_difference
-from hthor.eval.statistics import bootstrap, intervals
+from hthor.eval.statistics import intervals
 from hthor.eval.statistics.variance_components import MeanSpread
 
 STREAM = "ranking"
 """The name of the bootstrap's chance stream."""
+DRAWS = 2000
+"""Samples of the bootstrap."""
+_AT_ONCE = 250
+_STEPS = 1e6
+"""Values are counted in millionths: sums of whole numbers are the same on every machine."""
 
 
 class Rank(Struct, frozen=True, kw_only=True):
@@ -84,7 +90,7 @@ def _excluded(
 ) -> tuple[np.ndarray, np.ndarray]:
     """For each agent, how many others are simultaneously certain to be better, and how many to be worse."""
     count = len(outcomes)
-    drawn = bootstrap.bootstrap_means(outcomes, tasks, people, name=STREAM)
+    drawn = bootstrap_means(outcomes, tasks, people, name=STREAM)
     off = drawn - outcomes.mean(axis=1)[:, None]
     better, worse = np.zeros(count, dtype=int), np.zeros(count, dtype=int)
     for one in range(count):
@@ -99,3 +105,43 @@ def _excluded(
         better[one] = int((others & (least > 0.0)).sum())
         worse[one] = int((others & (most < 0.0)).sum())
     return better, worse
+
+
+def bootstrap_means(
+    values: np.ndarray, tasks: np.ndarray, people: np.ndarray, *, name: str, draws: int = DRAWS
+) -> np.ndarray:
+    """Means of each row over each sample of the two-way "pigeonhole" bootstrap, (..., at most ``draws``).
+
+    Tasks and participants are resampled independently; all rows meet the same samples, so that pairing is kept. Where
+    every task was done once, their spread takes the noise of single trials for three times what it is; how the rows'
+    means hang together they show all the same.
+
+    Args:
+        values: (..., N) float64, in millionths at the finest. tasks, people: (N,) indices from 0.
+        name: of the chance stream; equal names give equal samples.
+    """
+    whole = np.rint(values * _STEPS)
+    found = []
+    for weights in _weights(tasks, people, name, draws):
+        total = weights.sum(axis=1)
+        held = total > 0.0  # a sample can miss every trial where few tasks met few people
+        found.append(whole @ weights[held].T / total[held] / _STEPS)
+    drawn: np.ndarray = np.concatenate(found, axis=-1)
+    return drawn if drawn.shape[-1] else values.mean(axis=-1, keepdims=True)
+
+
+def _weights(tasks: np.ndarray, people: np.ndarray, name: str, draws: int) -> Iterator[np.ndarray]:
+    """How often each trial is in each sample, (some, N) at a time."""
+    chance = np.random.Generator(np.random.Philox(key=seeds.derive(0, "bootstrap", name)))
+    for begin in range(0, draws, _AT_ONCE):
+        some = min(_AT_ONCE, draws - begin)
+        of_task = _counts(chance, int(tasks.max()) + 1, some)
+        of_person = _counts(chance, int(people.max()) + 1, some)
+        yield of_task[:, tasks] * of_person[:, people]
+
+
+def _counts(chance: np.random.Generator, sort: int, draws: int) -> np.ndarray:
+    """How often each of ``sort`` things is drawn, (draws, sort)."""
+    drawn = chance.integers(0, sort, (draws, sort)) + sort * np.arange(draws)[:, None]
+    counts: np.ndarray = np.bincount(drawn.ravel(), minlength=draws * sort).reshape(draws, sort).astype(np.float64)
+    return counts

@@ -14,7 +14,7 @@ from hthor.errors import HthorError
 from hthor.eval.config import human_populations, robot_team, sessions
 from hthor.eval.config.human_populations import HumanModelRef
 from hthor.eval.config.robot_team import RobotTeam
-from hthor.eval.config.shard import Shard
+from hthor.eval.config.sessions import Shard
 from hthor.guest.agent.manifest import Manifest
 from hthor.humans.population import resolve
 from hthor.humans.population.resolve import PROXY, ParticipantSource

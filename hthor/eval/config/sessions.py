@@ -1,12 +1,16 @@
-"""Assigning tasks to participants: which ten tasks each does, and in which order."""
+"""Assigning tasks to participants, ten each in some order, and dividing a run's sessions among machines."""
 
 import math
+import re
 from collections.abc import Sequence
+from pathlib import Path
+from typing import TypeVar
 
 import msgspec
 from msgspec import Struct
 
 from hthor import code_identity, rules, seeds
+from hthor.errors import HthorError
 from hthor.eval.config import robot_team
 from hthor.eval.config.robot_team import RobotTeam
 from hthor.humans.population import resolve
@@ -14,6 +18,9 @@ from hthor.humans.population.resolve import PROXY, ParticipantSource
 from hthor.tasks import Suite
 from hthor.types import TaskSpec, TrialSpec
 from hthor.types.detector_specs import OWN
+
+_T = TypeVar("_T")
+_SHARD_ENDING = re.compile(r"-shard-\d+-of-\d+$")
 
 
 class Session(Struct, frozen=True, kw_only=True):
@@ -130,3 +137,41 @@ def _deck(tasks: Sequence[TaskSpec], seed: int, deck: int) -> list[int]:
         order = seeds.shuffled(len(numbers), seed, "deal", deck, house)
         places += [((rank + 0.5) / len(numbers), numbers[place]) for rank, place in enumerate(order)]
     return [number for _, number in sorted(places)]
+
+
+class Shard(Struct, frozen=True, kw_only=True):
+    """One share of a run: the ``number``-th, counted from 1, ``of`` so many; it has ``trials`` trials."""
+
+    number: int
+    of: int
+    trials: int = 0
+
+    @property
+    def words(self) -> str:
+        """As the command line has it, such as "3/16"."""
+        return f"{self.number}/{self.of}"
+
+    def share(self, whole: Sequence[_T]) -> tuple[_T, ...]:
+        """This shard's part of the sessions: every ``of``-th, so that all shards have their share of every house."""
+        return tuple(whole[self.number - 1 :: self.of])
+
+    def folder(self, run: Path) -> Path:
+        """The folder of this shard when the whole run's would be ``run``."""
+        return run.with_name(f"{run.name}-shard-{self.number}-of-{self.of}")
+
+
+def parse_shard(text: str) -> Shard:
+    """The shard that the user named, such as "3/16".
+
+    Raises:
+        HthorError: when the text cannot be parsed, or there is no such shard.
+    """
+    number, slash, of = text.partition("/")
+    if not (slash and number.isdecimal() and of.isdecimal() and 1 <= int(number) <= int(of)):
+        raise HthorError(f"--shard '{text}': expected i/N with i from 1 to N, such as 1/16 up to 16/16.")
+    return Shard(number=int(number), of=int(of))
+
+
+def whole_folder(folder: Path) -> Path:
+    """The whole run's folder, after which a shard's folder was named."""
+    return folder.with_name(_SHARD_ENDING.sub("", folder.name))

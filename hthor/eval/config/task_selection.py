@@ -1,6 +1,7 @@
 """The tasks of a run: those of a suite, or a part of it by task kind, house, difficulty or number."""
 
 import hashlib
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -10,7 +11,6 @@ from msgspec import Struct
 
 from hthor import code_identity, houses, installation, jsonio, plugins, seeds, tasks
 from hthor.errors import HthorError, UnknownName
-from hthor.eval.config import task_subset
 from hthor.eval.config.run_config import KindRef
 from hthor.houses import HouseLibrary
 from hthor.tasks.kind import TaskKind
@@ -21,6 +21,8 @@ from hthor.types import TaskSpec
 
 _ROOT = seeds.derive(2, "programme")
 """Seed of the tasks that are generated for a user's own kind: the same file always gives the same tasks."""
+_SUBSET_ROOT = seeds.derive(3, "selection")
+"""Seed of every subset: a suite always gives the same tasks, independent of the run's seed."""
 _VERSION = 1
 
 
@@ -153,9 +155,38 @@ def limit_selection(whole: TaskSelection, limit: int | None) -> TaskSelection:
     if limit > len(whole.suite.tasks):
         raise HthorError(f"--limit {limit}: the suite '{whole.suite.name}' has {len(whole.suite.tasks)} tasks here.")
     suite = whole.suite
-    some = suite.with_tasks(task_subset.choose_subset(suite.tasks, limit))
+    some = suite.with_tasks(choose_subset(suite.tasks, limit))
     note = f"{limit} of the {len(suite.tasks)} tasks of '{suite.name}' are played: no result for the leaderboard."
     return msgspec.structs.replace(whole, suite=some, limit=limit, notes=(*whole.notes, note))
+
+
+def choose_subset(tasks: Sequence[TaskSpec], count: int) -> tuple[TaskSpec, ...]:
+    """A representative subset: ``count`` of the tasks, in the suite's order.
+
+    Every house, and within it every task kind, has about its share. A larger subset contains every smaller one, so
+    that more tasks can be added to a result.
+    """
+    left = [tasks[place] for place in seeds.shuffled(len(tasks), _SUBSET_ROOT, "tasks")]
+    houses, kinds = Counter(task.house for task in left), Counter(task.kind for task in left)
+    pairs = Counter((task.house, task.kind) for task in left)
+    taken: Counter[object] = Counter()
+
+    def share_taken(task: TaskSpec) -> tuple[float, ...]:
+        """The share of the task's house, kind and pair of both that is taken; the task with the least is next."""
+        pair = (task.house, task.kind)
+        return (
+            (taken["house", task.house] + 0.5) / houses[task.house],
+            (taken["kind", task.kind] + 0.5) / kinds[task.kind],
+            (taken["pair", *pair] + 0.5) / pairs[pair],
+        )
+
+    chosen: set[str] = set()
+    for _ in range(count):
+        task = min(left, key=share_taken)
+        left.remove(task)
+        chosen.add(task.id)
+        taken.update([("house", task.house), ("kind", task.kind), ("pair", task.house, task.kind)])
+    return tuple(task for task in tasks if task.id in chosen)
 
 
 def find_kind(name: str) -> TaskKind:

@@ -10,7 +10,7 @@ from hthor import documents, jsonio
 from hthor.errors import RunError
 from hthor.eval.config import cli_command, run_config
 from hthor.eval.config.run_config import RunConfig
-from hthor.eval.config.shard import Shard, whole_folder
+from hthor.eval.config.sessions import Shard, whole_folder
 from hthor.eval.records import opened_files, platform, run_isolation, session_restarts, trial_log, trial_record
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_log import Place

@@ -1,17 +1,17 @@
 """One trial as one line of JSON; the same trial gives the same bytes everywhere."""
 
 import zlib
+from collections.abc import Sequence
 from typing import Any
 
 import msgspec
-from msgspec import Struct
+from msgspec import UNSET, Struct, UnsetType
 
 from hthor import documents, jsonio
 from hthor.episode import EpisodeLog, Fault
 from hthor.eval.metrics.trial_metrics import TrialMetrics, measure
-from hthor.eval.records import event_data
 from hthor.guest.agent.manifest import File
-from hthor.types import Event, TrialSpec
+from hthor.types import Event, TrialSpec, Vec3
 
 CODE_ROOT = "trial"
 
@@ -20,6 +20,12 @@ _DIGITS = 4
 _encoder = msgspec.json.Encoder(order="deterministic")
 _CHECK = b',"check":"%08x"}\n'
 _CHECK_LENGTH = len(_CHECK % 0)
+_NEEDED = {
+    "sent": ("message", "text"),
+    **dict.fromkeys(("shown", "confirmed", "declined", "covered"), ("message",)),
+    "progress": ("value",),
+}
+"""The fields that events of a kind must have."""
 
 
 class TrialRecord(Struct, frozen=True, kw_only=True):
@@ -43,7 +49,7 @@ class TrialRecord(Struct, frozen=True, kw_only=True):
     progress: float | None = None
     idle: dict[str, int] = {}
     journal: tuple[Event, ...] = ()
-    files: dict[str, tuple[File, ...]] | msgspec.UnsetType = msgspec.UNSET
+    files: dict[str, tuple[File, ...]] | UnsetType = UNSET
 
     @property
     def log(self) -> EpisodeLog:
@@ -104,8 +110,39 @@ def decode(line: bytes) -> TrialRecord:
     verify_checksum(line)
     if record.key != key(record.spec):
         raise Damaged("key", f"'{record.key}' is not the key of the trial in 'spec', '{key(record.spec)}'")
-    event_data.check_events(record.events)
+    check_events(record.events)
     return record
+
+
+class _Data(Struct):
+    """The fields that are read, whatever the kind of event."""
+
+    message: int | UnsetType = UNSET
+    text: str | UnsetType = UNSET
+    object: str | UnsetType = UNSET
+    position: Vec3 | UnsetType | None = UNSET
+    off: float | UnsetType | None = UNSET
+    on: str | UnsetType = UNSET
+    thing: str | UnsetType = UNSET
+    by: str | int | UnsetType = UNSET
+    value: float | UnsetType = UNSET
+    bearers: tuple[str, ...] | UnsetType = UNSET
+
+
+def check_events(events: Sequence[Event]) -> None:
+    """Check that the data of all events can be read.
+
+    Raises:
+        Damaged: names the event, by its number from 0, and the field.
+    """
+    for number, event in enumerate(events):
+        try:
+            with documents.reading_errors():
+                msgspec.convert(event.data, _Data)
+        except Damaged as error:
+            raise Damaged(f"events[{number}].data.{error.field}", error.problem) from None
+        if missing := next((name for name in _NEEDED.get(event.kind, ()) if name not in event.data), ""):
+            raise Damaged(f"events[{number}].data.{missing}", f"is missing; an event '{event.kind}' has it")
 
 
 def _all_rounded(events: tuple[Event, ...]) -> tuple[Event, ...]:

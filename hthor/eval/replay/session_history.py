@@ -12,7 +12,7 @@ from hthor.eval.config.robot_team import AgentInfo, RobotInfo, RobotTeam
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner.run_job import make_sources
-from hthor.eval.runner.sources import Sources
+from hthor.eval.runner.trial_runner import Sources
 from hthor.guest import GuestConfig
 from hthor.guest.agent import manifest
 from hthor.types import RobotSeat, TrialSpec

@@ -14,8 +14,7 @@ from hthor.eval.records import opened_files
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import baseline, result_file
-from hthor.eval.results.result_file import Counts, Effort, Hashes, RunResult, Scores
-from hthor.eval.results.uplift import Uplift, to_stored
+from hthor.eval.results.result_file import Counts, Effort, Hashes, RunResult, Scores, Uplift, to_stored
 from hthor.eval.statistics import intervals
 from hthor.eval.statistics.intervals import Estimate
 from hthor.guest import Isolation

@@ -12,11 +12,12 @@ from hthor.eval.metrics import trial_metrics
 from hthor.eval.records import trial_log
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
-from hthor.eval.results import pairing, result_file, uplift
-from hthor.eval.results.uplift import StoredUplift, Uplift
+from hthor.eval.results import paired_difference, pairing, result_file
+from hthor.eval.results.result_file import StoredUplift, Uplift
 
 FOLDER = "control"
 """The folder in which a run keeps its own baseline."""
+RECORDED = "the log of the run without a robot was not found; these numbers were recorded when it was there"
 
 
 def uplift_or_stored(folder: Path, plan: RunConfig, records: Sequence[TrialRecord]) -> StoredUplift | None:
@@ -25,13 +26,22 @@ def uplift_or_stored(folder: Path, plan: RunConfig, records: Sequence[TrialRecor
     If no baseline is found, as in a folder that was copied elsewhere, the uplift in the run's stored result is used,
     with a note. None if that has none either, or the run has no robot.
     """
-    return uplift.to_stored(measure_uplift(folder, plan, records)) or _recorded(folder, plan)
+    return result_file.to_stored(measure_uplift(folder, plan, records)) or _recorded(folder, plan)
 
 
 def measure_uplift(folder: Path, plan: RunConfig, records: Sequence[TrialRecord]) -> Uplift | None:
     """The uplift from the baseline's log; None if the run has no robot or no complete baseline is found."""
     found = next(_whole(folder, plan, _anywhere(folder)), None)
-    return None if found is None else uplift.make_uplift(found[2], records, run=found[1].sha256)
+    return None if found is None else make_uplift(found[2], records, run=found[1].sha256)
+
+
+def make_uplift(control: Sequence[TrialRecord], records: Sequence[TrialRecord], *, run: str) -> Uplift | None:
+    """The uplift of ``records`` over a baseline whose hash is ``run``; None without a trial in common."""
+    pairs = pairing.pair_trials(control, records).pairs
+    sr, twsr, time_s = (paired_difference.paired_difference(pairs, metric) for metric in result_file.UPLIFT_METRICS)
+    if sr is None or twsr is None or time_s is None:
+        return None
+    return Uplift(control=run, sr=sr, twsr=twsr, time_s=time_s)
 
 
 def find_baseline(folder: Path, plan: RunConfig) -> tuple[RunConfig, list[TrialRecord]] | None:
@@ -52,7 +62,7 @@ def _recorded(folder: Path, plan: RunConfig) -> StoredUplift | None:
     if not plan.seats:
         return None
     known = result_file.stored_uplift(folder, run=plan.sha256)
-    return None if known is None else msgspec.structs.replace(known, note=uplift.RECORDED)
+    return None if known is None else msgspec.structs.replace(known, note=RECORDED)
 
 
 def _whole(

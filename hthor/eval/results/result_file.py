@@ -14,12 +14,14 @@ from hthor.eval.config import robot_team, run_config
 from hthor.eval.config.human_populations import HumanModelRef
 from hthor.eval.config.run_config import AssetsRef, KindRef, SuiteRef
 from hthor.eval.metrics import registry
-from hthor.eval.results.uplift import StoredUplift
+from hthor.eval.results.paired_difference import Difference
 from hthor.eval.statistics.intervals import NOTHING, Estimate
 from hthor.guest import Isolation, Manifest
 from hthor.types import RobotSeat
 
 SCHEMA = "hthor.result/5"
+UPLIFT_METRICS = ("sr", "twsr", "time_s")
+"""The metrics that an uplift is given in."""
 
 
 class Estimates(Struct, frozen=True, kw_only=True):
@@ -82,6 +84,28 @@ class Hashes(Struct, frozen=True, kw_only=True):
     rules: str
     code: str
     trials: str
+
+
+class Uplift(Struct, frozen=True, kw_only=True):
+    """Differences from the baseline, trial by trial: the same participants, days and tasks.
+
+    ``control`` is the hash of the baseline's configuration, ``hashes.run`` in its result.
+    """
+
+    control: str
+    sr: Difference
+    twsr: Difference
+    time_s: Difference
+
+
+class StoredUplift(Uplift, frozen=True, kw_only=True):
+    """An uplift as it stands in a run's result.
+
+    ``note`` is present only if the baseline's log was not found when the run was scored; the numbers are then those of
+    an earlier scoring.
+    """
+
+    note: str | msgspec.UnsetType = msgspec.UNSET
 
 
 class Effort(Struct, frozen=True, kw_only=True):
@@ -163,6 +187,13 @@ def stored_uplift(folder: Path, *, run: str) -> StoredUplift | None:
     except (OSError, documents.Unreadable):
         return None
     return held.uplift if held.hashes.run == run else None
+
+
+def to_stored(one: Uplift | None) -> StoredUplift | None:
+    """The uplift as it stands in a result."""
+    if one is None or isinstance(one, StoredUplift):
+        return one
+    return StoredUplift(control=one.control, sr=one.sr, twsr=one.twsr, time_s=one.time_s)
 
 
 def is_outdated(path: Path) -> bool:

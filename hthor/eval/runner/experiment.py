@@ -13,7 +13,7 @@ from hthor.eval.config.run_config import RunConfig
 from hthor.eval.records import opened_files, run_isolation
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.results.result_file import RunResult
-from hthor.eval.runner import engines, queue, run, run_options
+from hthor.eval.runner import engines, run, run_options
 from hthor.eval.runner.collector import InternalFailure, Unfinished
 from hthor.eval.runner.progress import Watcher
 from hthor.eval.runner.run_job import ScheduledRun
@@ -124,7 +124,7 @@ class _Experiment:
 
 def _engine(options: RunOptions, scheduled: ScheduledRun) -> engines.Engine:
     tasks, team = scheduled.tasks.suite.tasks, scheduled.team
-    limit_s = options.trial_limit or queue.trial_limit_s(tasks, len(team.agent_paths), options.step_limit)
+    limit_s = options.trial_limit or engines.trial_limit_s(tasks, len(team.agent_paths), options.step_limit)
     return engines.find_engine(
         options.engine, jobs=options.jobs, address=options.address, gpus=team.gpus, limit_s=limit_s
     )

@@ -12,7 +12,7 @@ from hthor.eval.config.task_selection import TaskSelection
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.runner import trial_runner
 from hthor.eval.runner.messages import RunnerFactory
-from hthor.eval.runner.sources import Sources
+from hthor.eval.runner.trial_runner import Sources
 from hthor.guest import GuestConfig, Isolation
 from hthor.humans.population.resolve import ParticipantSource
 

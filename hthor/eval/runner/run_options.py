@@ -9,7 +9,7 @@ from msgspec import Struct
 
 from hthor import code_identity, guest
 from hthor.errors import HthorError
-from hthor.eval.config import human_populations, robot_team, run_config, shard, task_selection
+from hthor.eval.config import human_populations, robot_team, run_config, sessions, task_selection
 from hthor.eval.config.robot_team import RobotTeam
 from hthor.eval.config.run_config import AssetsRef, RunConfig
 from hthor.eval.config.task_selection import TaskSelection
@@ -175,7 +175,7 @@ class _Planner:
         title = config.name if populations == 1 else f"{config.name}, {people.name} people"
         path = _folder(options, config, teams, populations)
         if options.shard:
-            number = shard.parse_shard(options.shard)
+            number = sessions.parse_shard(options.shard)
             config = run_config.shard_config(config, number, len(self._tasks.suite.tasks))
             title, path = f"{title}, shard {number.words}", number.folder(path)
         return self._job(team, people, config, path, title)

@@ -8,15 +8,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import msgspec
+from msgspec import Struct
 
 from hthor import code_identity, gc_freeze, plugins
 from hthor.errors import AgentError, HthorError
 from hthor.eval.runner import fault_report
 from hthor.eval.runner.fault_report import RecordedAgent
 from hthor.eval.runner.messages import TrialOutcome
-from hthor.eval.runner.sources import Sources
 from hthor.guest.agent import agent_files
-from hthor.guest.agent.manifest import File
+from hthor.guest.agent.manifest import File, Manifest
+from hthor.guest.host.config import GuestConfig
 from hthor.types import Mind, RobotSeat, RobotSpec, TrialSpec
 from hthor.types.cameras import OWN
 
@@ -43,6 +44,29 @@ def load_pack(assets: str) -> Pack | None:
     from hthor.looks import pack
 
     return pack.load(assets)
+
+
+class Sources(Struct, frozen=True, kw_only=True):
+    """Where the parts of a trial are that do not ship with hthor.
+
+    Attributes:
+        agent_paths: the submitted agents, by seat; ``manifests`` lists their files, by seat.
+        robot_paths: the files of the user's own robots, by seat.
+        kind_path: the file of a user's own task kind.
+        assets: the name of the furniture pack that pictures show, empty for our own furniture.
+        houses: the folder of the suite's own houses.
+        humans: the word that finds the human population again; empty where the name in the trial does.
+        guests: how submitted agents are isolated, and what they are given.
+    """
+
+    agent_paths: dict[str, str] = {}
+    manifests: dict[str, Manifest] = {}
+    robot_paths: dict[str, str] = {}
+    kind_path: str = ""
+    assets: str = ""
+    houses: str = ""
+    humans: str = ""
+    guests: GuestConfig = GuestConfig()
 
 
 class TrialRunner:

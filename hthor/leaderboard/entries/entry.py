@@ -7,7 +7,7 @@ from msgspec import UNSET, Meta, Struct, UnsetType
 from hthor import jsonio
 from hthor.eval.config.run_config import RunConfig
 from hthor.eval.records.platform import Platform
-from hthor.eval.results.uplift import Uplift
+from hthor.eval.results.result_file import Uplift
 from hthor.eval.statistics.intervals import Estimate
 from hthor.guest import File, Isolation, Manifest
 

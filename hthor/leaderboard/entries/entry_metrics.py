@@ -9,7 +9,7 @@ from hthor.eval.config import sessions
 from hthor.eval.metrics import registry
 from hthor.eval.metrics.metric import DIGITS
 from hthor.eval.results import paired_difference
-from hthor.eval.results.uplift import METRICS, Uplift
+from hthor.eval.results.result_file import UPLIFT_METRICS, Uplift
 from hthor.eval.statistics import intervals
 from hthor.eval.statistics.intervals import Estimate
 from hthor.leaderboard.entries.entry import Entry, Group
@@ -88,7 +88,7 @@ def entry_uplift(entry: Entry, held: Outcomes, control: Entry, without: Outcomes
             registry.get(metric),
             limit_s=held.time_limit_s,
         )
-        for metric in METRICS
+        for metric in UPLIFT_METRICS
     }
     return Uplift(control=control.hashes.run, sr=found["sr"], twsr=found["twsr"], time_s=found["time_s"])
 

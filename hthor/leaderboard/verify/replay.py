@@ -21,7 +21,7 @@ from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner import engines
 from hthor.eval.runner.messages import RunnerFactory, SessionAbandoned, TrialDone
 from hthor.eval.runner.run_job import RunJob, make_sources
-from hthor.eval.runner.sources import Sources
+from hthor.eval.runner.trial_runner import Sources
 from hthor.guest import AgentInputs, GuestConfig
 from hthor.humans.population import resolve
 from hthor.humans.population.resolve import ParticipantSource

@@ -9,7 +9,7 @@ from hthor.eval.config.robot_team import NO_ROBOT, NO_ROBOT_AGENT
 from hthor.eval.config.run_config import REALTIME
 from hthor.eval.metrics import registry
 from hthor.eval.metrics.metric import NUMBER, SHARE, Unit
-from hthor.eval.results import uplift
+from hthor.eval.results import result_file
 from hthor.eval.results.paired_difference import Difference
 from hthor.eval.results.result_file import RunResult, Scores
 from hthor.eval.statistics.intervals import Estimate
@@ -37,7 +37,7 @@ def result_table(result: RunResult, *, everything: bool = False) -> Table:
     for title, unit, estimate in (*_rows(result.metrics, everything), *rated):
         seen = format_detectable(estimate.mde80, unit)
         table.add_row(title, format_mean(estimate, unit), format_interval(estimate, unit), seen, str(estimate.n))
-    for metric in map(registry.get, uplift.METRICS if result.uplift else ()):
+    for metric in map(registry.get, result_file.UPLIFT_METRICS if result.uplift else ()):
         gain: Difference = getattr(result.uplift, metric.name)
         ends = "–" if gain.ci95 is None else " … ".join(format_difference(end, metric.unit) for end in gain.ci95)
         mean = f"{format_difference(gain.difference, metric.unit)} {metric.unit.difference}"

@@ -16,7 +16,7 @@ from hthor.eval.config.sessions import make_sessions
 from hthor.eval.records import trial_record
 from hthor.eval.results import aggregate
 from hthor.eval.runner import experiment, progress, run_options
-from hthor.eval.runner.sources import Sources
+from hthor.eval.runner.trial_runner import Sources
 from hthor.report.drawing import trial_figure
 
 HOUSES = ("elder", "rowan")

@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 from hthor.eval.comparison import ranking
 from hthor.eval.metrics import registry
 from hthor.eval.results import paired_difference
-from hthor.eval.statistics import bootstrap
 
 TRIALS = 80
 TASKS, PEOPLE = np.arange(TRIALS), np.arange(TRIALS) // 10
@@ -76,7 +75,7 @@ def test_ranks_are_those_that_compare_would_give():
 
 def test_the_same_name_gives_the_same_samples_and_rows_share_them():
     rows = np.stack([(np.arange(TRIALS) % 3 == 0).astype(float)] * 2)
-    first, again, other = (bootstrap.bootstrap_means(rows, TASKS, PEOPLE, name=name, draws=300) for name in "xxy")
+    first, again, other = (ranking.bootstrap_means(rows, TASKS, PEOPLE, name=name, draws=300) for name in "xxy")
     assert (first == again).all()
     assert (first[0] == first[1]).all()
     assert (first != other).any()

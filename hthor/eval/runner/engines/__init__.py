@@ -7,18 +7,29 @@ the same record, and the listener keeps it once. Engines read and write no files
 from __future__ import annotations
 
 import importlib
+import time
+from collections import deque
 from collections.abc import Generator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
+from hthor import rules
 from hthor.errors import HthorError, UnknownName
-from hthor.eval.runner.messages import Failed, News, RunnerFactory
-from hthor.eval.runner.queue import LIMIT_S
+from hthor.eval.runner.messages import Failed, News, RunnerFactory, SessionAbandoned, SessionRestarted
 
 if TYPE_CHECKING:
     from hthor.eval.config.sessions import Session
+    from hthor.types import TaskSpec
 
 LOCAL = "local"
+ATTEMPTS = 3
+"""How many workers a session may end before it is given up. Our choice."""
+LIMIT_S = 600.0
+"""How long [s] a worker may take for a trial: a hundred times what one takes, as the first also builds a world."""
+_GUEST_S, _GUEST_STEP_S, _SLACK_S = 300.0, 5.0, 1.0
+"""What a submitted agent adds [s]: for its start, for each step (its default deadline), and a margin for each step."""
+_LEAP_S = 1.0
+"""A clock that was not read for longer than this [s] stood still meanwhile."""
 
 
 class Engine(Protocol):
@@ -37,7 +48,7 @@ class Engine(Protocol):
     def run_sessions(self, sessions: Sequence[Session], make: RunnerFactory) -> Generator[News | None, None, None]:
         """Run sessions and report what happens, None from time to time. Closing the generator ends the workers.
 
-        A session that ends `hthor.eval.runner.queue.ATTEMPTS` workers is `SessionAbandoned`, and the others go on.
+        A session that ends `ATTEMPTS` workers is `SessionAbandoned`, and the others go on.
 
         Raises:
             SessionFailed: when the user has to mend something first.
@@ -75,3 +86,55 @@ def find_engine(
     module = importlib.import_module(f"hthor.eval.runner.engines.{name}")
     engine: Engine = module.Engine(jobs=jobs, address=address, gpus=gpus, limit_s=limit_s)
     return engine
+
+
+def trial_limit_s(tasks: Sequence[TaskSpec], guests: int, step_limit_s: float | None = None) -> float:
+    """How long [s] a worker may take for a trial with so many submitted agents.
+
+    It is longer than the agents' own deadlines, so that a slow agent is not taken for a stuck worker.
+
+    Args:
+        step_limit_s: the deadline of an action [s], None for the default.
+    """
+    ticks = max((task.time_limit for task in tasks), default=0.0) / rules.TICK_S
+    return LIMIT_S + guests * (_GUEST_S + (max(_GUEST_STEP_S, step_limit_s or 0.0) + _SLACK_S) * ticks)
+
+
+class Queue:
+    """Sessions that wait for a worker, with the number of this attempt."""
+
+    def __init__(self, sessions: Sequence[Session]) -> None:
+        self._waiting = deque((session, 1) for session in sessions)
+
+    def __len__(self) -> int:
+        return len(self._waiting)
+
+    def take(self) -> tuple[Session, int]:
+        """The next session and its attempt, counted from 1."""
+        return self._waiting.popleft()
+
+    def again(self, session: Session, attempt: int, cause: str) -> SessionRestarted | SessionAbandoned:
+        """A worker was lost while it ran this session: run it again next, or give it up after `ATTEMPTS`."""
+        if attempt >= ATTEMPTS:
+            return SessionAbandoned(
+                participant=session.participant, cause=f"it ended {ATTEMPTS} workers, the last by {cause}"
+            )
+        self._waiting.appendleft((session, attempt + 1))
+        return SessionRestarted(participant=session.participant, cause=f"its worker was ended by {cause}")
+
+    def clear(self) -> None:
+        """Give out no more sessions."""
+        self._waiting.clear()
+
+
+class PausableClock:
+    """Time [s] for callers that read it often; it stands still while this process is stopped or waits for a disk."""
+
+    def __init__(self) -> None:
+        self._last = time.monotonic()
+        self._now = 0.0
+
+    def now(self) -> float:
+        last, self._last = self._last, time.monotonic()
+        self._now += min(self._last - last, _LEAP_S)
+        return self._now

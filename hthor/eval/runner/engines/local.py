@@ -13,9 +13,8 @@ from typing import TYPE_CHECKING
 from hthor import code_identity
 from hthor.errors import HthorError
 from hthor.eval.records.trial_log import BEAT_S
-from hthor.eval.runner.engines import SessionFailed
+from hthor.eval.runner.engines import LIMIT_S, PausableClock, Queue, SessionFailed
 from hthor.eval.runner.messages import Failed, Finished, News, RunnerFactory, SessionAbandoned, TrialDone
-from hthor.eval.runner.queue import LIMIT_S, PausableClock, Queue
 from hthor.eval.runner.worker import ONE_THREAD, run_worker
 
 if TYPE_CHECKING:

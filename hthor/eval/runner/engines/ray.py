@@ -14,9 +14,8 @@ from typing import TYPE_CHECKING, Any
 from hthor import code_identity, installation
 from hthor.errors import HthorError, MissingExtra
 from hthor.eval.records.trial_log import BEAT_S
-from hthor.eval.runner.engines import SessionFailed
+from hthor.eval.runner.engines import ATTEMPTS, LIMIT_S, PausableClock, Queue, SessionFailed
 from hthor.eval.runner.messages import Failed, Finished, News, RunnerFactory, SessionAbandoned, TrialDone
-from hthor.eval.runner.queue import ATTEMPTS, LIMIT_S, PausableClock, Queue
 from hthor.eval.runner.worker import ONE_THREAD, SessionPlayer
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from matplotlib.figure import Figure
 
 from hthor.eval.comparison.compare import Comparison
 from hthor.eval.metrics import registry
-from hthor.eval.results import uplift
+from hthor.eval.results import result_file
 from hthor.report.analysis.document import Arm
 from hthor.report.html import matplotlib_svg
 from hthor.report.page.figures import run_styles
@@ -21,8 +21,8 @@ def figure(pairs: Sequence[Comparison], arms: Sequence[Arm]) -> Figure:
     names = [f"{pair.second} − {pair.first}" for pair in pairs]
     with matplotlib_svg.style():
         made = matplotlib_svg.new_figure(0.62 + rows * run_styles.row_height(names, 0.34))
-        panels = made.subplots(1, len(uplift.METRICS), sharey=True)
-        for ax, metric in zip(panels, map(registry.get, uplift.METRICS), strict=True):
+        panels = made.subplots(1, len(result_file.UPLIFT_METRICS), sharey=True)
+        for ax, metric in zip(panels, map(registry.get, result_file.UPLIFT_METRICS), strict=True):
             scale = metric.sign * metric.unit.scale
             matplotlib_svg.quiet_axes(ax)
             ax.set_title(metric.gain)

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from hthor.eval.comparison.compare import Comparison
 from hthor.eval.metrics import registry
-from hthor.eval.results import uplift
+from hthor.eval.results import result_file
 from hthor.report.analysis.document import Findings
 from hthor.report.html import elements
 from hthor.report.html.elements import Piece, Value
@@ -19,7 +19,7 @@ _COLUMNS = (
     "McNemar test of that. Tied: both succeeded, or neither did. p (Holm): two-sided, of no difference in success, "
     "adjusted for all comparisons here."
 )
-_HEAD = ("", *(registry.get(name).gain for name in uplift.METRICS), "won : lost", "tied", "p (Holm)")
+_HEAD = ("", *(registry.get(name).gain for name in result_file.UPLIFT_METRICS), "won : lost", "tied", "p (Holm)")
 
 
 def parts(found: Findings, drawings: Mapping[str, str]) -> list[str]:
@@ -72,7 +72,7 @@ def _row(pair: Comparison) -> list[Piece]:
         name.replace(" ", "\u00a0") if len(name) <= _SHORT else name,
         *(
             table_cells.difference(pair.success if name == "sr" else pair.differences.get(name), registry.get(name))
-            for name in uplift.METRICS
+            for name in result_file.UPLIFT_METRICS
         ),
         Value(f"{only.only_second} : {only.only_first}", "", told),
         str(pair.n - only.only_first - only.only_second),

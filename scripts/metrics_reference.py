@@ -1,6 +1,6 @@
-"""The table of all metrics in docs/metrics.md, made from their records.
+"""Writes the table of all metrics from their records: `python scripts/metrics_reference.py docs/metrics.md`.
 
-`python -m hthor.eval.metrics.reference docs/metrics.md` writes it between the page's two markers.
+The table stands between two markers of the page.
 """
 
 import math
@@ -12,7 +12,7 @@ from hthor import jsonio
 from hthor.eval.metrics import registry
 from hthor.eval.metrics.metric import Metric
 
-BEGIN = "<!-- written by: python -m hthor.eval.metrics.reference docs/metrics.md -->\n"
+BEGIN = "<!-- written by: python scripts/metrics_reference.py docs/metrics.md -->\n"
 END = "<!-- end -->\n"
 _COLUMNS = ("name in `result.json`", "in tables", "of one trial", "over trials", "range", "better")
 
