@@ -50,9 +50,9 @@ def _renew(json: bool) -> None:
     """Write the reference again, after a deliberate change of behaviour."""
     from hthor import jsonio
     from hthor.errors import HthorError
-    from hthor.eval.doctor import reproducibility, subprocess_probe
+    from hthor.eval.doctor import reproducibility, run_checks
 
-    with subprocess_probe.start_probe(reproducibility.__name__) as process:
+    with run_checks.start_probe(reproducibility.__name__) as process:
         course = process.answer(reproducibility.TrialFingerprint)
     if isinstance(course, str):
         raise HthorError(f"the trial could not be played: {course}.")

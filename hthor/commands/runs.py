@@ -12,8 +12,7 @@ from hthor.console import formats, output
 from hthor.console.formats import Format, Shape
 
 if TYPE_CHECKING:
-    from hthor.eval.browse.run_list import RunSummary
-    from hthor.eval.browse.run_view import RunView, TrialLine
+    from hthor.eval.browse import RunSummary, RunView, TrialLine
 
 app = typer.Typer(no_args_is_help=True, help="Finished and unfinished runs.")
 
@@ -31,11 +30,11 @@ def list_runs(
     A run that cannot be read is listed with what is wrong with it.
     """
     from hthor.errors import RunError
-    from hthor.eval.browse import run_list
+    from hthor.eval import browse
 
     if not folder.is_dir():
         raise RunError(f"{folder} is not a folder. Name the folder of your runs; 'hthor eval' writes to runs/.")
-    found = run_list.list_runs(folder)
+    found = browse.list_runs(folder)
     if formats.asks_json(json, shape):
         output.put_json(found)
         return
@@ -85,20 +84,20 @@ def view_run(
 
     Any option that chooses trials lists those that fit. CSV has the trials alone.
     """
-    from hthor.eval.browse import run_view
+    from hthor.eval import browse
     from hthor.report.terminal import result_tables
 
-    wanted = run_view.TrialFilter(
+    wanted = browse.TrialFilter(
         task=task, kind=_kind(kind), house=house, participant=participant, met=met, faulty=faulty
     )
-    found, result = run_view.view_run(run, wanted)
+    found, result = browse.view_run(run, wanted)
     if formats.asks_json(json, shape):
         output.put_json(found)
         return
     if shape is Format.CSV:
         output.put_records([formats.flat(line) for line in found.trials])
         return
-    if trials := trials or wanted != run_view.TrialFilter():
+    if trials := trials or wanted != browse.TrialFilter():
         headings = ("no.", "task", "house", "person", "outcome", "time [s]", "sent", "accepted", "trust", "fault")
         output.put_table(headings, map(_trial, found.trials), shape)
         output.put_line(f"{len(found.trials)} of {found.done} trials", shape)

@@ -7,8 +7,8 @@ from pathlib import Path
 import eval_fakes as fakes
 
 from hthor import jsonio
-from hthor.eval.browse import run_view
-from hthor.eval.browse.run_view import TrialFilter
+from hthor.eval import browse
+from hthor.eval.browse import TrialFilter
 from hthor.eval.records import trial_record
 
 
@@ -17,7 +17,7 @@ def test_a_view_counts_messages_as_the_metrics_do(tmp_path: Path) -> None:
     jsonio.write(tmp_path / "run.json", jsonio.pretty(plan))
     made = [trial_record.make_record(trial, fakes.episode(trial)) for one in dealt for trial in one.trials]
     jsonio.write(tmp_path / "trials.jsonl", b"".join(map(trial_record.encode, made)))
-    view, _ = run_view.view_run(tmp_path, TrialFilter())
+    view, _ = browse.view_run(tmp_path, TrialFilter())
     accepted = {record.key: record.metrics["accepted"] for record in made}
     assert {line.key: line.accepted for line in view.trials} == accepted
     assert sum(line.accepted for line in view.trials) > 0

@@ -116,7 +116,7 @@ def test_a_level_that_does_not_start_comes_with_its_fix(monkeypatch, level, file
         raise IsolationError(f"isolation {wanted} cannot be had on this machine: it is forbidden. 'hthor eval' helps.")
 
     monkeypatch.setattr(isolation_levels, "in_force", refuse)
-    monkeypatch.setattr(isolation_levels, "_read", lambda path: files.get(path, ""))
+    monkeypatch.setattr(isolation_levels, "read_system_file", lambda path: files.get(path, ""))
     monkeypatch.setattr(isolation_levels.shutil, "which", lambda _: bwrap)
     monkeypatch.setattr(isolation_levels.platform, "release", lambda: kernel)
     by_name = {one.name: one for one in isolation_levels.check_isolation("L2")}

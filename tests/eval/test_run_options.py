@@ -21,9 +21,9 @@ from typer.testing import CliRunner
 from hthor import tasks
 from hthor.cli import app
 from hthor.errors import HthorError, RunError
+from hthor.eval import dry_run
 from hthor.eval.config import cli_command, robot_team, run_config, sessions, task_selection
 from hthor.eval.config.sessions import Session
-from hthor.eval.dry_run import trial_cost
 from hthor.eval.records import trial_record
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.results import pairing
@@ -275,15 +275,15 @@ def test_a_first_dry_run_plays_a_few_trials_and_keeps_none(tmp_path: Path, monke
 
 def test_a_slow_first_trial_is_followed_by_a_second() -> None:
     """The first may have compiled for a minute, so that alone it would tell ten times what a run takes."""
-    assert not trial_cost._enough([55.0])
-    assert trial_cost._enough([55.0, 56.0])
-    assert not trial_cost._enough([5.0, 6.0]), "a third builds a house again"
+    assert not dry_run._enough([55.0])
+    assert dry_run._enough([55.0, 56.0])
+    assert not dry_run._enough([5.0, 6.0]), "a third builds a house again"
 
 
 def test_a_pace_counts_starts_and_houses_once() -> None:
-    known = trial_cost._cost_of([5.0, 7.0, 7.5])
-    assert known == trial_cost.TrialCost(trial_s=0.5, start_s=3.0, house_s=1.5, played=3)
+    known = dry_run._cost_of([5.0, 7.0, 7.5])
+    assert known == dry_run.TrialCost(trial_s=0.5, start_s=3.0, house_s=1.5, played=3)
     assert known.seconds(100, workers=2, houses=10) == 3.0 + 50 * 0.5 + 10 * 1.5
     assert known.seconds(4, workers=2, houses=10) == 3.0 + 2 * 0.5 + 2 * 1.5
-    assert trial_cost._cost_of([4.0]) == trial_cost.TrialCost(trial_s=4.0, played=1)
-    assert trial_cost._cost_of([]) is None
+    assert dry_run._cost_of([4.0]) == dry_run.TrialCost(trial_s=4.0, played=1)
+    assert dry_run._cost_of([]) is None

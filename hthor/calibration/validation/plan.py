@@ -11,9 +11,9 @@ from hthor import code_identity, jsonio, rules, tasks
 from hthor.calibration.simulation.trial_table import AGENTS
 from hthor.calibration.validation.report.study_groups import PEOPLE
 from hthor.errors import HthorError
+from hthor.eval import dry_run
 from hthor.eval.config import human_populations
-from hthor.eval.dry_run import forecast
-from hthor.eval.dry_run.forecast import RunForecast
+from hthor.eval.dry_run import RunForecast
 from hthor.eval.runner import experiment, progress, run_options
 from hthor.eval.runner.run_options import RUNS, ResolvedRuns
 from hthor.humans.population import kinds, resolve
@@ -128,7 +128,7 @@ def preview_runs(options: ValidationOptions) -> Iterator[tuple[ValidationRun, Ru
         def note(
             wanted: ResolvedRuns, evaluation: run_options.RunOptions = evaluation, runs: list[RunForecast] = runs
         ) -> bool:
-            runs += forecast.make_forecast(evaluation, wanted, {}).runs
+            runs += dry_run.make_forecast(evaluation, wanted, {}).runs
             return False
 
         for _ in experiment.run_experiment(evaluation, lambda _: progress.Silent(), note):

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from hthor.eval.agent_check.checks import AgentCheckReport
-    from hthor.eval.replay.rerun import Rerun
+    from hthor.eval.replay.session_history import Rerun
     from hthor.eval.runner.fault_report import Failure
 
 _FAULTS_EXIT, _BROKEN_EXIT = 3, 4
@@ -51,14 +51,15 @@ def run(
     """
     from hthor.eval.records import find
     from hthor.eval.records.run_folder import RunFolder
-    from hthor.eval.replay import rerun
-    from hthor.eval.replay.session_history import RunFiles
+    from hthor.eval.replay import session_history
     from hthor.guest.agent import inputs
 
     folder = RunFolder(run)
     wanted = find.find_trial(folder, trial)
-    files = RunFiles(agents=tuple(agent or ()), robots=tuple(robot or ()), kind=kind, humans=humans)
-    done = rerun.rerun_trial(folder, wanted, files, isolation, inputs.parse_inputs(agent_args or (), readable or ()))
+    files = session_history.RunFiles(agents=tuple(agent or ()), robots=tuple(robot or ()), kind=kind, humans=humans)
+    done = session_history.rerun_trial(
+        folder, wanted, files, isolation, inputs.parse_inputs(agent_args or (), readable or ())
+    )
     if json:
         output.put_json(done)
     else:

@@ -10,8 +10,7 @@ from hthor.console import output
 if TYPE_CHECKING:
     import typer
 
-    from hthor.eval.dry_run.forecast import Forecast, RunForecast
-    from hthor.eval.dry_run.trial_cost import TrialCost
+    from hthor.eval.dry_run import Forecast, RunForecast, TrialCost
     from hthor.eval.runner.progress import Watcher
     from hthor.eval.runner.run_options import ResolvedRuns, RunOptions
 
@@ -21,7 +20,7 @@ _ORIGINS = {"COMMANDLINE": "flag", "ENVIRONMENT": "environment", "DEFAULT": "def
 
 def show_forecast(options: RunOptions, watcher: Callable[[str], Watcher], context: typer.Context, json: bool) -> None:
     """Say what the command would do."""
-    from hthor.eval.dry_run import forecast
+    from hthor.eval import dry_run
     from hthor.eval.runner import experiment
 
     names = [str(one.name) for one in context.command.params if one.name in context.params]
@@ -29,7 +28,7 @@ def show_forecast(options: RunOptions, watcher: Callable[[str], Watcher], contex
     found: list[Forecast] = []
 
     def agree(intent: ResolvedRuns) -> bool:
-        found.append(forecast.make_forecast(options, intent, origins, output.say))
+        found.append(dry_run.make_forecast(options, intent, origins, output.say))
         return False
 
     for _ in experiment.run_experiment(options, watcher, agree):

@@ -1,5 +1,6 @@
 """The result of one check, and of all checks."""
 
+from pathlib import Path
 from typing import Literal
 
 from msgspec import Struct
@@ -25,3 +26,11 @@ class DoctorReport(Struct, frozen=True, kw_only=True):
     schema: str = SCHEMA
     well: bool
     findings: tuple[CheckResult, ...]
+
+
+def read_system_file(path: str) -> str:
+    """What the kernel says in a file; empty where there is no such file."""
+    try:
+        return Path(path).read_text(encoding="utf-8").strip()
+    except OSError:
+        return ""

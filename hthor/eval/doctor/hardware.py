@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from importlib import util
 from pathlib import Path
 
-from hthor.eval.doctor.check_result import CheckResult
+from hthor.eval.doctor.check_result import CheckResult, read_system_file
 
 _MB = 1e6
 _ROOM_MB, _ROOM_LEAST_MB = 1000.0, 100.0
@@ -84,14 +84,14 @@ def _memory(cores: float) -> CheckResult:
 def _free_mb() -> float | None:
     """Free memory, or what is left of the limit that a container has."""
     found = []
-    for line in _read("/proc/meminfo").splitlines():
+    for line in read_system_file("/proc/meminfo").splitlines():
         if line.startswith("MemAvailable:"):
             found.append(float(line.split()[1]) * 1024 / _MB)
     for limit, used in (
         ("/sys/fs/cgroup/memory.max", "/sys/fs/cgroup/memory.current"),
         ("/sys/fs/cgroup/memory/memory.limit_in_bytes", "/sys/fs/cgroup/memory/memory.usage_in_bytes"),
     ):
-        most, now = _read(limit), _read(used)
+        most, now = read_system_file(limit), read_system_file(used)
         if most.isdecimal() and now.isdecimal():
             found.append((int(most) - int(now)) / _MB)
     return max(0.0, min(found)) if found else None
@@ -109,7 +109,7 @@ def _processors(cores: float) -> CheckResult:
 def _cores() -> float:
     """Cores that this process can keep busy."""
     allowed = float(len(os.sched_getaffinity(0)))
-    quota, _, period = _read("/sys/fs/cgroup/cpu.max").partition(" ")
+    quota, _, period = read_system_file("/sys/fs/cgroup/cpu.max").partition(" ")
     return min(allowed, int(quota) / int(period)) if quota.isdecimal() and period.isdecimal() else allowed
 
 
@@ -150,10 +150,3 @@ def _houses() -> CheckResult:
     if not scenes or not suites:
         return CheckResult(name="houses", status="fail", says=says, fix="pip install --force-reinstall hthor")
     return CheckResult(name="houses", says=says)
-
-
-def _read(path: str) -> str:
-    try:
-        return Path(path).read_text(encoding="utf-8").strip()
-    except OSError:
-        return ""

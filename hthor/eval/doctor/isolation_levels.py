@@ -3,23 +3,13 @@
 import os
 import platform
 import shutil
-from pathlib import Path
 
-from hthor.eval.doctor.check_result import CheckResult
+from hthor.eval.doctor.check_result import CheckResult, read_system_file
 from hthor.guest import Isolation, IsolationError, in_force
-from hthor.guest.confinement import LEVELS, check_level, suffices
+from hthor.guest.confinement import LEVELS, suffices
 
 _LANDLOCK_SINCE = (5, 13)
 _UNCONFINED = "docker run --security-opt seccomp=unconfined --security-opt apparmor=unconfined ..., or leave it"
-
-
-def require_level(required: str) -> None:
-    """See that there is such a level.
-
-    Raises:
-        UnknownName: when there is not.
-    """
-    check_level(required, auto=False)
 
 
 def check_isolation(required: str) -> list[CheckResult]:
@@ -60,7 +50,7 @@ def suggest_fix(level: str) -> str:
         return "run hthor on an x86_64 machine"
     if level != "L1" and _kernel() < _LANDLOCK_SINCE:
         return f"a kernel of {'.'.join(map(str, _LANDLOCK_SINCE))} or later; this is {platform.release()}"
-    lsm = _read("/sys/kernel/security/lsm")
+    lsm = read_system_file("/sys/kernel/security/lsm")
     if level != "L1" and lsm and "landlock" not in lsm.split(","):
         return f"boot with lsm=landlock,{lsm}"
     if _in_container():
@@ -75,7 +65,7 @@ def _namespaces() -> str:
         ("kernel.unprivileged_userns_clone", "0", "1"),
         ("user.max_user_namespaces", "0", "15000"),
     ):
-        if _read("/proc/sys/" + name.replace(".", "/")) == wrong:
+        if read_system_file("/proc/sys/" + name.replace(".", "/")) == wrong:
             return f"{name}={right}"
     return ""
 
@@ -87,10 +77,3 @@ def _kernel() -> tuple[int, ...]:
 
 def _in_container() -> bool:
     return any(os.path.exists(mark) for mark in ("/.dockerenv", "/run/.containerenv"))
-
-
-def _read(path: str) -> str:
-    try:
-        return Path(path).read_text(encoding="utf-8").strip()
-    except OSError:
-        return ""

@@ -1,1 +1,1 @@
-"""Logged trials run again: `rerun` with the agents as they are now, `human_trace` to see what the human thought."""
+"""Logged trials run again: `session_history` with agents as they are now, `human_trace` to see the human's thoughts."""

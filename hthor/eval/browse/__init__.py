@@ -1,1 +1,0 @@
-"""Runs and trials as lists, for people who look through them."""

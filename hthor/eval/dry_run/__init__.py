@@ -1,1 +1,0 @@
-"""`hthor eval --dry-run`: what a command would do and how long it would take."""
