@@ -60,6 +60,11 @@ def read(
     return parse(data, kind, error, shown=shown, schema=schema, hint=hint)
 
 
+def read_or_none(path: Path, kind: type[_T], error: type[HthorError], *, schema: str = "", hint: str = "") -> _T | None:
+    """The record in a JSON file, as by `read`; None where there is no such file."""
+    return read(path, kind, error, schema=schema, hint=hint) if path.is_file() else None
+
+
 def parse(data: bytes, kind: type[_T], error: type[HthorError], *, shown: str, schema: str = "", hint: str = "") -> _T:
     """The record in the bytes of a file that is called ``shown``; otherwise like `read`."""
     try:

@@ -40,9 +40,7 @@ def names(sort: str) -> tuple[str, ...]:
     Args:
         sort: "agent", "human model", "metric", "robot" or "task kind".
     """
-    package, _ = _PACKAGES[sort]
-    folder = Path(__file__).parent.joinpath(*package.split(".")[1:])
-    stems = (path.stem for path in folder.glob("*.py") if not path.stem.startswith("_"))
+    stems = (path.stem for path in _folder(sort).glob("*.py") if not path.stem.startswith("_"))
     return tuple(sorted(plugin_name(sort, stem) for stem in stems))
 
 
@@ -66,10 +64,13 @@ def package(sort: str) -> str:
     return _PACKAGES[sort][0]
 
 
+def _folder(sort: str) -> Path:
+    return Path(__file__).parent.joinpath(*package(sort).split(".")[1:])
+
+
 def module_name(sort: str, name: str) -> str:
     """The module of a plug-in that ships with hthor."""
-    package, _ = _PACKAGES[sort]
-    return f"{package}.{file_stem(sort, name)}"
+    return f"{package(sort)}.{file_stem(sort, name)}"
 
 
 @overload
@@ -88,10 +89,9 @@ def load(sort: str, name: str) -> Any:
         UnknownName: when no file has that name.
         HthorError: when the file does not define that, or does not load.
     """
-    package, attribute = _PACKAGES[sort]
-    known = names(sort)
+    known, attribute = names(sort), _PACKAGES[sort][1]
     if plugin_name(sort, name) in known:
-        module = importlib.import_module(f"{package}.{file_stem(sort, name)}")
+        module = importlib.import_module(module_name(sort, name))
     elif name.endswith(_SUFFIX):
         module = _from_file(sort, Path(name))
     elif (user_module := loaded(sort, name)) is not None:
@@ -106,20 +106,13 @@ def load(sort: str, name: str) -> Any:
 
 def loaded(sort: str, name: str) -> ModuleType | None:
     """The plug-in's module if it was loaded before, from wherever it lies."""
-    package, _ = _PACKAGES[sort]
-    return sys.modules.get(f"{package}.{file_stem(sort, name)}")
+    return sys.modules.get(module_name(sort, name))
 
 
 @functools.cache
 def summary(sort: str, name: str) -> str:
-    """The first sentence of a plug-in's file, up to a semicolon; read without importing it.
-
-    Args:
-        name: its name, or the path of a user's file.
-    """
-    package, _ = _PACKAGES[sort]
-    own = Path(__file__).parent.joinpath(*package.split(".")[1:]) / f"{file_stem(sort, name)}{_SUFFIX}"
-    file = Path(name) if name.endswith(_SUFFIX) else own
+    """The first sentence of a plug-in's file (by its name or path), up to a semicolon; read without importing it."""
+    file = Path(name) if name.endswith(_SUFFIX) else _folder(sort) / f"{file_stem(sort, name)}{_SUFFIX}"
     text = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
     return " ".join(text.split("\n\n")[0].split()).split("; ")[0].rstrip(".")
 
@@ -151,12 +144,11 @@ def _own() -> set[str]:
 
 def _from_file(sort: str, path: Path) -> ModuleType:
     """Load a user's file as if it were in the package of its sort."""
-    package, _ = _PACKAGES[sort]
     if not path.is_file():
         raise UnknownName(sort, str(path), names(sort), "A path must lead to a Python file.")
     if plugin_name(sort, path.stem) in names(sort) or not path.stem.isidentifier():
         raise HthorError(f"{path}: a {sort}'s file name must be a Python name that no {sort} of ours has; rename it.")
-    name, place = f"{package}.{path.stem}", path.resolve()
+    name, place = f"{package(sort)}.{path.stem}", path.resolve()
     known = sys.modules.get(name)
     if known is not None:
         if known.__file__ == str(place):

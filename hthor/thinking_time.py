@@ -27,11 +27,7 @@ class Decision(Struct, frozen=True, kw_only=True):
 
 
 class Thinking:
-    """Holds actions back until the agents' thinking time is over; meanwhile these agents are not asked again.
-
-    Args:
-        clock: a monotonic clock [s].
-    """
+    """Holds actions back until the agents' thinking time is over; meanwhile these agents are not asked again."""
 
     def __init__(self, clock: Callable[[], float] = time.perf_counter) -> None:
         self._clock = clock

@@ -12,7 +12,7 @@ from hthor.console import formats, output
 from hthor.console.formats import Format, Shape
 
 if TYPE_CHECKING:
-    from hthor.eval.browse import RunSummary, RunView, TrialLine
+    from hthor.eval.browse import RunSummary, TrialLine
 
 app = typer.Typer(no_args_is_help=True, help="Finished and unfinished runs.")
 
@@ -110,7 +110,8 @@ def view_run(
     if result is not None and result.counts.faults:
         kinds = ", ".join(f"{count} {kind}" for kind, count in result.counts.faults_by_kind.items())
         output.put_line(f"an agent failed in {result.counts.faults} of {found.done} trials: {kinds}", shape)
-    _put_next(found, shape)
+    for line in output.following(*found.next):
+        output.put_line(line, shape)
 
 
 def _kind(word: str) -> str:
@@ -131,8 +132,3 @@ def _trial(line: TrialLine) -> tuple[object, ...]:
         line.number, line.task, line.house, line.participant, outcome, f"{line.time_s:.1f}", line.sent, line.accepted,
         trust, line.fault,
     )  # fmt: skip
-
-
-def _put_next(found: RunView, shape: Format) -> None:
-    for number, words in enumerate(found.next):
-        output.put_line(f"{'      ' if number else 'next: '} {words}", shape)

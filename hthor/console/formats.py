@@ -42,22 +42,14 @@ Shape = Annotated[
 
 
 def asks_json(json: bool, shape: Format) -> bool:
-    """Whether JSON was requested; --json and --format json mean the same.
-
-    Raises:
-        BadParameter: if the two options contradict each other.
-    """
+    """Whether JSON was requested; --json and --format json mean the same, and raise BadParameter if they contradict."""
     if json and shape not in (Format.TABLE, Format.JSON):
         raise typer.BadParameter(f"--json and --format {shape} exclude each other", param_hint="--format")
     return json or shape is Format.JSON
 
 
 def render(headings: Sequence[str], rows: Iterable[Row], shape: Format, title: str = "") -> str:
-    """A table as CSV, Markdown or LaTeX, with a newline at the end.
-
-    Args:
-        title: a line above the table; CSV has none.
-    """
+    """A table as CSV, Markdown or LaTeX, with a newline at the end; ``title`` is a line above it, which CSV has not."""
     held = [[_plain(cell) for cell in row] for row in rows]
     if shape is Format.CSV:
         return _csv(headings, held)

@@ -11,11 +11,7 @@ _EVERY_TICKS = round(1.0 / rules.TICK_S)
 
 
 class GoalProgress:
-    """The share of the goal that is met, for task kinds that count parts; others cost nothing.
-
-    Attributes:
-        value: from 0 to 1; None where the kind counts no parts.
-    """
+    """The share of the goal that is met: ``value``, from 0 to 1, or None for task kinds that count no parts."""
 
     def __init__(self, kind: TaskKind, task: TaskSpec) -> None:
         counts = type(kind).progress is not TaskKind.progress

@@ -104,7 +104,7 @@ def _seen(run: Path, root: Path) -> RunSummary:
 
 def _tally(run: Path, plan: RunConfig) -> tuple[int, float, int]:
     """Trials played, trials in which the goal was met, and trials with a fault: of the result, or else of the log."""
-    result = None if plan.shard or result_file.is_outdated(run / "result.json") else result_file.load_result(run)
+    result = None if plan.shard else result_file.load_current(run)
     if result is not None and result.metrics["sr"].mean is not None and result.hashes.run == plan.sha256:
         trials = result.counts.trials
         return trials, result.metrics["sr"].mean * trials, result.counts.faults
@@ -187,7 +187,7 @@ def view_run(folder: Path, wanted: TrialFilter) -> tuple[RunView, RunResult | No
     _, records = run.digest()
     total = plan.expected_trials
     whole = len(records) >= total
-    stored = None if result_file.is_outdated(folder / "result.json") else result_file.load_result(folder)
+    stored = result_file.load_current(folder)
     so_far = stored if whole and stored else aggregate.rescore(folder)[1] if records else None
     lines = tuple(_line(number, one) for number, one in enumerate(records) if wanted.fits(one))
     view = RunView(

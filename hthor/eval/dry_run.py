@@ -73,11 +73,7 @@ def measured_cost(run: ScheduledRun) -> TrialCost | None:
 
 
 class CostSampler:
-    """Runs a few trials to measure what they take, once for equal robots; writes nothing.
-
-    Args:
-        say: prints a line about what is run.
-    """
+    """Runs a few trials to measure what they take, once for equal robots, and says so; writes nothing."""
 
     def __init__(self, options: RunOptions, say: Callable[[str], None]) -> None:
         self._options, self._say = options, say

@@ -28,12 +28,10 @@ def list_agents(shape: Shape = Format.TABLE, json: Json = False) -> None:
     """List the built-in agents and the privileges that they declare."""
     from hthor import plugins
 
-    rows = []
-    for name in plugins.names("agent"):
-        row: dict[str, Any] = {"name": name, "privileges": [], "purpose": plugins.summary("agent", name)}
-        made = _loaded("agent", name)
-        row["privileges"] = list(getattr(made, "privileges", ()))
-        rows.append(row)
+    rows = [
+        {"name": name, "privileges": _privileges(name), "purpose": plugins.summary("agent", name)}
+        for name in plugins.names("agent")
+    ]
     _put(rows, json, shape)
 
 
@@ -85,15 +83,15 @@ def list_robots(shape: Shape = Format.TABLE, json: Json = False) -> None:
     _put(rows, json, shape)
 
 
-def _loaded(sort: str, name: str) -> Any:
-    """The plug-in, None when what it needs is not installed."""
+def _privileges(name: str) -> list[str]:
+    """An agent's privileges; none when what it needs is not installed."""
     from hthor import plugins
     from hthor.errors import MissingExtra
 
     try:
-        return plugins.load(sort, name)
+        return list(getattr(plugins.load("agent", name), "privileges", ()))
     except (ImportError, MissingExtra):
-        return None
+        return []
 
 
 def _put(rows: Sequence[dict[str, Any]], json: bool, shape: Format) -> None:

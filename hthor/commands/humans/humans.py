@@ -38,6 +38,8 @@ Name = Annotated[
 @app.command("list")
 def list_humans(shape: Shape = Format.TABLE, json: Json = False) -> None:
     """List every population, kind of people and human model that --humans accepts by name."""
+    from hthor.humans.population import resolve
+
     rows = _everybody()
     if formats.asks_json(json, shape):
         output.put_json(rows)
@@ -45,8 +47,9 @@ def list_humans(shape: Shape = Format.TABLE, json: Json = False) -> None:
     output.put_table(
         ("name", "sort", "purpose", "sha256"), [(*list(row.values())[:3], row["sha256"][:10]) for row in rows], shape
     )
+    population = resolve.default_population()
     output.put_line(
-        "proxy is the model that populations are of; without more it has the population " + _default() + ".", shape
+        f"proxy is the model that populations are of; without more it has the population {population}.", shape
     )
 
 
@@ -116,12 +119,6 @@ def _everybody() -> list[dict[str, Any]]:
         *(row(name, "kind") for name in kinds.names()),
         *(row(name, "model") for name in plugins.names("human model")),
     ]
-
-
-def _default() -> str:
-    from hthor.humans.population import resolve
-
-    return resolve.default_population()
 
 
 def _put_head(found: PopulationDescription) -> None:

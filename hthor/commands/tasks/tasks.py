@@ -55,7 +55,7 @@ def list_tasks(
         output.put_json(rows) if formats.asks_json(json, shape) else output.put_rows(rows, ("sha256",), shape)
         return
     found = rooms.load_suite(suite)
-    rows = [row for row in map(_task_row, found.tasks) if _fits(row, wanted)]
+    rows = [row for row in map(_task_row, found.tasks) if all(_is(row, *pair) for pair in wanted.items())]
     if formats.asks_json(json, shape):
         output.put_json(rows)
         return
@@ -94,8 +94,8 @@ def show_task(task: TaskId, suite: Own = None, json: Json = False) -> None:
     width = max(len(name) for name, _ in facts)
     sys.stdout.write("".join(f"{name:<{width}}  {text}\n" for name, text in facts))
     targets = {job.target for job in spec.goal.todo}
-    rows = [{"object": _starred(one, targets), "where": _where(one), "x": one.position[0], "y": one.position[1],
-             "z": round(one.position[2], 3)} for one in spec.objects]  # fmt: skip
+    rows = [{"object": one.id + (" *" if one.id in targets else ""), "where": _where(one), "x": one.position[0],
+             "y": one.position[1], "z": round(one.position[2], 3)} for one in spec.objects]  # fmt: skip
     output.put_rows(rows)
     sys.stdout.write("* what the task is about\n")
     sys.stderr.write(f"next:  hthor tasks draw {spec.id} --out task.png\n")
@@ -157,20 +157,13 @@ def _told(rows: Sequence[dict[str, Any]]) -> list[str]:
     return [name for name in rows[0] if name not in known | same]
 
 
-def _fits(row: dict[str, Any], wanted: dict[str, str]) -> bool:
-    return all(not value or _is(row, name, value) for name, value in wanted.items())
-
-
 def _is(row: dict[str, Any], name: str, value: str) -> bool:
-    if name != "kind" or row["kind"] == value:
-        return bool(row[name] == value)
+    """Whether a row has this value, where one is wanted; a kind goes by its short name too."""
+    if not value or name != "kind" or row["kind"] == value:
+        return bool(not value or row[name] == value)
     from hthor import plugins
 
     return bool(plugins.load("task kind", row["kind"]).short == value)
-
-
-def _starred(placed: Placement, targets: set[str]) -> str:
-    return f"{placed.id} *" if placed.id in targets else placed.id
 
 
 def _where(placed: Placement) -> str:

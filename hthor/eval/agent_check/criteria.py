@@ -56,11 +56,7 @@ def check_loading(seconds: float, character: AgentInfo) -> Finding:
 
 
 def check_files(character: AgentInfo, later: Sequence[File] = ()) -> Finding:
-    """Which files it consists of.
-
-    Args:
-        later: those that it opened only while it played.
-    """
+    """Which files it consists of, and which of them it opened only ``later``, while it played."""
     held = character.manifest.files if character.manifest else ()
     names = [file.path for file in held]
     shown = ", ".join(names[:_FILES]) + (f" and {len(names) - _FILES} more" if len(names) > _FILES else "")

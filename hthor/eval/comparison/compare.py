@@ -128,13 +128,13 @@ def compare_runs(folders: Sequence[Path]) -> Comparisons:
         seed=read_[0].plan.seed,
         runs=tuple(
             ComparedRun(
-                name=run.name,
-                folder=run.folder.name,
-                trials=len(run.records),
-                planned=run.plan.trials,
-                run=run.plan.sha256,
+                name=one.name,
+                folder=one.folder.name,
+                trials=len(one.records),
+                planned=one.plan.trials,
+                run=one.plan.sha256,
             )
-            for run in read_
+            for one in read_
         ),
         pairs=_judged(found),
     )
@@ -142,24 +142,21 @@ def compare_runs(folders: Sequence[Path]) -> Comparisons:
 
 def compare_pairs(read_: Sequence[LoadedRun]) -> tuple[Comparison, ...]:
     """Every pair of these runs that can be compared and has trials in common, judged together."""
-    fair = [
-        pair for pair in itertools.combinations(read_, 2) if not pairing.differing_field(pair[0].plan, pair[1].plan)
-    ]
     found = []
-    for one, other in fair:
-        with contextlib.suppress(RunError):  # nothing in common yet
-            found.append((_pair(one, other), one, other))
+    for one, other in itertools.combinations(read_, 2):
+        if not pairing.differing_field(one.plan, other.plan):
+            with contextlib.suppress(RunError):  # nothing in common yet
+                found.append((_pair(one, other), one, other))
     return _judged(found)
 
 
 def load_runs(folders: Sequence[Path]) -> tuple[LoadedRun, ...]:
     """The runs in these folders, with metrics measured again from their events, and a distinct name each."""
-    held = [(folder, *aggregate.load_measured(folder)) for folder in folders]
-    names = [plan.label for _, plan, _ in held]
-    distinct = _names(names, folders)
+    held = [aggregate.load_measured(folder) for folder in folders]
+    names = _names([plan.label for plan, _ in held], folders)
     return tuple(
         LoadedRun(name=name, folder=folder, plan=plan, records=tuple(records))
-        for name, (folder, plan, records) in zip(distinct, held, strict=True)
+        for name, folder, (plan, records) in zip(names, folders, held, strict=True)
     )
 
 
@@ -206,16 +203,15 @@ def _tally(pairs: Sequence[Pair]) -> WinCounts:
 
 
 def _grouped(pairs: Sequence[Pair], value: Callable[[TrialRecord], str]) -> dict[str, Difference]:
-    names = sorted({value(pair.one) for pair in pairs}, key=lambda name: (_rank(name), name))
     found = {
         name: paired_difference.paired_difference([pair for pair in pairs if value(pair.one) == name], "sr")
-        for name in names
+        for name in sorted({value(pair.one) for pair in pairs}, key=_rank)
     }
     return {name or "unknown": difference for name, difference in found.items() if difference is not None}
 
 
-def _rank(name: str) -> int:
-    return _ORDER.index(name) if name in _ORDER else len(_ORDER)
+def _rank(name: str) -> tuple[int, str]:
+    return _ORDER.index(name) if name in _ORDER else len(_ORDER), name
 
 
 def _judged(found: Sequence[tuple[Comparison, LoadedRun, LoadedRun]]) -> tuple[Comparison, ...]:

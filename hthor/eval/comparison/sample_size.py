@@ -63,20 +63,19 @@ def plan_study(
     if correlation is None:
         correlation = min(USUAL, high) if known.correlation is None else min(max(low, known.correlation), high)
     paired, unpaired = _needs(known, first, second, correlation, wanted)
-    shared = known.shared
-    more = None if shared is None else max(0, paired.trials - shared)
+    more = None if known.shared is None else max(0, paired.trials - known.shared)
     return StudyPlan(
         first=round(first, 6),
         second=round(second, 6),
         measured=bool(folders),
         paired=paired,
         unpaired=unpaired,
-        shared=shared,
+        shared=known.shared,
         more=more,
         sentence=(
             f"{100.0 * first:.1f} % against {100.0 * second:.1f} % shows in {100.0 * wanted:.0f} of 100 studies with "
             f"{paired.trials} tasks where both robots meet the same people at the same tasks (correlation "
-            f"{correlation:.2f}), and with {unpaired.trials} tasks each where they do not." + _added(shared, more)
+            f"{correlation:.2f}), and with {unpaired.trials} tasks each where they do not." + _added(known.shared, more)
         ),
     )
 

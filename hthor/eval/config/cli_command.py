@@ -19,11 +19,7 @@ BUILT_IN_AGENTS = f"{plugins.package('agent')}."
 
 
 def resume_command(folder: Path, config: RunConfig, out: Path | None = None) -> str:
-    """The command that finishes a run, or a shard of one, as a shell takes it.
-
-    Args:
-        out: the folder that the command names, when it is not the run's own.
-    """
+    """The command that finishes a run, or a shard of one, as a shell takes it; it names ``out`` or the run's folder."""
     out = out or folder
     words = ["hthor", "eval", *_robot_options(config.robots), "--humans", config.humans.source]
     if config.kind is not None and config.kind.sha256:

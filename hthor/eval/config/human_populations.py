@@ -68,9 +68,7 @@ def find_populations(words: Sequence[str]) -> list[ParticipantSource]:
 def robot_settings(robot: str | RobotInfo, detector: str) -> dict[str, str | float]:
     """The settings of a robot that affect human performance, as a population's file stores them.
 
-    Args:
-        robot: the robot's name, or a user's own robot.
-        detector: as `hthor.types.detector_specs.canonical_name` spells it.
+    ``detector`` is spelled as `hthor.types.detector_specs.canonical_name` does.
     """
     info = RobotInfo(name=robot) if isinstance(robot, str) else robot
     spec: RobotSpec = plugins.load("robot", info.path or info.name)
@@ -130,8 +128,7 @@ def _differences(people: ParticipantSource, suite: Suite, team: RobotTeam) -> It
         yield f"{name} was calibrated on the tasks of the suite {its.suite}, not on {others}"
     yield from _versions(name, its)
     if drawn_from.missing:
-        listed = ", ".join(drawn_from.missing)
-        yield f"{name} was made before there was {listed}; defaults stand in"
+        yield f"{name} was made before there was {', '.join(drawn_from.missing)}; defaults stand in"
     yield from _robots(name, its.settings, team)
 
 
@@ -145,9 +142,7 @@ def _versions(name: str, its: Validity) -> Iterator[str]:
 
 
 def _robots(name: str, its: dict[str, str | float], team: RobotTeam) -> Iterator[str]:
-    if not its:
-        return
-    robots = {robot.name: robot for robot, agent in team.robots if not agent.absent}
+    robots = {robot.name: robot for robot, agent in team.robots if its and not agent.absent}
     for robot in robots.values():
         here = robot_settings(robot, team.detector)
         changed = [key for key in here if key in its and its[key] != here[key]]

@@ -114,8 +114,7 @@ class RobotTeam(Struct, frozen=True, kw_only=True):
 
     @property
     def _by_seat(self) -> list[tuple[str, tuple[RobotInfo, AgentInfo]]]:
-        pairs = zip(self.listed, self.robots, strict=True)
-        return [(robot.seat, pair) for robot, pair in pairs if robot.seat]
+        return [(robot.seat, pair) for robot, pair in zip(self.listed, self.robots, strict=True) if robot.seat]
 
 
 def step_limit_of(team: RobotTeam, seconds: float | None) -> float | msgspec.UnsetType:
@@ -124,12 +123,9 @@ def step_limit_of(team: RobotTeam, seconds: float | None) -> float | msgspec.Uns
 
 
 def team_pictures_sha256(team: RobotTeam, pack: str = "") -> str:
-    """Hash of the robots' pictures (of the code that draws them and of the furniture); empty where none can matter.
+    """Hash of the robots' pictures (of the code that draws them and of a furniture pack); empty where none can matter.
 
     Pictures can matter to every submitted agent, and where a camera or a furniture pack was chosen.
-
-    Args:
-        pack: hash of the furniture pack, empty for our own furniture.
     """
     matters = team.seats and (team.agent_paths or team.camera != cameras.OWN or pack)
     return code_identity.pictures_sha256(pack) if matters else ""
@@ -143,9 +139,6 @@ def form_team(
     guests: GuestConfig | None = None,
 ) -> RobotTeam:
     """A team in which the first robot has the first agent, the second robot the second agent, and so on.
-
-    Args:
-        guests: as in `load_agent_info`.
 
     Raises:
         UnknownName: when one of them is unknown, or an agent is not made for its robot.
@@ -255,14 +248,13 @@ def display_name(name: str, robots: Sequence[RobotSeat]) -> str:
 
 def _built_in_agent(name: str) -> AgentInfo:
     agent = plugins.load("agent", name)
-    ref = AgentRef(
-        name=name,
-        source=plugins.module_name("agent", name),
-        sha256=code_identity.agent_sha256(name),
-        privileges=tuple(getattr(agent, "privileges", ())),
-    )
     return AgentInfo(
-        ref=ref,
+        ref=AgentRef(
+            name=name,
+            source=plugins.module_name("agent", name),
+            sha256=code_identity.agent_sha256(name),
+            privileges=tuple(getattr(agent, "privileges", ())),
+        ),
         robots=tuple(getattr(agent, "robots", ())),
         absent=bool(getattr(agent, "absent", False)),
         gpus=float(getattr(agent, "gpus", 0.0)),
@@ -275,7 +267,9 @@ def _submitted_agent(text: str, config: GuestConfig | None) -> AgentInfo:
 
     with Guest(text, config=config) as guest:
         info = guest.load()
-        name = _file_safe("-".join([info.name, *(_argument_text(*pair) for pair in guest.inputs.args.items())]))
+        args = guest.inputs.args.items()
+        words = (f"{key}-{Path(value).name if Path(value).is_absolute() else value}" for key, value in args)
+        name = re.sub(r"[^A-Za-z0-9_+-]+", "-", "-".join([info.name, *words])).strip("-")[:60] or "agent"
         manifest = snapshot.take_manifest(guest, name)
         ref = AgentRef(name=name, source=info.source, sha256=manifest.sha256, privileges=tuple(info.privileges))
         return AgentInfo(
@@ -286,13 +280,3 @@ def _submitted_agent(text: str, config: GuestConfig | None) -> AgentInfo:
             gpus=info.gpus,
             manifest=manifest,
         )
-
-
-def _argument_text(key: str, value: str) -> str:
-    """An argument as part of an agent's name."""
-    return f"{key}-{Path(value).name if Path(value).is_absolute() else value}"
-
-
-def _file_safe(name: str) -> str:
-    """The name without characters that a file's name should not have."""
-    return re.sub(r"[^A-Za-z0-9_+-]+", "-", name).strip("-")[:60] or "agent"

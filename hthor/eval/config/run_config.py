@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import msgspec
@@ -158,9 +158,8 @@ class RunConfig(Struct, frozen=True, kw_only=True):
             tasks = f"{tasks}-{self.difficulty}"
         if self.limit:
             tasks = f"{tasks}-{self.limit}"
-        humans = "" if self.humans.name == PROXY else f"-{self.humans.name}"
-        mode = f"-{REALTIME}" if self.realtime else ""
-        return f"{self.team_name}-{tasks}{humans}{mode}-{self.whole.sha256[:10]}"
+        parts = [self.team_name, tasks, *([] if self.humans.name == PROXY else [self.humans.name])]
+        return "-".join([*parts, *([REALTIME] if self.realtime else []), self.whole.sha256[:10]])
 
 
 def team_name(robots: Sequence[RobotSeat]) -> str:
@@ -241,11 +240,7 @@ def shard_config(config: RunConfig, shard: Shard, tasks: int) -> RunConfig:
 
 
 def check_title(title: str) -> str:
-    """The user's name for a run, if it can also be a folder's.
-
-    Raises:
-        HthorError: when it cannot.
-    """
+    """The user's name for a run; raises HthorError unless it can also be a folder's."""
     if not _TITLE.fullmatch(title):
         raise HthorError(
             f"--name '{title}': a run's name has 1 to 60 letters, digits, '.', '_', '+' or '-', and begins with a "
@@ -275,12 +270,7 @@ def _members(value: object) -> dict[str, object] | None:
         return value
     if not isinstance(value, (list, tuple)) or not any(isinstance(part, dict) for part in value):
         return None
-    return dict(_list_members(value))
-
-
-def _list_members(values: Iterable[object]) -> Iterable[tuple[str, object]]:
-    for number, value in enumerate(values):
-        yield str(value.get("path", number)) if isinstance(value, dict) else str(number), value
+    return {str(part.get("path", k) if isinstance(part, dict) else k): part for k, part in enumerate(value)}
 
 
 def _shortened(value: object) -> str:

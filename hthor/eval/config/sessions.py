@@ -161,11 +161,7 @@ class Shard(Struct, frozen=True, kw_only=True):
 
 
 def parse_shard(text: str) -> Shard:
-    """The shard that the user named, such as "3/16".
-
-    Raises:
-        HthorError: when the text cannot be parsed, or there is no such shard.
-    """
+    """The shard that the user named, such as "3/16"; raises HthorError when there is no such shard."""
     number, slash, of = text.partition("/")
     if not (slash and number.isdecimal() and of.isdecimal() and 1 <= int(number) <= int(of)):
         raise HthorError(f"--shard '{text}': expected i/N with i from 1 to N, such as 1/16 up to 16/16.")

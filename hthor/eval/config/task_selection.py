@@ -145,11 +145,7 @@ def _has_difficulty(task: TaskSpec, houses: HouseLibrary, difficulty: str) -> bo
 
 
 def limit_selection(whole: TaskSelection, limit: int | None) -> TaskSelection:
-    """A representative subset of ``limit`` tasks; all tasks for None.
-
-    Raises:
-        HthorError: when there are fewer tasks than that.
-    """
+    """A representative subset of ``limit`` tasks; all for None. Raises HthorError when there are fewer."""
     if limit is None or limit == len(whole.suite.tasks):
         return whole
     if limit > len(whole.suite.tasks):
@@ -190,11 +186,7 @@ def choose_subset(tasks: Sequence[TaskSpec], count: int) -> tuple[TaskSpec, ...]
 
 
 def find_kind(name: str) -> TaskKind:
-    """A task kind by its name or its short name.
-
-    Raises:
-        UnknownName: when there is none of that name.
-    """
+    """A task kind by its name or its short name; raises UnknownName when there is none."""
     names = plugins.names("task kind")
     kinds: dict[str, TaskKind] = {known: plugins.load("task kind", known) for known in names}
     shorts = {kind.short: kind for kind in kinds.values()}
@@ -212,11 +204,9 @@ def _whole_suite(suite: Suite) -> TaskSelection:
 def _from_user_kind(path: str, suite: str) -> TaskSelection:
     """The tasks of a user's kind: those of a suite, or one in each of the houses that ship with hthor."""
     kind = _load_user_kind(path)
-    tasks_of_kind, missing = (
-        (_only_kind(checked_suite(suite), kind.name), ()) if suite else _generated_tasks(kind, path)
-    )
+    chosen, missing = (_only_kind(checked_suite(suite), kind.name), ()) if suite else _generated_tasks(kind, path)
     return TaskSelection(
-        suite=tasks_of_kind,
+        suite=chosen,
         kind=KindRef(name=kind.name, sha256=plugins.sha256(path)),
         kind_path=str(Path(path).resolve()),
         generated=not suite,

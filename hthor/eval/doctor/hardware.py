@@ -9,6 +9,7 @@ from importlib import util
 from pathlib import Path
 
 from hthor.eval.doctor.check_result import CheckResult, read_system_file
+from hthor.eval.runner import worker
 
 _MB = 1e6
 _ROOM_MB, _ROOM_LEAST_MB = 1000.0, 100.0
@@ -114,19 +115,12 @@ def _cores() -> float:
 
 
 def _environment() -> CheckResult:
-    name = "environment"
     if os.environ.get(_SLOW, "0") != "0":
         says = f"{_SLOW} is set: a trial takes minutes instead of a tenth of a second"
-        return CheckResult(name=name, status="warn", says=says, fix=f"unset {_SLOW}")
-    pinned = [f"{variable}={os.environ[variable]}" for variable in (*_threads(), *_OTHERWISE) if variable in os.environ]
+        return CheckResult(name="environment", status="warn", says=says, fix=f"unset {_SLOW}")
+    pinned = [f"{name}={os.environ[name]}" for name in (*worker.ONE_THREAD, *_OTHERWISE) if name in os.environ]
     here = f"; set here: {', '.join(pinned)}" if pinned else ""
-    return CheckResult(name=name, says=f"workers compute with one thread each{here}")
-
-
-def _threads() -> tuple[str, ...]:
-    from hthor.eval.runner import worker
-
-    return tuple(worker.ONE_THREAD)
+    return CheckResult(name="environment", says=f"workers compute with one thread each{here}")
 
 
 def _shm() -> CheckResult:

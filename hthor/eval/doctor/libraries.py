@@ -43,12 +43,12 @@ def _required() -> tuple[list[Requirement], dict[str, list[Requirement]]]:
     if path.is_file():
         project = tomllib.loads(path.read_text(encoding="utf-8"))["project"]
         more = project["optional-dependencies"]
-        return [Requirement(line) for line in project["dependencies"]], {
-            name: [Requirement(line) for line in more[name]] for name in more
-        }
+        extras = {name: [Requirement(line) for line in more[name]] for name in more}
+        return [Requirement(line) for line in project["dependencies"]], extras
     wanted = [Requirement(line) for line in metadata.requires("hthor") or ()]
     base = [one for one in wanted if one.marker is None or one.marker.evaluate({"extra": ""})]
-    return base, {name: [one for one in wanted if one not in base and _of(one, name)] for name in _EXTRAS}
+    rest = [(one, one.marker) for one in wanted if one.marker is not None and one not in base]
+    return base, {name: [one for one, marker in rest if marker.evaluate({"extra": name})] for name in _EXTRAS}
 
 
 def pinned_versions() -> dict[str, str]:
@@ -143,7 +143,3 @@ def _installed(name: str) -> str:
 
 def _bare(wanted: Requirement) -> str:
     return f"{wanted.name}{wanted.specifier}"
-
-
-def _of(wanted: Requirement, extra: str) -> bool:
-    return wanted.marker is not None and wanted.marker.evaluate({"extra": extra})

@@ -15,9 +15,8 @@ from hthor.eval.records import opened_files, platform, run_isolation, session_re
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_log import Place
 from hthor.eval.records.trial_record import TrialRecord
-from hthor.eval.results import aggregate, baseline, result_file
+from hthor.eval.results import aggregate, result_file
 from hthor.eval.results.result_file import Effort, RunResult
-from hthor.guest import Isolation
 
 _CARRIED = ("suite.json", "houses/*.json", "faults/*.json")
 """Other files of a run's folder that are copied, as its readers need them."""
@@ -209,15 +208,8 @@ def _score(whole: RunFolder, shards: Sequence[RunFolder]) -> RunResult:
     paths = [shard.path for shard in shards]
     platform.join(whole.path, paths)
     session_restarts.join(whole.path, paths)
-    result = aggregate.make_result(
-        whole.config,
-        trial_log.fetch(places),
-        records,
-        effort,
-        uplift=baseline.uplift_or_stored(whole.path, whole.config, records),
-        isolation=_store_isolation(whole, shards),
-        replays=whole.restarts,
-    )
+    _store_isolation(whole, shards)
+    result = aggregate.score_run(whole, trial_log.fetch(places), records, effort)
     result_file.store_result(whole.path, result)
     return result
 
@@ -225,11 +217,8 @@ def _score(whole: RunFolder, shards: Sequence[RunFolder]) -> RunResult:
 def _effort(shards: Sequence[RunFolder]) -> Effort | None:
     """The longest wall time of all shards, and the sum of all else that they took."""
     hint = "it only says what the run cost: delete it, and go on"
-    efforts = [
-        documents.read(shard.effort_file, Effort, RunError, hint=hint)
-        for shard in shards
-        if shard.effort_file.is_file()
-    ]
+    found = (documents.read_or_none(shard.effort_file, Effort, RunError, hint=hint) for shard in shards)
+    efforts = [effort for effort in found if effort is not None]
     if not efforts:
         return None
     return Effort(
@@ -240,11 +229,10 @@ def _effort(shards: Sequence[RunFolder]) -> Effort | None:
     )
 
 
-def _store_isolation(whole: RunFolder, shards: Sequence[RunFolder]) -> Isolation | None:
-    """The weakest isolation of all shards, stored with the whole run."""
+def _store_isolation(whole: RunFolder, shards: Sequence[RunFolder]) -> None:
+    """Store the weakest isolation of all shards with the whole run."""
     isolation = whole.isolation
     for shard in shards:
         isolation = run_isolation.weakest_isolation(shard.path, isolation, "")
     if isolation is not None:
         whole.write(run_isolation.NAME, jsonio.pretty(isolation))
-    return isolation

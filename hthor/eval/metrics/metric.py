@@ -132,11 +132,7 @@ class Metric(Struct, frozen=True):
         return round(value, DIGITS) if isinstance(value, float) else value
 
     def range(self, limit_s: float | None = None) -> Range:
-        """The range of a mean.
-
-        Args:
-            limit_s: the mean time limit [s] of the trials; without it a time has no upper bound.
-        """
+        """The range of a mean over trials with this mean time limit [s]; without one a time has no upper bound."""
         return (self.bounds[0], limit_s) if self.timed and limit_s is not None else self.bounds
 
     def range_of(self, values: Sequence[float], limits: Sequence[float]) -> Range:

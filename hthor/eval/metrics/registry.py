@@ -23,11 +23,7 @@ _BY_NAME = {metric.name: metric for metric in METRICS}
 
 
 def get(name: str) -> Metric:
-    """The metric of this name.
-
-    Raises:
-        UnknownName: when there is none.
-    """
+    """The metric of this name; raises UnknownName when there is none."""
     if name not in _BY_NAME:
         raise UnknownName("metric", name, tuple(_BY_NAME))
     return _BY_NAME[name]

@@ -27,11 +27,7 @@ class MetricValues(Struct, frozen=True, kw_only=True):
         return value
 
     def number(self, metric: str) -> float:
-        """The value of a metric that every trial has.
-
-        Raises:
-            ValueError: when this trial has none.
-        """
+        """The value of a metric that every trial has; raises ValueError when this one has none."""
         value = self[metric]
         if value is None:
             raise ValueError(f"this trial has no value of '{metric}'")

@@ -47,11 +47,7 @@ def _only(records: Sequence[TrialRecord], name: str) -> TrialRecord:
 
 
 def first_fault(folder: RunFolder) -> TrialRecord:
-    """The first trial of a run in which an agent failed.
-
-    Raises:
-        LookupError: when none did.
-    """
+    """The first trial of a run in which an agent failed; raises LookupError when none did."""
     _, records = folder.digest()
     return next(record for record in records if record.faults)
 

@@ -44,11 +44,7 @@ def complete_manifests(config: RunConfig, records: Iterable[TrialRecord]) -> tup
 def check_opened_files(
     agent_paths: Mapping[str, str], guests: GuestConfig, config: RunConfig, records: Sequence[TrialRecord]
 ) -> None:
-    """Check that the files that earlier trials of a run opened are unchanged, before more trials are added.
-
-    Args:
-        agent_paths: the submitted agents, by seat.
-        guests: how they are isolated, and what they are given.
+    """Check that the files that the agents (by seat) opened in earlier trials of a run are unchanged.
 
     Raises:
         AgentError: names the file that changed.

@@ -54,13 +54,6 @@ def join(out: Path, folders: Iterable[Path], more: Iterable[Platform] = ()) -> N
 
 
 def load(folder: Path) -> tuple[Platform, ...]:
-    """The platforms of the run in a folder; empty where they were not noted.
-
-    Raises:
-        RunError: when the file cannot be read.
-    """
-    path = folder / NAME
-    if not path.is_file():
-        return ()
+    """The platforms of the run in a folder; empty where they were not noted. Raises RunError for a damaged file."""
     hint = "delete the file; the run is then of unknown platforms"
-    return documents.read(path, tuple[Platform, ...], RunError, hint=hint)
+    return documents.read_or_none(folder / NAME, tuple[Platform, ...], RunError, hint=hint) or ()

@@ -22,11 +22,7 @@ _WRITTEN_FIRST = (".lock", trial_log.NAME, ".run.json.*", "control")
 
 
 class RunFolder:
-    """The files of one run. Nothing is read before it is asked for; the configuration is read once.
-
-    Args:
-        path: the folder, which need not exist yet.
-    """
+    """The files of one run, whose folder need not exist yet. Nothing is read before it is asked for."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -67,11 +63,7 @@ class RunFolder:
 
     @cached_property
     def config(self) -> RunConfig:
-        """The run's configuration.
-
-        Raises:
-            RunError: when the folder holds no run, or its `run.json` is damaged.
-        """
+        """The run's configuration; raises RunError when the folder holds no run, or its `run.json` is damaged."""
         if not self.config_file.is_file():
             raise RunError(f"{self} is not a run's folder: it has no run.json.{self._guess()} 'hthor eval' makes one.")
         hint = "evaluate it again, into another folder"
@@ -90,7 +82,7 @@ class RunFolder:
     @property
     def restarts(self) -> int:
         """How many sessions were run again because an agent's process was killed."""
-        return session_restarts.count(self.path)
+        return len(session_restarts.load(self.path).participants)
 
     def open_log(self) -> TrialLog:
         """The one writer of the run's log; see `TrialLog` for its errors."""
@@ -113,10 +105,11 @@ class RunFolder:
 
     def digest(self) -> tuple[list[Place], list[TrialRecord]]:
         """As `lines`, for runs of any length: lines stay on the disk, and records come without paths and journal."""
-        pairs = []
-        for place, _, record in trial_log.places(self.log_file):
-            pairs.append((place, msgspec.structs.replace(record, paths={}, journal=())))
-        pairs.sort(key=lambda pair: _order(pair[1]))
+        slim = (
+            (place, msgspec.structs.replace(record, paths={}, journal=()))
+            for place, _, record in trial_log.places(self.log_file)
+        )
+        pairs = sorted(slim, key=lambda pair: _order(pair[1]))
         records = [record for _, record in pairs]
         self._check(records)
         return [place for place, _ in pairs], records
@@ -187,14 +180,12 @@ class RunFolder:
         jsonio.write(self.path / name, data)
 
     def _check_empty(self) -> None:
-        others = sorted(
-            entry.name
-            for entry in self.path.iterdir()
-            if not any(fnmatch.fnmatchcase(entry.name, pattern) for pattern in _WRITTEN_FIRST)
-        )
-        if others or (self.log_file.exists() and self.log_file.stat().st_size > 0):
-            name = others[0] if others else self.log_file.name
-            raise RunError(f"{self} is not empty and holds no run ({name}). Choose another folder with --out.")
+        names = [entry.name for entry in self.path.iterdir()]
+        others = [name for name in names if not any(fnmatch.fnmatchcase(name, pattern) for pattern in _WRITTEN_FIRST)]
+        if not others and self.log_file.exists() and self.log_file.stat().st_size > 0:
+            others = [self.log_file.name]
+        if others:
+            raise RunError(f"{self} is not empty and holds no run ({min(others)}). Choose another folder with --out.")
 
     def _check(self, records: Sequence[TrialRecord]) -> None:
         for record in records:

@@ -40,12 +40,7 @@ def resolve_isolation(wanted: str, required: str, agents: Collection[str]) -> Is
 
 
 def isolation_of(isolation: Isolation | None, agents: Collection[str]) -> Isolation | None:
-    """The isolation of one run's agents among several runs: none where an agent is served; None when all are built in.
-
-    Args:
-        isolation: what `resolve_isolation` gave for the agents of all runs.
-        agents: the submitted agents of this run.
-    """
+    """The isolation of one run's submitted agents, given that of all runs' agents: none where one is served."""
     from hthor.guest.host import websocket_client
 
     if any(guest.is_served(agent) for agent in agents):
@@ -72,11 +67,8 @@ def load_isolation(folder: Path) -> Isolation | None:
     Raises:
         RunError: when the file cannot be read.
     """
-    path = folder / NAME
-    if not path.is_file():
-        return None
     hint = "it says how the agents were held; evaluate the run again, into another folder"
-    return documents.read(path, Isolation, RunError, hint=hint)
+    return documents.read_or_none(folder / NAME, Isolation, RunError, hint=hint)
 
 
 def _require(isolation: Isolation, required: str, subject: str) -> None:

@@ -41,20 +41,9 @@ class SessionRestarts:
 
 
 def load(folder: Path) -> Replays:
-    """The restarts that the run in a folder has used.
-
-    Raises:
-        RunError: when the file cannot be read.
-    """
-    path = folder / NAME
-    if not path.is_file():
-        return Replays()
-    return documents.read(path, Replays, RunError, hint="take the file from a copy of the run")
-
-
-def count(folder: Path) -> int:
-    """How many restarts the run in a folder has used."""
-    return len(load(folder).participants)
+    """The restarts that the run in a folder has used. Raises RunError for a damaged file."""
+    hint = "take the file from a copy of the run"
+    return documents.read_or_none(folder / NAME, Replays, RunError, hint=hint) or Replays()
 
 
 def join(folder: Path, shards: Iterable[Path]) -> None:

@@ -71,7 +71,10 @@ def key(spec: TrialSpec) -> str:
 
 def make_record(spec: TrialSpec, log: EpisodeLog) -> TrialRecord:
     """The record of a trial that was run. Metrics are computed from what is written, after rounding."""
-    events, journal = (_all_rounded(some) for some in (log.events, log.journal))
+    events, journal = (
+        tuple(msgspec.structs.replace(event, data=_rounded(event.data)) for event in some)
+        for some in (log.events, log.journal)
+    )
     kept = msgspec.structs.replace(log, events=events, journal=journal)
     fields = {name: getattr(kept, name) for name in EpisodeLog.__struct_fields__}
     return TrialRecord(key=key(spec), spec=spec, metrics=measure(spec, kept), **fields)
@@ -89,22 +92,14 @@ def checksum(line: bytes) -> int:
 
 
 def verify_checksum(line: bytes) -> None:
-    """Compare a line with the checksum that it carries.
-
-    Raises:
-        Damaged: when they do not agree.
-    """
+    """Compare a line with the checksum that it carries; raises Damaged when they do not agree."""
     body, check = line[:-_CHECK_LENGTH], line[-_CHECK_LENGTH:]
     if check != _CHECK % zlib.crc32(body):
         raise Damaged("check", f"{check[10:18].decode('ascii', 'replace')} is not the line's checksum")
 
 
 def decode(line: bytes) -> TrialRecord:
-    """The record of a whole line.
-
-    Raises:
-        Damaged: names the field that is not as it was written.
-    """
+    """The record of a whole line; raises Damaged, which names the field that is not as it was written."""
     with documents.reading_errors():
         record = _decoder.decode(line)
     verify_checksum(line)
@@ -143,10 +138,6 @@ def check_events(events: Sequence[Event]) -> None:
             raise Damaged(f"events[{number}].data.{error.field}", error.problem) from None
         if missing := next((name for name in _NEEDED.get(event.kind, ()) if name not in event.data), ""):
             raise Damaged(f"events[{number}].data.{missing}", f"is missing; an event '{event.kind}' has it")
-
-
-def _all_rounded(events: tuple[Event, ...]) -> tuple[Event, ...]:
-    return tuple(msgspec.structs.replace(event, data=_rounded(event.data)) for event in events)
 
 
 def _rounded(value: Any) -> Any:

@@ -40,12 +40,8 @@ def make_result(
         trials.update(line)
     kinds = sorted({record.spec.task.kind for record in records})
     whole = estimate_metrics(records)
-    by_kind = {
-        kind: whole
-        if len(kinds) == 1
-        else estimate_metrics([record for record in records if record.spec.task.kind == kind])
-        for kind in kinds
-    }
+    of_kind = {kind: [record for record in records if record.spec.task.kind == kind] for kind in kinds}
+    by_kind = {kind: whole if len(kinds) == 1 else estimate_metrics(of_kind[kind]) for kind in kinds}
     return RunResult(
         name=plan.name,
         robots=plan.robots,
@@ -126,6 +122,15 @@ def estimate_metric(records: Sequence[TrialRecord], metric: Metric, seat: str = 
     )
 
 
+def score_run(
+    run: RunFolder, lines: Iterable[bytes], records: Sequence[TrialRecord], effort: Effort | None
+) -> RunResult:
+    """The result of a run whose records these are, with all that its folder says of it."""
+    uplift = baseline.uplift_or_stored(run.path, run.config, records)
+    isolation, replays = run.isolation, run.restarts
+    return make_result(run.config, lines, records, effort, uplift=uplift, isolation=isolation, replays=replays)
+
+
 def rescore(folder: Path) -> tuple[RunConfig, RunResult, RunResult | None]:
     """Score a run again from its log: its configuration, the new result, and the stored result if there is one.
 
@@ -133,16 +138,9 @@ def rescore(folder: Path) -> tuple[RunConfig, RunResult, RunResult | None]:
     does not have it. A stored result in another version of the format is ignored.
     """
     run = RunFolder(folder)
-    plan = run.config
     lines, kept = run.lines()
-    fresh, stored = (
-        _measured(kept),
-        None if result_file.is_outdated(folder / "result.json") else result_file.load_result(folder),
-    )
-    effort = stored.effort if stored else None
-    beside, held = baseline.uplift_or_stored(folder, plan, fresh), run.isolation
-    again = run.restarts
-    return plan, make_result(plan, lines, fresh, effort, uplift=beside, isolation=held, replays=again), stored
+    stored = result_file.load_current(folder)
+    return run.config, score_run(run, lines, _measured(kept), stored.effort if stored else None), stored
 
 
 def load_measured(folder: Path) -> tuple[RunConfig, list[TrialRecord]]:

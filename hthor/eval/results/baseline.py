@@ -119,13 +119,10 @@ def _runs_in(place: Path, patterns: Sequence[str], *, but: Path) -> Iterator[Pat
 
 def _records(folder: Path) -> list[TrialRecord]:
     try:
-        kept = [_slim(record) for _, record in trial_log.read(folder / "trials.jsonl")]
+        kept = [
+            msgspec.structs.replace(one, metrics=trial_metrics.measure(one.spec, one.log), paths={}, journal=())
+            for _, one in trial_log.read(folder / "trials.jsonl")
+        ]
     except RunError:
         return []
     return sorted(kept, key=lambda record: (record.spec.participant, record.spec.index))
-
-
-def _slim(record: TrialRecord) -> TrialRecord:
-    """The record with its metrics measured again, without what only drawings need."""
-    fresh = trial_metrics.measure(record.spec, record.log)
-    return msgspec.structs.replace(record, metrics=fresh, paths={}, journal=())

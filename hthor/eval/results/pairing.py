@@ -53,11 +53,7 @@ def differing_field(one: RunConfig, other: RunConfig) -> str:
 
 
 def check_comparable(one: tuple[Path, RunConfig], other: tuple[Path, RunConfig]) -> None:
-    """Raise an error unless two runs can be compared.
-
-    Raises:
-        RunError: names the field in which they differ.
-    """
+    """Raise a RunError that names the field in which two runs differ, unless they can be compared."""
     field = differing_field(one[1], other[1])
     if not field:
         return

@@ -157,16 +157,14 @@ class RunResult(Struct, frozen=True, kw_only=True):
 
 
 def load_result(folder: Path) -> RunResult | None:
-    """The stored result of a run, None when there is none.
-
-    Raises:
-        RunError: when it cannot be read.
-    """
-    path = folder / "result.json"
-    if not path.is_file():
-        return None
+    """The stored result of a run, None when there is none. Raises RunError for a damaged file."""
     hint = f"delete the file, and 'hthor score {folder}' writes it again"
-    return documents.read(path, RunResult, RunError, schema=SCHEMA, hint=hint)
+    return documents.read_or_none(folder / "result.json", RunResult, RunError, schema=SCHEMA, hint=hint)
+
+
+def load_current(folder: Path) -> RunResult | None:
+    """The stored result of a run as by `load_result`; None also for one in another version of the format."""
+    return None if is_outdated(folder / "result.json") else load_result(folder)
 
 
 class _Named(Struct, frozen=True):

@@ -61,12 +61,9 @@ class CollectedTrials:
 
 
 class Collector:
-    """Runs sessions on an engine, and writes new trials to the log and fault reports beside it.
+    """Runs sessions on an engine, and writes new trials to the open log and fault reports beside it.
 
-    Args:
-        folder: the run's, whose ``log`` is open.
-        faults: keeps the reports of agents that failed.
-        stop: set when the user wants the run to end.
+    ``stop`` is set when the user wants the run to end.
     """
 
     def __init__(
@@ -85,8 +82,7 @@ class Collector:
     def collect(self, sessions: Sequence[Session], make: RunnerFactory, *, repeatable: bool = True) -> CollectedTrials:
         """Run these sessions, and again those in which an agent's process was killed, as far as the run may.
 
-        Args:
-            repeatable: whether a trial that is run again must give the same record.
+        ``repeatable`` says whether a trial that is run again must give the same record.
         """
         collected = self._collected
         self._listen(sessions, make)
@@ -94,10 +90,8 @@ class Collector:
             collected.void.clear()
             self._listen(left, make)
         if collected.different and repeatable:
-            self._watcher.note(
-                f"{collected.different} re-run trials differ from the log: something on this machine is not "
-                "deterministic"
-            )
+            what = f"{collected.different} re-run trials differ from the log"
+            self._watcher.note(f"{what}: something on this machine is not deterministic")
         return collected
 
     def _listen(self, sessions: Sequence[Session], make: RunnerFactory) -> None:

@@ -71,8 +71,7 @@ class _Experiment:
             baseline = resolved.baseline_of.get(scheduled.folder.path)
             if baseline is not None:
                 self._result(baseline)
-            result = self._result(scheduled)
-            if result is not None:
+            if (result := self._result(scheduled)) is not None:
                 yield FinishedRun(config=scheduled.config, folder=scheduled.folder, result=result)
         if self._errors:
             raise self._errors[0] if len(self._errors) == 1 else Unfinished(" ".join(map(str, self._errors)))
@@ -113,8 +112,7 @@ class _Experiment:
 
     def _extra_files(self, scheduled: ScheduledRun) -> dict[str, bytes]:
         """Files that make the run's folder complete in itself, by name."""
-        houses = run_options.own_houses(self._options)
-        files = {f"houses/{name}": data for name, data in houses.items()}
+        files = {f"houses/{name}": data for name, data in run_options.own_houses(self._options).items()}
         if scheduled.tasks.generated:
             files["suite.json"] = encode_suite(scheduled.tasks.suite)
         if scheduled.isolation is not None:
@@ -138,11 +136,9 @@ def _rerun_command(options: RunOptions, scheduled: ScheduledRun) -> str:
     """The `hthor agent run` command that runs a trial of a run once more, without the trial's key."""
     team, people = scheduled.team, scheduled.population
     words = ["hthor", "agent", "run"]
-    files = [("--agent", path) for path in dict.fromkeys(team.agent_paths.values())]
-    files += [("--robot", path) for path in dict.fromkeys(team.robot_paths.values())]
-    files += [("--kind", scheduled.tasks.kind_path)] if scheduled.tasks.kind_path else []
-    for option, path in files:
-        words += [option, _relative(path)]
+    words += [word for path in dict.fromkeys(team.agent_paths.values()) for word in ("--agent", _relative(path))]
+    words += [word for path in dict.fromkeys(team.robot_paths.values()) for word in ("--robot", _relative(path))]
+    words += ["--kind", _relative(scheduled.tasks.kind_path)] if scheduled.tasks.kind_path else []
     if people.word != people.name:
         words += ["--humans", people.word]
     if options.isolation != "auto" and team.agent_paths:

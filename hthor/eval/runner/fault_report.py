@@ -107,11 +107,7 @@ class FaultReport(Struct, frozen=True, kw_only=True):
 
 
 def describe_faults(key: str, trial: TrialSpec, faults: Sequence[Fault], agents: Mapping[str, Any]) -> FaultReport:
-    """The report of a trial's faults; of agents that were not recorded only the fault itself.
-
-    Args:
-        agents: by seat.
-    """
+    """The report of a trial's faults and its ``agents`` by seat; of one that was not recorded only the fault itself."""
     names = {robot.seat: robot.agent.name for robot in trial.robots}
     failures = []
     for fault in faults:
@@ -193,11 +189,7 @@ class FaultArchive:
 
 
 def load_fault_report(path: Path) -> FaultReport:
-    """The report in a file.
-
-    Raises:
-        RunError: when it cannot be read.
-    """
+    """The report in a file; raises RunError when it cannot be read."""
     return documents.read(path, FaultReport, RunError, hint="it only describes faults: delete it, and go on")
 
 

@@ -17,11 +17,7 @@ class Interrupted(HthorError):
 
 @contextmanager
 def stoppable() -> Iterator[threading.Event]:
-    """Turn the first Ctrl-C or SIGTERM into a flag; a second one ends at once.
-
-    Raises:
-        Interrupted: at the second one.
-    """
+    """Turn the first Ctrl-C or SIGTERM into a flag; a second one ends at once, and raises Interrupted."""
     flag = threading.Event()
     if threading.current_thread() is not threading.main_thread():
         yield flag

@@ -11,7 +11,7 @@ from hthor.eval.records import platform, trial_log, trial_record
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_log import TrialLog
 from hthor.eval.records.trial_record import TrialRecord
-from hthor.eval.results import aggregate, baseline, result_file
+from hthor.eval.results import aggregate, result_file
 from hthor.eval.results.result_file import Effort, RunResult
 from hthor.eval.runner import engines
 from hthor.eval.runner.collector import CollectedTrials, Collector, unfinished_error
@@ -38,8 +38,7 @@ def run_evaluation(
     """Run the trials that a run still lacks, and score it.
 
     Args:
-        config: the run's configuration.
-        sessions: its trials, or those of its shard.
+        sessions: the run's trials, or those of its shard.
         make: picklable; called in each worker, makes what runs a session.
         folder: made when absent, completed when it holds a part of this run.
         jobs: number of worker processes, when no ``engine`` is given.
@@ -112,22 +111,14 @@ def _run_missing(
 
 def _score(folder: RunFolder, effort: Effort | None) -> RunResult:
     """Score the run and store the result of a whole run, or the effort of a shard."""
-    config = folder.config
     places, records = folder.digest()
-    if config.shard:
+    lines = trial_log.fetch(places)
+    if folder.config.shard:
         if effort is not None:
             jsonio.write(folder.effort_file, jsonio.pretty(effort))
-        return aggregate.make_result(config, trial_log.fetch(places), records, effort)
+        return aggregate.make_result(folder.config, lines, records, effort)
     stored = result_file.load_result(folder.path)
-    result = aggregate.make_result(
-        config,
-        trial_log.fetch(places),
-        records,
-        effort or (stored.effort if stored else None),
-        uplift=baseline.uplift_or_stored(folder.path, config, records),
-        isolation=folder.isolation,
-        replays=folder.restarts,
-    )
+    result = aggregate.score_run(folder, lines, records, effort or (stored.effort if stored else None))
     if result != stored:
         result_file.store_result(folder.path, result)
     return result

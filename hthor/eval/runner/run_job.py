@@ -26,15 +26,7 @@ def make_sources(
     humans: str = "",
     guests: GuestConfig | None = None,
 ) -> Sources:
-    """Where everything is that the trials of this team need.
-
-    Args:
-        kind_path: the file of a user's own task kind.
-        assets: the name of a furniture pack.
-        houses: the folder of the suite's own houses.
-        humans: the word that finds the human population; empty where the name in the trial does.
-        guests: how submitted agents are isolated, and what they are given.
-    """
+    """Where everything is that the trials of this team need; see `Sources`."""
     return Sources(
         agent_paths=team.agent_paths,
         manifests=team.manifests,

@@ -34,11 +34,7 @@ if TYPE_CHECKING:
 
 
 def load_pack(assets: str) -> Pack | None:
-    """The furniture pack of this name, None for our own furniture.
-
-    Raises:
-        UnknownName: when there is none.
-    """
+    """The furniture pack of this name, None for our own furniture; raises UnknownName where there is none."""
     if not assets:
         return None
     from hthor.looks import pack
@@ -136,15 +132,12 @@ class TrialRunner:
         participants.finish_trial()
         self._check_files(participants)  # again: a trial in which a file changed halfway does not count
         opened = self._opened_files(participants) or msgspec.UNSET
-        if not log.faults:
-            record = trial_record.make_record(trial, log)
-            return TrialOutcome(record=msgspec.structs.replace(record, files=opened))
-        files = self._sources.agent_paths.values()
-        faults = (
-            msgspec.structs.replace(fault, detail=fault_report.redact(fault.detail, files)) for fault in log.faults
-        )
+        paths = self._sources.agent_paths.values()
+        faults = (msgspec.structs.replace(one, detail=fault_report.redact(one.detail, paths)) for one in log.faults)
         record = trial_record.make_record(trial, msgspec.structs.replace(log, faults=tuple(faults)))
         record = msgspec.structs.replace(record, files=opened)
+        if not log.faults:
+            return TrialOutcome(record=record)
         report = fault_report.describe_faults(record.key, trial, record.faults, participants.agents)
         for seat in dict.fromkeys(fault.seat for fault in log.faults):
             participants.dismiss(seat)

@@ -36,21 +36,15 @@ def run_worker(pipe: Connection, make: RunnerFactory, parent: int) -> None:
     """
     end_with_parent(parent)
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole group; the parent decides what it means
-    signal.signal(
-        signal.SIGTERM, lambda *_: None
-    )  # likewise; not ignored, as the processes that it starts would then ignore it too
+    signal.signal(signal.SIGTERM, lambda *_: None)  # likewise; SIG_IGN would also hold for the processes that it starts
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
+    player = SessionPlayer(make)
     try:
-        _serve(pipe, make)
+        for session in iter(pipe.recv, None):
+            for news in player.run(session):
+                pipe.send(news)
     except (EOFError, BrokenPipeError, ConnectionResetError):
         return  # the parent is gone
-
-
-def _serve(pipe: Connection, make: RunnerFactory) -> None:
-    player = SessionPlayer(make)
-    for session in iter(pipe.recv, None):
-        for news in player.run(session):
-            pipe.send(news)
 
 
 class SessionPlayer:

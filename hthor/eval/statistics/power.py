@@ -48,11 +48,7 @@ def correlation_range(first: float, second: float) -> tuple[float, float]:
 
 
 def check_rates(first: float, second: float) -> None:
-    """Do nothing when these can be rates.
-
-    Raises:
-        HthorError: naming the one that is not.
-    """
+    """Raise an HthorError, which names it, when one of these cannot be a rate."""
     for name, rate in (("first", first), ("second", second)):
         if not 0.0 <= rate <= 1.0:
             raise HthorError(f"the {name} rate is {rate:g}, but must be from 0 to 1.")

@@ -97,8 +97,6 @@ class _Performance:
             way=way,
         )
 
-    # -------------------------------------------------------------------------------------------------------- deeds
-
     def _job(self, job: Job) -> None:
         if job.hands > 1:
             self._fail(f"{job.target} takes {job.hands} bodies to carry")
@@ -159,8 +157,6 @@ class _Performance:
             why = outcome.reason if outcome is not None and outcome.reason else "there is no place to do it from"
             self._fail(f"cannot {what} from any of {len(tried)} places: {why}")
         return False
-
-    # -------------------------------------------------------------------------------------------------------- places
 
     def _seeing(self, id: str, reach: float | None) -> Floats:
         """(N, 2) [m] where the object is in sight, near enough to be found, or within ``reach`` [m] of the body."""
@@ -234,8 +230,6 @@ class _Performance:
     def _way(self, spots: Floats) -> float:
         few = spots[:: max(1, len(spots) // _LOOKS)]
         return float(self.ground.paths.distances(self._here(), few).min(initial=math.inf)) if len(few) else math.inf
-
-    # ------------------------------------------------------------------------------------------------------- motions
 
     def _walk(self, goal: Vec2) -> None:
         step = PACE_M_S * rules.TICK_S

@@ -73,11 +73,7 @@ class TaskVerdict(Struct, frozen=True, kw_only=True):
 def check_tasks(
     tasks: Sequence[TaskSpec], *, jobs: int, houses: HouseLibrary = OURS
 ) -> Generator[TaskVerdict, None, None]:
-    """Check tasks in worker processes; verdicts come as they are ready. Closing the iterator ends the workers.
-
-    Args:
-        houses: finds the tasks' houses by name.
-    """
+    """Check tasks in worker processes; verdicts come as they are ready. Closing the iterator ends the workers."""
     work = functools.partial(_examine, houses=houses)
     with closing(run_in_workers(work, _chunks(tasks), jobs=jobs)) as found:
         for _, own in found:
@@ -161,9 +157,6 @@ def _least(task: TaskSpec) -> float:
         return 0.0
 
 
-# ----------------------------------------------------------------------------------------------------- where things are
-
-
 def woken(world: World, task: TaskSpec) -> tuple[dict[str, float], dict[str, ThingState]]:
     """How far [m] each object of a task moves when the engine is made to look after it, and where all is then."""
     world.reset(task)
@@ -244,9 +237,6 @@ def _seen_from(thing: Thing, point: Vec3) -> tuple[float, float]:
     return turned.real, turned.imag
 
 
-# --------------------------------------------------------------------------------------------------------------- play
-
-
 def _played(world: World, task: TaskSpec) -> tuple[float, float, list[tuple[str, str]]]:
     """What the task takes a person alone: seconds, metres, and what is wrong with that."""
     many = len(task.goal.todo) > 1
@@ -263,9 +253,6 @@ def _played(world: World, task: TaskSpec) -> tuple[float, float, list[tuple[str,
     elif kind.least(task) > feat.seconds:
         faults.append(("t_star", f"means at least {kind.least(task)} s, but {feat.seconds} s were enough"))
     return feat.seconds, feat.metres, faults
-
-
-# ------------------------------------------------------------------------------------------------------------ workers
 
 
 def _chunks(tasks: Sequence[TaskSpec]) -> list[list[TaskSpec]]:

@@ -114,11 +114,7 @@ class Engine:
         )(Actor)
 
     def _room(self) -> int:
-        """How many actors the cluster has room for.
-
-        Raises:
-            HthorError: when it has none.
-        """
+        """How many actors the cluster has room for; raises HthorError when it has none."""
         resources = self._ray.cluster_resources()
         room = int(resources.get("CPU", 0.0))
         if self._gpus:
