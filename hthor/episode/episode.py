@@ -12,15 +12,30 @@ from hthor import plugins, rules, seeds
 from hthor.comms import claims
 from hthor.comms.mailbox import Mailbox
 from hthor.episode.episode_log import EpisodeLog, Fault
-from hthor.episode.goal_progress import GoalProgress
 from hthor.episode.trial_world import TrialWorld
 from hthor.humans.core.behaviour_log import BehaviourRecorder
 from hthor.humans.model import HumanModel
 from hthor.tasks.kind import TaskKind
 from hthor.thinking_time import Decision, Thinking
-from hthor.types import HUMAN, Action, Briefing, Event, Mind, Observation, Send, TrialSpec, Wait
+from hthor.types import (
+    HUMAN,
+    Action,
+    Briefing,
+    Event,
+    HouseSpec,
+    Mind,
+    Observation,
+    Send,
+    Snapshot,
+    TaskSpec,
+    ThingState,
+    TrialSpec,
+    Wait,
+)
 
 _T = TypeVar("_T")
+_EVERY_TICKS = round(1.0 / rules.TICK_S)
+"""Progress is computed at least this often."""
 
 
 def run_episode(
@@ -52,9 +67,7 @@ class Episode:
     In every tick, each seat that is free or has mail is asked for an action, and all see the same moment; then messages
     are passed on and motions started, and the world moves on by a tick.
 
-    Args:
-        trial, world, human, robots: as in `run_episode`.
-        thinking: charges agents for thinking time, None in lock-step.
+    The arguments are as in `run_episode`; ``thinking`` charges agents for thinking time, and is None in lock-step.
     """
 
     def __init__(
@@ -65,8 +78,7 @@ class Episode:
         robots: Mapping[str, Mind],
         thinking: Thinking | None,
     ) -> None:
-        self.thinking = thinking
-        self.task, self.world, self.human = trial.task, world, human
+        self.task, self.world, self.human, self.thinking = trial.task, world, human, thinking
         self.seed = seeds.derive(trial.seed, "world", trial.participant, trial.index, trial.task.id)
         self.agents: dict[str, Mind] = {HUMAN: human, **robots}
         self.privileges = {robot.seat: robot.agent.privileges for robot in trial.robots}
@@ -254,3 +266,33 @@ def _checked(action: object) -> Action:
     if not isinstance(action, Action):
         raise TypeError(f"act must return an hthor.types.Action, got {type(action).__name__}")
     return action
+
+
+class GoalProgress:
+    """The share of the goal that is met: ``value``, from 0 to 1, or None for task kinds that count no parts."""
+
+    def __init__(self, kind: TaskKind, task: TaskSpec) -> None:
+        counts = type(kind).progress is not TaskKind.progress
+        self.value: float | None = 0.0 if counts else None
+        self._kind, self._task, self._last = kind, task, round(task.time_limit / rules.TICK_S)
+        self._things: Mapping[str, ThingState] | None = None
+
+    def update(self, snapshot: Snapshot, house: HouseSpec, *, met: bool = False, has_events: bool) -> tuple[Event, ...]:
+        """The event "progress" if the share changed.
+
+        It is computed when an object changed, once a second, and at the end; not while an object is only carried.
+
+        Args:
+            met: the goal is met.
+            has_events: something happened in this tick.
+        """
+        changed = snapshot.things is not self._things and (has_events or not any(snapshot.holding.values()))
+        due = met or changed or snapshot.tick % _EVERY_TICKS == 0 or snapshot.tick == self._last
+        if self.value is None or not due:
+            return ()
+        self._things = snapshot.things
+        share = 1.0 if met else round(min(1.0, max(0.0, float(self._kind.progress(self._task, snapshot, house)))), 4)
+        if share == self.value:
+            return ()
+        self.value = share
+        return (Event(tick=snapshot.tick, seat=HUMAN, kind="progress", data={"value": share}),)

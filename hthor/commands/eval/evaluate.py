@@ -262,9 +262,7 @@ def evaluate(
     )
     options = custom_houses.resolve_houses(options, lambda words: None if quiet else output.say(words, talk))
     if dry_run:
-        from hthor.commands.eval.dry_run import show_forecast
-
-        show_forecast(options, watcher, context, json)
+        results.show_forecast(options, watcher, context, json)
         return
     paper = talk if json else output.console()
     done: list[FinishedRun] = []

@@ -101,7 +101,7 @@ def validate(
 
 def _foretell(options: ValidationOptions, json: bool) -> None:
     from hthor.calibration.validation import plan
-    from hthor.commands.eval import dry_run
+    from hthor.commands.eval import results
 
     found = list(plan.preview_runs(options))
     trials, played = (sum(getattr(run, name) for _, run in found) for name in ("trials", "played"))
@@ -115,9 +115,9 @@ def _foretell(options: ValidationOptions, json: bool) -> None:
     output.put_table(
         ("people", "as", "suite", "run", "trials", "played", "time"),
         [
-            (one.word, one.role, one.suite, run.name, run.trials, run.played, dry_run.time(run.seconds) or "unknown")
+            (one.word, one.role, one.suite, run.name, run.trials, run.played, results.time(run.seconds) or "unknown")
             for one, run in found
         ],
     )
-    about = f", {dry_run.time(seconds)}" if seconds is not None else ""
+    about = f", {results.time(seconds)}" if seconds is not None else ""
     output.put_line(f"{trials - played} of {trials} trials would be played{about}, in {folder}/; nothing was written.")

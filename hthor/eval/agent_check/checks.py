@@ -46,9 +46,8 @@ def check_agent(
     """Check an agent's file, ``file.py`` or ``file.py:Class``.
 
     Args:
-        robot: the body; by default the first that the agent is made for, or scout. camera: its
-            camera, as `hthor.types.cameras.canonical_name` spells it.
-        given: arguments, and files beyond its own that it may read.
+        robot: the body; by default the first that the agent is made for, or scout.
+        camera: its camera, as `hthor.types.cameras.canonical_name` spells it.
 
     Raises:
         IsolationError: when the level cannot be had.

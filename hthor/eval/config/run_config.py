@@ -191,10 +191,8 @@ def build_config(
         human: the human population, or what `hthor.humans.population.resolve` finds it by.
         participants: how many people; None for as many as let every task be done once.
         assets: the furniture pack that pictures show, with its own hash; None for our own furniture.
-        realtime: whether agents' thinking takes time of the trials; it makes no difference without a robot.
-        limit: how many tasks were chosen for ``suite``; None where it is whole.
-        houses: what the suite was narrowed to, as is ``difficulty``; empty where it was not.
-        step_limit_s: the deadline of an action [s]; it makes no difference where all agents are built in.
+        realtime, step_limit_s: as in `RunConfig`; without a robot, or submitted agents, they make no difference.
+        limit, houses, difficulty: how ``suite`` was narrowed; empty or None where it was not.
     """
     population = resolve.resolve_humans(human) if isinstance(human, str) else human
     size = len(suite.tasks)

@@ -59,9 +59,7 @@ def make_sessions(
             `hthor.types.detector_specs.canonical_name` spells it; or a team, which has all of that.
         human: the human population, or what `hthor.humans.population.resolve` finds it by.
         participants: how many; by default as many as let every task be done exactly once.
-        kind_sha256: hash of the task kind's file, for a kind of the user's own.
         assets_sha256: hash of the robots' pictures, as `robot_team.team_pictures_sha256`; None: of our own furniture.
-        realtime: whether agents' thinking takes time of the trial.
         step_limit_s: seconds that submitted agents have for each action; None for the usual deadline.
     """
     team = robot_team.form_team([robot], [agent], detector) if isinstance(agent, str) else agent

@@ -1,5 +1,10 @@
 """All metrics, found by the files of `hthor.eval.metrics.definitions`, in the order of tables."""
 
+from typing import Any
+
+import msgspec
+from msgspec import Struct
+
 from hthor import plugins
 from hthor.errors import UnknownName
 from hthor.eval.metrics.metric import Metric
@@ -20,6 +25,17 @@ BY_SEAT = tuple(metric for metric in METRICS if metric.by_seat)
 MAIN = tuple(metric for metric in SINGLE if metric.main)
 """The metrics that every table of results has, and that runs are compared in."""
 _BY_NAME = {metric.name: metric for metric in METRICS}
+
+
+def define_record(
+    name: str, base: type[Struct], module: str, *, single: object, default: object, by_seat: object
+) -> type[Any]:
+    """A record with a field for each metric, of the type ``single`` with its default, or of the type ``by_seat``."""
+    fields: list[Any] = [
+        (one.name, by_seat, msgspec.field(default_factory=dict)) if one.by_seat else (one.name, single, default)
+        for one in METRICS
+    ]
+    return msgspec.defstruct(name, fields, bases=(base,), module=module, frozen=True, kw_only=True)
 
 
 def get(name: str) -> Metric:

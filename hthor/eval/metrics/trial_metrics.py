@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
-import msgspec
 import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
@@ -42,18 +41,8 @@ class MetricValues(Struct, frozen=True, kw_only=True):
 if TYPE_CHECKING:
     TrialMetrics = MetricValues
 if not TYPE_CHECKING:
-    TrialMetrics = msgspec.defstruct(
-        "TrialMetrics",
-        [
-            (metric.name, dict[str, float], msgspec.field(default_factory=dict))
-            if metric.by_seat
-            else (metric.name, Value, None)
-            for metric in registry.METRICS
-        ],
-        bases=(MetricValues,),
-        module=__name__,
-        frozen=True,
-        kw_only=True,
+    TrialMetrics = registry.define_record(
+        "TrialMetrics", MetricValues, __name__, single=Value, default=None, by_seat=dict[str, float]
     )
 
 

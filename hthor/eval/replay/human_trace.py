@@ -92,10 +92,6 @@ def trace_human(
 ) -> HumanTrace:
     """Run a trial of a run again and record the human's thoughts.
 
-    Args:
-        files: the user's files that the run's folder does not hold.
-        inputs: the arguments and readable files that agents were given.
-
     Raises:
         RunError: when trials before it are missing, or another version of hthor ran them.
         HthorError: when a file is needed, or the human model does not report its thoughts.

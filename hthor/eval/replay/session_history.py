@@ -87,9 +87,7 @@ def replay_team(
 ) -> RobotTeam:
     """The robots of a logged trial, with the user's files for those that did not ship with hthor.
 
-    Args:
-        guests: how submitted agents are isolated, and what they are given.
-        choose: finds the agent of a seat among those that were given; by default it must be unchanged.
+    ``choose`` finds the agent of a seat among those that were given; by default it must be unchanged.
 
     Raises:
         HthorError: when a file is needed and not given.
@@ -105,10 +103,7 @@ def replay_team(
 def replay_sources(
     folder: RunFolder, spec: TrialSpec, files: RunFiles, guests: GuestConfig, team: RobotTeam | None = None
 ) -> Sources:
-    """Where everything is that a logged trial needs.
-
-    Args:
-        team: its robots; by default as `replay_team` finds them, unchanged.
+    """Where everything is that a logged trial needs; its robots by default as `replay_team` finds them, unchanged.
 
     Raises:
         HthorError: when a file is needed and not given.
@@ -166,10 +161,6 @@ def rerun_trial(
 
     What the human does depends on their earlier trials, so these are run too. If an agent's file was changed meanwhile,
     the changed agent takes part, and the trial may go differently.
-
-    Args:
-        isolation: the level at which submitted agents are isolated, or "auto".
-        inputs: the arguments and readable files that agents are given.
 
     Raises:
         RunError: when trials before it are missing, or another version of hthor ran them.

@@ -41,18 +41,8 @@ class Estimates(Struct, frozen=True, kw_only=True):
 if TYPE_CHECKING:
     Scores = Estimates
 if not TYPE_CHECKING:
-    Scores = msgspec.defstruct(
-        "Scores",
-        [
-            (metric.name, dict[str, Estimate], msgspec.field(default_factory=dict))
-            if metric.by_seat
-            else (metric.name, Estimate, NOTHING)
-            for metric in registry.METRICS
-        ],
-        bases=(Estimates,),
-        module=__name__,
-        frozen=True,
-        kw_only=True,
+    Scores = registry.define_record(
+        "Scores", Estimates, __name__, single=Estimate, default=NOTHING, by_seat=dict[str, Estimate]
     )
 
 

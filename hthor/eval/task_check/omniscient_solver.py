@@ -19,7 +19,6 @@ from numpy.typing import NDArray
 
 from hthor import catalog, plugins, rules
 from hthor.geometry import plane
-from hthor.houses.space.visibility import LinesOfSight
 from hthor.tasks.arrangement.reachability import ReachableFloor, lines_of_sight
 from hthor.types import HUMAN, Drop, Job, Motion, Move, Open, Outcome, Pick, Place, Rotate, TaskSpec, Thing, Vec2, Vec3
 
@@ -175,7 +174,7 @@ class _Performance:
         gap = np.hypot(np.maximum(np.abs(u) - thing.size[0] / 2, 0.0), v - thing.size[1] / 2)
         cells = cells[(v > 0.0) & (gap <= self.body.reach * _SURE)]
         middle = plane.to_house((0.0, thing.size[1] / 2 + _OFF_M, 0.0), thing.centre, thing.yaw)
-        front: Floats = cells[self._sight(frozenset()).seen(self._eyes(cells), [middle])]
+        front: Floats = cells[lines_of_sight(self.house, frozenset()).seen(self._eyes(cells), [middle])]
         return front
 
     def _serving(self, thing: Thing, place: Vec3 | None) -> Floats:
@@ -199,11 +198,8 @@ class _Performance:
         """Those of the cells from which the point is within reach, and in sight when the thing is open."""
         near: Floats = cells[np.hypot(cells[:, 0] - point[0], cells[:, 1] - point[1]) <= self.body.reach * _SURE]
         if len(near):
-            near = near[self._sight(frozenset({thing.id})).seen(self._eyes(near), [point])]
+            near = near[lines_of_sight(self.house, frozenset({thing.id})).seen(self._eyes(near), [point])]
         return near
-
-    def _sight(self, opened: frozenset[str]) -> LinesOfSight:
-        return lines_of_sight(self.house, opened)
 
     def _eyes(self, cells: Floats) -> Floats:
         return np.column_stack((cells, np.full(len(cells), self.body.eye)))

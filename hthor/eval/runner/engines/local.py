@@ -25,13 +25,7 @@ _FAREWELL_S = 10.0
 
 
 class Engine:
-    """The supervisor of the workers, which are new processes that die with it.
-
-    Args:
-        jobs: how many workers; None for one per CPU.
-        address: must be empty.
-        limit_s: how long [s] a worker may take for a trial before it counts as stuck.
-    """
+    """The supervisor of the workers, which are new processes that die with it; by default one per CPU."""
 
     def __init__(
         self, *, jobs: int | None = None, address: str = "", gpus: float = 0.0, limit_s: float = LIMIT_S
@@ -175,11 +169,7 @@ class SessionLost(HthorError):
 def run_all_sessions(
     sessions: Sequence[Session], make: RunnerFactory, *, jobs: int
 ) -> Generator[News | None, None, None]:
-    """Run sessions in ``jobs`` worker processes of this machine, as `Engine.run_sessions`, when none may be missing.
-
-    Raises:
-        SessionLost: when one is lost.
-    """
+    """Run sessions in ``jobs`` processes, as `Engine.run_sessions`; raises SessionLost when one is lost."""
     with closing(Engine(jobs=jobs).run_sessions(sessions, make)) as messages:
         for message in messages:
             if isinstance(message, SessionAbandoned):

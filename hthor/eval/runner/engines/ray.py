@@ -31,8 +31,6 @@ class Engine:
         jobs: how many actors; None for one per CPU of the cluster, or as many as share its GPUs.
         address: of the cluster that this machine belongs to, such as ``10.0.0.1:6379``; empty for the one that is
             here, or a new one of this machine alone.
-        gpus: how much of a GPU each actor needs, such as 0.25.
-        limit_s: how long [s] an actor may take for a trial before it counts as stuck.
 
     Raises:
         MissingExtra: when Ray is not installed.
