@@ -160,17 +160,16 @@ def census(
     from hthor import houses
     from hthor.houses import house_statistics as counting
 
-    columns = []
-    if generated:
-        figures = [counting.measure_house(home.house) for home in _made(seed, None, generated)]
-        columns.append(counting.summarize_houses("generated", figures))
-    columns.append(
-        counting.summarize_houses("hthor's own", [counting.measure_house(house) for _, house in _own(houses)])
-    )
-    if files:
-        columns.append(
-            counting.summarize_houses("given", [counting.measure_house(houses.load(file)) for file in files])
-        )
+    groups = {
+        "generated": [home.house for home in _made(seed, None, generated)] if generated else [],
+        "hthor's own": [house for _, house in _own(houses)],
+        "given": [houses.load(file) for file in files or ()],
+    }
+    columns = [
+        counting.summarize_houses(name, [counting.measure_house(house) for house in group])
+        for name, group in groups.items()
+        if group
+    ]
     if formats.asks_json(json, shape):
         output.put_json(columns)
         return

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 app = typer.Typer(no_args_is_help=True, help="Scene priors: where people expect things.")
 
 _SHOWN = 8
+_HEADINGS = ("relation", "reference", "seen", "frequency", "similarity", "weight", "optional", "source")
 
 
 @app.command("show")
@@ -37,7 +38,10 @@ def show(
         output.put_json({"origins": priors.table().origins, "triplets": rows})
         return
     for name, group in groupby(rows, key=lambda row: row.target):
-        _put_target(name, list(group))
+        triplets = list(group)
+        sys.stdout.write(f"{name}: {triplets[0].of} in the scenes\n")
+        sys.stdout.flush()
+        output.put_table(_HEADINGS, [_cells(row) for row in triplets])
     for origin in priors.table().origins:
         sys.stdout.write(f"{_words(origin)}\n")
 
@@ -106,13 +110,6 @@ def _verdict(same: bool, count: int, gaps: Sequence[tuple[tuple[str, str, str], 
     lines = [f"  {' '.join(key)}: {part} by {gap:.3f}\n" for key, part, gap in gaps[:_SHOWN]]
     more = f"  and {len(gaps) - _SHOWN} more\n" if len(gaps) > _SHOWN else ""
     return f"differs: {len(gaps)} numbers, by at most {gaps[0][2]:.3f}\n{''.join(lines)}{more}"
-
-
-def _put_target(target: str, rows: Sequence[Triplet]) -> None:
-    headings = ["relation", "reference", "seen", "frequency", "similarity", "weight", "optional", "source"]
-    sys.stdout.write(f"{target}: {rows[0].of} in the scenes\n")
-    sys.stdout.flush()
-    output.put_table(headings, [_cells(row) for row in rows])
 
 
 def _cells(row: Triplet) -> list[Any]:

@@ -18,7 +18,7 @@ from scipy import stats as scipy_stats
 
 from hthor import jsonio
 from hthor.errors import HthorError, RunError
-from hthor.eval.comparison import compare, ranking, sample_size, verdict
+from hthor.eval.comparison import compare, ranking, sample_size
 from hthor.eval.metrics import registry
 from hthor.eval.metrics.metric import SECONDS, SHARE
 from hthor.eval.records.run_folder import RunFolder
@@ -120,7 +120,7 @@ def test_several_runs_are_compared_pair_by_pair(runs: Path):
 @settings(max_examples=100, deadline=None)
 @given(st.lists(st.tuples(st.floats(-1, 1), st.floats(0, 1)), min_size=1, max_size=8))
 def test_a_verdict_and_the_level_of_its_interval_say_the_same(differences: list[tuple[float, float]]):
-    for (difference, p), found in zip(differences, verdict.verdicts(differences), strict=True):
+    for (difference, p), found in zip(differences, paired_difference.verdicts(differences), strict=True):
         assert found.among == len(differences)
         assert found.level >= 0.95
         if abs(p - (1.0 - found.level)) > 1e-5:

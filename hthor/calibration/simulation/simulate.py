@@ -18,8 +18,8 @@ from hthor.calibration.targets import CONDITIONS, Design
 from hthor.errors import RunError
 from hthor.eval.config import robot_team, sessions
 from hthor.eval.runner.collector import InternalFailure
+from hthor.eval.runner.engines import Interrupted, stoppable
 from hthor.eval.runner.engines.local import SessionLost, run_all_sessions
-from hthor.eval.runner.interrupt import Interrupted, stoppable
 from hthor.eval.runner.messages import TrialDone
 from hthor.eval.runner.progress import Watcher
 from hthor.humans.population import parameter_registry

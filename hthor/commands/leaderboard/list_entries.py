@@ -35,13 +35,8 @@ def list_entries(
     if formats.asks_json(json, shape):
         output.put_json(found)
     elif shape is Format.CSV:
-        output.put_records(
-            [
-                {"suite": part.suite.name, "people": part.humans, **_flat(row)}
-                for part in found.sections
-                for row in part.rows
-            ]
-        )
+        rows = ((part, row) for part in found.sections for row in part.rows)
+        output.put_records([{"suite": part.suite.name, "people": part.humans, **_flat(row)} for part, row in rows])
     else:
         headings = ("rank", "agent", "success", "time-weighted", "adoption", "time", "trust", "faults")
         for part in found.sections:

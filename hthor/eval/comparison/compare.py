@@ -9,7 +9,6 @@ import msgspec
 from msgspec import Struct
 
 from hthor.errors import RunError
-from hthor.eval.comparison import verdict
 from hthor.eval.config.run_config import RunConfig, SuiteRef
 from hthor.eval.metrics import registry, trial_metrics
 from hthor.eval.records.trial_record import TrialRecord
@@ -217,7 +216,7 @@ def _rank(name: str) -> tuple[int, str]:
 def _judged(found: Sequence[tuple[Comparison, LoadedRun, LoadedRun]]) -> tuple[Comparison, ...]:
     """The same with their verdicts, which are judged together."""
     successes = [pair.differences["sr"] for pair, _, _ in found]
-    verdicts = verdict.verdicts([(success.difference, success.p) for success in successes])
+    verdicts = paired_difference.verdicts([(success.difference, success.p) for success in successes])
     judged = []
     for (pair, one, other), own in zip(found, verdicts, strict=True):
         pairs = pairing.pair_trials(one.records, other.records).pairs

@@ -143,5 +143,4 @@ def _weights(tasks: np.ndarray, people: np.ndarray, name: str, draws: int) -> It
 def _counts(chance: np.random.Generator, sort: int, draws: int) -> np.ndarray:
     """How often each of ``sort`` things is drawn, (draws, sort)."""
     drawn = chance.integers(0, sort, (draws, sort)) + sort * np.arange(draws)[:, None]
-    counts: np.ndarray = np.bincount(drawn.ravel(), minlength=draws * sort).reshape(draws, sort).astype(np.float64)
-    return counts
+    return np.bincount(drawn.ravel(), minlength=draws * sort).reshape(draws, sort).astype(np.float64)

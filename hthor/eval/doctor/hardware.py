@@ -51,11 +51,9 @@ def _disk(runs: Path) -> Iterator[CheckResult]:
         yield CheckResult(name="disk", status="fail" if free < _ROOM_LEAST_MB else "warn", says=says, fix=fix)
     else:
         yield CheckResult(name="disk", says=says)
-    says = f"a record is on the disk after {took:.1f} ms"
-    if took > _SYNC_MS:
-        yield CheckResult(name="disk speed", status="warn", says=says, fix="write runs to a local disk with --out")
-    else:
-        yield CheckResult(name="disk speed", says=says)
+    says, slow = f"a record is on the disk after {took:.1f} ms", took > _SYNC_MS
+    fix = "write runs to a local disk with --out" if slow else ""
+    yield CheckResult(name="disk speed", status="warn" if slow else "ok", says=says, fix=fix)
 
 
 def _sync_ms(folder: Path) -> float:
@@ -76,10 +74,11 @@ def _memory(cores: float) -> CheckResult:
         return CheckResult(name="memory", says="this system does not say how much is free")
     needed = workers * _WORKER_MB
     says = f"{free / 1000.0:.1f} GB free, {needed / 1000.0:.1f} GB needed for {workers} workers and built-in agents"
-    fits = max(1, int(free / _WORKER_MB))
-    if free < needed:
-        return CheckResult(name="memory", status="warn", says=says, fix=f"hthor eval --jobs {fits}")
-    return CheckResult(name="memory", says=says)
+    if free >= needed:
+        return CheckResult(name="memory", says=says)
+    return CheckResult(
+        name="memory", status="warn", says=says, fix=f"hthor eval --jobs {max(1, int(free / _WORKER_MB))}"
+    )
 
 
 def _free_mb() -> float | None:

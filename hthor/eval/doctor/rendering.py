@@ -27,22 +27,16 @@ def check_rendering(drawn: RenderingProbe | str) -> list[CheckResult]:
     if isinstance(drawn, str):
         says = f"the process that draws a frame failed: {drawn}"
         return [CheckResult(name="pictures", status="fail", says=says, fix=f"{_CURE}; or MUJOCO_GL=osmesa")]
-    return [_fast(drawn), _nice(drawn)]
-
-
-def _fast(drawn: RenderingProbe) -> CheckResult:
-    name = "robot's camera"
-    if drawn.fast > 1:
-        return CheckResult(name=name, says=f"draws a frame of {drawn.fast} colours, without OpenGL")
-    return CheckResult(name=name, status="fail", says="its frame is blank", fix="pip install --force-reinstall hthor")
-
-
-def _nice(drawn: RenderingProbe) -> CheckResult:
-    name = "OpenGL"
-    if drawn.nice > 1:
-        return CheckResult(name=name, says=f"{drawn.backend} draws a frame of {drawn.nice} colours")
-    says = drawn.reason or f"the frame that {drawn.backend} draws is blank"
-    return CheckResult(name=name, status="warn", says=f"{says} (only pictures in the profile nice need it)", fix=_CURE)
+    camera = CheckResult(name="robot's camera", says=f"draws a frame of {drawn.fast} colours, without OpenGL")
+    if drawn.fast <= 1:
+        fix = "pip install --force-reinstall hthor"
+        camera = CheckResult(name="robot's camera", status="fail", says="its frame is blank", fix=fix)
+    opengl = CheckResult(name="OpenGL", says=f"{drawn.backend} draws a frame of {drawn.nice} colours")
+    if drawn.nice <= 1:
+        why = drawn.reason or f"the frame that {drawn.backend} draws is blank"
+        says = f"{why} (only pictures in the profile nice need it)"
+        opengl = CheckResult(name="OpenGL", status="warn", says=says, fix=_CURE)
+    return [camera, opengl]
 
 
 def render_frames() -> Iterator[RenderingProbe]:

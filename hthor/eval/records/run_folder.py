@@ -26,29 +26,12 @@ class RunFolder:
 
     def __init__(self, path: Path) -> None:
         self.path = path
+        self.config_file, self.log_file = path / "run.json", path / trial_log.NAME
+        self.result_file = path / "result.json"  # which only whole runs have
+        self.effort_file = path / "effort.json"  # what a shard took, as it has no result to say so
 
     def __str__(self) -> str:
         return str(self.path)
-
-    @property
-    def config_file(self) -> Path:
-        """`run.json`."""
-        return self.path / "run.json"
-
-    @property
-    def log_file(self) -> Path:
-        """`trials.jsonl`."""
-        return self.path / trial_log.NAME
-
-    @property
-    def result_file(self) -> Path:
-        """`result.json`, which only whole runs have."""
-        return self.path / "result.json"
-
-    @property
-    def effort_file(self) -> Path:
-        """`effort.json`: what a shard took. A shard has no result to say so."""
-        return self.path / "effort.json"
 
     @property
     def houses(self) -> Path | None:

@@ -113,12 +113,8 @@ def trace_human(
             person.recording = one == spec
             record = runner.run(participants, one).record
         traits = {name: getattr(person.human.traits, name) for name in person.human.traits.__struct_fields__}
-    return _trace(trial, record, person.thoughts, traits)
-
-
-def _trace(logged: TrialRecord, record: TrialRecord, thoughts: Sequence[Event], traits: dict[str, float]) -> HumanTrace:
     journal = [event for event in record.journal if event.kind in _JOURNAL]
     messages = [event for event in record.events if event.kind in ("shown", "confirmed", "declined", "covered")]
-    events = sorted([*thoughts, *journal, *messages], key=lambda event: event.tick)
-    same = trial_record.encode(record) == trial_record.encode(logged)
-    return HumanTrace(key=logged.key, same=same, traits=traits, events=tuple(events))
+    events = sorted([*person.thoughts, *journal, *messages], key=lambda event: event.tick)
+    same = trial_record.encode(record) == trial_record.encode(trial)
+    return HumanTrace(key=trial.key, same=same, traits=traits, events=tuple(events))

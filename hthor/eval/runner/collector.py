@@ -54,11 +54,6 @@ class CollectedTrials:
     lost: list[SessionAbandoned] = field(default_factory=list)
     void: set[int] = field(default_factory=set)
 
-    @property
-    def hopeless(self) -> bool:
-        """Whether nothing works, so that the remaining sessions need not be tried."""
-        return not self.received and len(self.lost) >= _HOPELESS
-
 
 class Collector:
     """Runs sessions on an engine, and writes new trials to the open log and fault reports beside it.
@@ -101,7 +96,7 @@ class Collector:
                 self._receive(message)
                 self._log.sync(due=True)
                 self._watcher.beat()
-                if self._collected.hopeless:
+                if not self._collected.received and len(self._collected.lost) >= _HOPELESS:
                     break
                 if self._stop.is_set() and not draining:
                     draining = True

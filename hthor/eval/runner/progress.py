@@ -121,12 +121,8 @@ class Live(Watcher):
         from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn
 
         self._tally = Tally(total, kept)
-        columns = (
-            SpinnerColumn(),
-            TextColumn("[bold]{task.description}"),
-            BarColumn(),
-            TextColumn("{task.fields[words]}"),
-        )
+        title, state = TextColumn("[bold]{task.description}"), TextColumn("{task.fields[words]}")
+        columns = (SpinnerColumn(), title, BarColumn(), state)
         self._bar = Progress(*columns, console=self._console, refresh_per_second=4, transient=True)
         words = f"{kept}/{total} trials, starting the workers" if kept < total else self._tally.words
         self._task = self._bar.add_task(self._name, total=total, completed=kept, words=words)

@@ -15,9 +15,8 @@ from hthor.eval.results import aggregate, result_file
 from hthor.eval.results.result_file import Effort, RunResult
 from hthor.eval.runner import engines
 from hthor.eval.runner.collector import CollectedTrials, Collector, unfinished_error
-from hthor.eval.runner.engines import Engine
+from hthor.eval.runner.engines import Engine, Interrupted, stoppable
 from hthor.eval.runner.fault_report import FaultArchive
-from hthor.eval.runner.interrupt import Interrupted, stoppable
 from hthor.eval.runner.messages import RunnerFactory
 from hthor.eval.runner.progress import Watcher
 

@@ -178,14 +178,12 @@ class TrialRunner:
         path = self._sources.robot_paths.get(seat.seat, "")
         if path:
             _check_unchanged(path, seat.robot_sha256)
-        spec: RobotSpec = plugins.load("robot", path or seat.robot)
-        return spec
+        return plugins.load("robot", path or seat.robot)
 
     def _make_agent(self, seat: RobotSeat, step_limit_s: float | None) -> Mind:
         path = self._sources.agent_paths.get(seat.seat, "")
         if not path:
-            agent: Mind = plugins.load("agent", seat.agent.name)()
-            return agent
+            return plugins.load("agent", seat.agent.name)()
         from hthor.guest import Guest, Unreachable
 
         make = functools.partial(Guest, path, config=self._sources.guests, pool=self._pool)
@@ -229,36 +227,31 @@ class Participants:
         self.human = human
         self._seats = tuple(seats)
         self._make_agent = make_agent
-        self._agents: dict[str, Mind] = {}
+        self.agents: dict[str, Mind] = {}  # of the last trial, by seat
 
     def __enter__(self) -> Participants:
         return self
 
     def __exit__(self, *_: object) -> None:
-        for seat in tuple(self._agents):
+        for seat in tuple(self.agents):
             self.dismiss(seat)
 
     def ready_agents(self) -> Mapping[str, Mind]:
         """An agent for each robot, by seat: that of the trial before, or a new one where that was dismissed."""
         for robot in self._seats:
-            if robot.seat not in self._agents:
-                self._agents[robot.seat] = self._make_agent(robot)
-        return dict(self._agents)
-
-    @property
-    def agents(self) -> Mapping[str, Mind]:
-        """The agents of the last trial, by seat."""
-        return self._agents
+            if robot.seat not in self.agents:
+                self.agents[robot.seat] = self._make_agent(robot)
+        return dict(self.agents)
 
     def finish_trial(self) -> None:
         """The trial is over: agents that clean up for the next one may do so now."""
-        for agent in self._agents.values():
+        for agent in self.agents.values():
             if (finish := getattr(agent, "finish", None)) is not None:
                 finish()
 
     def dismiss(self, seat: str) -> None:
         """End an agent; the next trial gets a new one."""
-        agent: Any = self._agents.pop(seat)
+        agent: Any = self.agents.pop(seat)
         if hasattr(agent, "close"):
             agent.close()
 

@@ -88,8 +88,7 @@ def _uneven(squares: np.ndarray, count: int) -> np.ndarray:
         return np.full_like(total, np.inf)
     apart = (squares**2).sum(axis=-1) - total**2 / groups
     told = (total > _TINY) & (apart > 1e-12 * total**2)
-    found: np.ndarray = np.where(told, _UNEVEN * total**2 / np.where(told, apart, 1.0), np.inf)
-    return found
+    return np.where(told, _UNEVEN * total**2 / np.where(told, apart, 1.0), np.inf)
 
 
 def _variance(model: str, squares: dict[str, np.ndarray], sizes: dict[str, np.ndarray]) -> np.ndarray:
@@ -120,5 +119,4 @@ def _sums(values: np.ndarray, groups: np.ndarray) -> np.ndarray:
     """Sums within groups, (..., G)."""
     order = np.argsort(groups, kind="stable")
     starts = np.searchsorted(groups[order], np.arange(int(groups.max()) + 1))
-    sums: np.ndarray = np.add.reduceat(values[..., order], starts, axis=-1)
-    return sums
+    return np.add.reduceat(values[..., order], starts, axis=-1)

@@ -136,7 +136,7 @@ METRICS = (
         "interruptions_per_min",
         "messages shown, a minute",
         interruptions,
-        short="interruptions a minute",
+        "interruptions a minute",
         decimals=2,
         rank=290,
     ),

@@ -9,18 +9,10 @@ def trust(trial: Trial) -> int | None:
     return trial.log.trust
 
 
-_LIMITS = (float(rules.TRUST_MIN), float(rules.TRUST_MAX))
+_SCALE = (float(rules.TRUST_MIN), float(rules.TRUST_MAX))
 
 METRICS = (
     Metric(
-        "trust",
-        "trust (1 to 7)",
-        trust,
-        decimals=2,
-        better=HIGHER,
-        rank=60,
-        main=True,
-        needs_robot=True,
-        limits=_LIMITS,
+        "trust", "trust (1 to 7)", trust, decimals=2, better=HIGHER, rank=60, main=True, needs_robot=True, limits=_SCALE
     ),
 )

@@ -7,10 +7,14 @@ the same record, and the listener keeps it once. Engines read and write no files
 from __future__ import annotations
 
 import importlib
+import signal
+import threading
 import time
 from collections import deque
-from collections.abc import Generator, Sequence
+from collections.abc import Generator, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
+from types import FrameType
 from typing import TYPE_CHECKING, Protocol
 
 from hthor import rules
@@ -64,6 +68,35 @@ class SessionFailed(HthorError):
     def __init__(self, failed: Failed) -> None:
         self.exit_code = failed.exit_code
         super().__init__(failed.message)
+
+
+class Interrupted(HthorError):
+    """The user stopped the run; finished trials are kept."""
+
+    exit_code = 130
+
+
+@contextmanager
+def stoppable() -> Iterator[threading.Event]:
+    """Turn the first Ctrl-C or SIGTERM into a flag; a second one ends at once, and raises Interrupted."""
+    flag = threading.Event()
+    if threading.current_thread() is not threading.main_thread():
+        yield flag
+        return
+
+    def stop(_number: int, _frame: FrameType | None) -> None:
+        if flag.is_set():
+            raise KeyboardInterrupt
+        flag.set()
+
+    before = {number: signal.signal(number, stop) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield flag
+    except KeyboardInterrupt:
+        raise Interrupted("interrupted at once; resume with the same command.") from None
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def engine_names() -> list[str]:
