@@ -36,13 +36,13 @@ import numpy as np
 
 from hthor import catalog, rules
 from hthor.geometry import plane
-from hthor.geometry.plane import turn, wrap
+from hthor.geometry.plane import wrap
 from hthor.geometry.ray_casting import Floats
 from hthor.houses.space import free_space
 from hthor.types import Event, HouseSpec, Move, Outcome, Pose, Rotate, Vec2, Vec3
 from hthor.world.carrying.load import LIFT_M
 from hthor.world.carrying.trailer import TrailerLoad
-from hthor.world.motion.locomotion import TickResult
+from hthor.world.motion.locomotion import EPS, SLIDE_SHARE_MIN, TickResult, length_and_direction
 from hthor.world.motion.reach import out_of_reach
 from hthor.world.state.body_state import BodyState
 from hthor.world.state.doors import Doors, leaf_rectangle
@@ -58,10 +58,6 @@ _CARRY_HEIGHT_M = 1.0
 """[m] What begins higher above the floor is not in the way of a carried thing."""
 EventList = tuple[tuple[str, dict[str, Any]], ...]
 """Kinds of events with their data."""
-
-_EPS = 1e-9
-_SLIDE_SHARE_MIN = 0.05
-"""A body slides only if at least this share of the step lies along the axis; our choice."""
 
 
 class JointCarrying:
@@ -182,9 +178,7 @@ class CarryMotion:
         self, seat: BodyState, motion: Move, load: TrailerLoad, culprit: Callable[[BodyState, Vec2], str]
     ) -> None:
         self._seat, self._load, self._culprit = seat, load, culprit
-        self._left = math.hypot(motion.forward, motion.left)
-        x, y = turn((motion.forward, motion.left), seat.pose.yaw)
-        self._along = (x / self._left, y / self._left) if self._left > 0.0 else (0.0, 0.0)
+        self._left, self._along = length_and_direction(seat, motion)
 
     def advance(self, tick: int) -> TickResult:
         seat, load = self._seat, self._load
@@ -195,7 +189,7 @@ class CarryMotion:
         dx, dy = self._along[0] * step, self._along[1] * step
         if step > 0.0 and not load.follows(seat, tick) and not self._go(dx, dy, step):
             return self._stop(tick, (dx, dy))
-        return (None if self._left > _EPS else Outcome(motion="move", ok=True)), ()
+        return (None if self._left > EPS else Outcome(motion="move", ok=True)), ()
 
     def _stop(self, tick: int, step: Vec2) -> TickResult:
         other = self._load.body_in_the_way(self._seat)
@@ -206,7 +200,7 @@ class CarryMotion:
 
     def _go(self, dx: float, dy: float, step: float) -> bool:
         """Straight on, or else along one axis, unless hardly anything of the step is along it."""
-        ways = ((dx, dy), *(way for way in ((dx, 0.0), (0.0, dy)) if abs(way[0] + way[1]) > _SLIDE_SHARE_MIN * step))
+        ways = ((dx, dy), *(way for way in ((dx, 0.0), (0.0, dy)) if abs(way[0] + way[1]) > SLIDE_SHARE_MIN * step))
         return any(self._load.lead(self._seat, *way) for way in ways)
 
 
@@ -223,5 +217,5 @@ class CarryRotation:
         pose, limit = self._seat.pose, self._seat.spec.pitch_limit
         tilt = max(-limit, min(limit, pose.pitch + pitch))
         self._seat.pose = Pose(x=pose.x, y=pose.y, yaw=wrap(pose.yaw + yaw), pitch=tilt)
-        over = abs(self._yaw) < _EPS and abs(self._pitch) < _EPS
+        over = abs(self._yaw) < EPS and abs(self._pitch) < EPS
         return (Outcome(motion="rotate", ok=True) if over else None), ()

@@ -18,11 +18,11 @@ from hthor.world import numbers
 from hthor.world.state.body_state import BodyState
 from hthor.world.state.doors import leaf_rectangle
 
-_EPS = 1e-9
+EPS = 1e-9
 """[m, rad, ticks] Tolerance for rounding."""
 WAIT_MAX_S = 3600.0
 """[s] The longest single wait."""
-_SLIDE_SHARE_MIN = 0.05
+SLIDE_SHARE_MIN = 0.05
 """A body slides only if at least this share of the step lies along the axis; our choice."""
 _FREE, _BLOCKED = "", "*"
 """What a step meets: nothing, the house, or else the seat in the way."""
@@ -48,17 +48,17 @@ def refusal(seat: BodyState, motion: Move | Rotate | Wait) -> str:
         plain = _is_plain(motion.forward) and _is_plain(motion.left)
         reason = "" if plain else _finite(forward=motion.forward, left=motion.left)
         length = 0.0 if reason else math.hypot(motion.forward, motion.left)
-        if length > rules.MOVE_MAX_M + _EPS:
+        if length > rules.MOVE_MAX_M + EPS:
             return f"move is {numbers.format_number(length)} m long; at most {rules.MOVE_MAX_M:.2f} m"
         return reason
     plain = _is_plain(motion.yaw) and _is_plain(motion.pitch)
     reason = "" if plain else _finite(yaw=motion.yaw, pitch=motion.pitch)
     if reason:
         return reason
-    if abs(motion.yaw) > 2 * math.pi + _EPS:
+    if abs(motion.yaw) > 2 * math.pi + EPS:
         return f"rotation is {numbers.format_number(motion.yaw)} rad; at most one full turn, {2 * math.pi:.2f} rad"
     pitch, limit = seat.pose.pitch + motion.pitch, seat.spec.pitch_limit
-    if abs(pitch) > limit + _EPS:
+    if abs(pitch) > limit + EPS:
         return f"camera pitch would be {numbers.format_number(pitch)} rad; at most {limit:.2f} rad up or down"
     return ""
 
@@ -91,7 +91,7 @@ class RotateMotion:
     def __init__(self, seat: BodyState, motion: Rotate) -> None:
         self._seat, self._motion, self._from = seat, motion, seat.pose
         self._done, self._rate = 0, seat.spec.turn_rate * rules.TICK_S
-        self._ticks = max(1, math.ceil(max(abs(motion.yaw), abs(motion.pitch)) / self._rate - _EPS))
+        self._ticks = max(1, math.ceil(max(abs(motion.yaw), abs(motion.pitch)) / self._rate - EPS))
 
     def advance(self, tick: int) -> TickResult:  # noqa: ARG002
         self._done += 1
@@ -114,9 +114,7 @@ class MoveMotion:
         self, seat: BodyState, motion: Move, others: Sequence[BodyState], culprit: Callable[[BodyState, Vec2], str]
     ) -> None:
         self._seat, self._others, self._culprit = seat, others, culprit
-        self._left = math.hypot(motion.forward, motion.left)
-        x, y = turn((motion.forward, motion.left), seat.pose.yaw)
-        self._along = (x / self._left, y / self._left) if self._left > 0.0 else (0.0, 0.0)
+        self._left, self._along = length_and_direction(seat, motion)
         self._hindered = False
 
     def advance(self, tick: int) -> TickResult:
@@ -125,11 +123,11 @@ class MoveMotion:
         dx, dy = self._along[0] * step, self._along[1] * step
         met = self._try(dx, dy)
         if not met:
-            return (None if self._left > _EPS else _MOVED), ()
+            return (None if self._left > EPS else _MOVED), ()
         events = self._in_way(tick, met)
         if self._slide(dx, 0.0, step) and self._slide(0.0, dy, step):
             return self._stop(tick, met, (dx, dy), events)
-        return (None if self._left > _EPS else _MOVED), events
+        return (None if self._left > EPS else _MOVED), events
 
     def _try(self, dx: float, dy: float) -> str:
         """Go there if it is free; returns what was met otherwise."""
@@ -145,7 +143,7 @@ class MoveMotion:
 
     def _slide(self, dx: float, dy: float, step: float) -> str:
         """Try one axis of a step, unless hardly anything of the step is along it."""
-        return self._try(dx, dy) if abs(dx + dy) > _SLIDE_SHARE_MIN * step else _BLOCKED
+        return self._try(dx, dy) if abs(dx + dy) > SLIDE_SHARE_MIN * step else _BLOCKED
 
     def _in_way(self, tick: int, met: str) -> tuple[Event, ...]:
         """The event of being hindered by another body, once in a move.
@@ -166,6 +164,13 @@ class MoveMotion:
         return outcome, (*events, Event(tick=tick, seat=name, kind="blocked", data={"by": by}))
 
 
+def length_and_direction(seat: BodyState, motion: Move) -> tuple[float, Vec2]:
+    """How far a move goes [m], and the unit vector along it in the house frame; zero for a move of no length."""
+    length = math.hypot(motion.forward, motion.left)
+    x, y = turn((motion.forward, motion.left), seat.pose.yaw)
+    return length, (x / length, y / length) if length > 0.0 else (0.0, 0.0)
+
+
 def duration_ticks(seconds: float) -> int:
     """Whole ticks that ``seconds`` take, at least one."""
     return max(1, math.ceil(max(0.0, seconds) / rules.TICK_S - 1e-6))
@@ -176,7 +181,7 @@ def _clip(value: float, most: float) -> float:
 
 
 def _too_close(seat: BodyState, other: BodyState, x: float, y: float) -> bool:
-    there, least = other.pose, seat.spec.radius + other.spec.radius - _EPS
+    there, least = other.pose, seat.spec.radius + other.spec.radius - EPS
     dx, dy = x - there.x, y - there.y
     if abs(dx) >= least or abs(dy) >= least or math.hypot(dx, dy) >= least:
         return False

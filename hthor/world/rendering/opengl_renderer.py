@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hthor.looks.pack import Pack
 from hthor.types import BodySpec, CameraSpec, HouseSpec, Pose, Vec2
 from hthor.world.model import geoms
 from hthor.world.model.bodies import bodies
@@ -22,7 +23,7 @@ from hthor.world.perception import view_frustum
 from hthor.world.rendering import camera as projection
 from hthor.world.rendering import opengl_context
 from hthor.world.rendering.camera import Images, PoseSnapshot
-from hthor.world.rendering.scene.asset_registry import AssetSource, Pack
+from hthor.world.rendering.scene.asset_registry import AssetSource
 from hthor.world.rendering.scene.compile_scene import SceneBuilder
 from hthor.world.rendering.scene.lights import RoomLights
 from hthor.world.rendering.scene.pose_sync import PoseSync

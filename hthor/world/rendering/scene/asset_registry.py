@@ -1,13 +1,14 @@
 """Meshes and materials as assets of the visual model, each stored once; an optional pack comes first."""
 
 from collections.abc import Hashable
-from typing import Any, Protocol
+from typing import Any
 
 import msgspec
 import numpy as np
 
 from hthor import looks
 from hthor.looks import Material, Mesh, Piece
+from hthor.looks.pack import Pack
 from hthor.types import Vec3
 from hthor.world.model.engine import mujoco
 from hthor.world.model.geoms import Quaternion
@@ -15,25 +16,10 @@ from hthor.world.model.geoms import Quaternion
 _THIN = 1e-12
 
 
-class Pack(Protocol):
-    """A furniture pack. Names of its textures are its own; a piece of it names no other."""
-
-    name: str
-    sha256: str
-
-    def look(self, kind: str, size: Vec3, variant: int) -> tuple[Piece, ...] | None:
-        """A thing's pieces as `hthor.looks.look` gives them, None for what the pack has not."""
-        ...
-
-    def texture(self, name: str) -> Any:
-        """(H, W, 3) uint8."""
-        ...
-
-
 class AssetSource:
     """Looks of things, with the pack's before ours.
 
-    A texture of the pack is called ``pack:NAME`` from here on, so that the two can share names.
+    Names of a pack's textures are its own: they are called ``pack:NAME`` from here on, so that the two can share names.
     """
 
     def __init__(self, pack: Pack | None = None) -> None:

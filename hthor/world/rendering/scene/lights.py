@@ -5,13 +5,14 @@ The lamps throw shadows, so their light stays in their rooms.
 
 import itertools
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 from hthor import seeds
 from hthor.geometry import plane
+from hthor.geometry.plane import distance_to_edge
 from hthor.looks.furniture import building
 from hthor.types import HouseSpec, Pose, Room, Vec2, Vec3
 from hthor.world.model.engine import mujoco
@@ -126,17 +127,17 @@ def _neighbours(house: HouseSpec, room: Room) -> Iterator[str]:
         if opening.passable and room.id in opening.rooms:
             yield from (other.id for other in house.rooms if other is not room and other.id in opening.rooms)
     faces = [face for face in house.walls if face.room == room.id]
-    for a, b in _sides(room):
+    for a, b in zip(room.polygon, (*room.polygon[1:], room.polygon[0]), strict=True):
         count = max(1, round(math.dist(a, b) / _STEP_M))
         for k in range(count):
             share = (k + 0.5) / count
             point = (a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1]))
-            if not any(_to_side(point, face.a, face.b) < _TOUCH_M for face in faces):
-                yield from (other.id for other in house.rooms if other is not room and _clear(point, other) < _TOUCH_M)
-
-
-def _sides(room: Room) -> Iterable[tuple[Vec2, Vec2]]:
-    return zip(room.polygon, (*room.polygon[1:], room.polygon[0]), strict=True)
+            if not any(distance_to_edge(point, (face.a, face.b)) < _TOUCH_M for face in faces):
+                yield from (
+                    other.id
+                    for other in house.rooms
+                    if other is not room and distance_to_edge(point, other.polygon) < _TOUCH_M
+                )
 
 
 def _spread(room: Room) -> list[Vec2]:
@@ -144,7 +145,7 @@ def _spread(room: Room) -> list[Vec2]:
     points = [(x, y) for x, y in itertools.product(*(_steps(list(axis)) for axis in zip(*room.polygon, strict=True)))]
     points = [point for point in points if plane.inside(point, room.polygon)]
     count = min(_MOST, max(1, round(abs(plane.signed_area(room.polygon)) / _SPAN_M2)))
-    inner = [point for point in points if _clear(point, room) >= _WALL_M] or points
+    inner = [point for point in points if distance_to_edge(point, room.polygon) >= _WALL_M] or points
     if count == 1:
         return [_middle(room, inner)]
     lamps = [min(inner), max(inner), max(inner, key=lambda point: (-point[0] + point[1], point))][:count]
@@ -162,25 +163,13 @@ def _middle(room: Room, points: list[Vec2]) -> Vec2:
     """The point farthest from all walls of the room; of equal ones, the nearest to the middle of its extent."""
     xs, ys = zip(*room.polygon, strict=True)
     centre = ((min(xs) + max(xs)) / 2, (min(ys) + max(ys)) / 2)
-    return max(points, key=lambda point: (round(_clear(point, room), 1), -math.dist(point, centre)))
+    return max(points, key=lambda point: (round(distance_to_edge(point, room.polygon), 1), -math.dist(point, centre)))
 
 
 def _steps(values: list[float]) -> list[float]:
     low, high = min(values), max(values)
     count = max(2, 2 * round((high - low) / (2 * _STEP_M)))
     return [low + (high - low) * k / count for k in range(1, count)]
-
-
-def _clear(point: Vec2, room: Room) -> float:
-    """Distance to the nearest side."""
-    return min(_to_side(point, a, b) for a, b in _sides(room))
-
-
-def _to_side(p: Vec2, a: Vec2, b: Vec2) -> float:
-    dx, dy = b[0] - a[0], b[1] - a[1]
-    share = ((p[0] - a[0]) * dx + (p[1] - a[1]) * dy) / max(dx * dx + dy * dy, 1e-12)
-    share = min(1.0, max(0.0, share))
-    return math.dist(p, (a[0] + share * dx, a[1] + share * dy))
 
 
 def sky() -> Any:
