@@ -12,8 +12,7 @@ _STRETCH = 32
 
 
 @numba.njit(
-    "int64(uint8[:,::1], uint8[:,::1], uint8[:,::1], uint8[:,::1], int64[::1], uint8[:,::1], int32[::1])",
-    cache=True,
+    "int64(uint8[:,::1], uint8[:,::1], uint8[:,::1], uint8[:,::1], int64[::1], uint8[:,::1], int32[::1])", cache=True
 )
 def mark_cells(cells: Any, level: Any, beside: Any, near: Any, bounds: Any, mask: Any, marked: Any) -> int:
     """Mark free cells where a body has room: 1 those next to the unknown, 2 those along furniture never seen close.

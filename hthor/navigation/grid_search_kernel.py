@@ -185,16 +185,7 @@ def seek(
     cache=True,
 )
 def spread(
-    state: Any,
-    cost: Any,
-    came: Any,
-    width: int,
-    watched: int,
-    most: int,
-    heads: Any,
-    chain: Any,
-    item: Any,
-    memo: Any,
+    state: Any, cost: Any, came: Any, width: int, watched: int, most: int, heads: Any, chain: Any, item: Any, memo: Any
 ) -> int:
     """Cheapest ways to ever farther cells (Dijkstra), until ``watched`` more of the watched cells are reached.
 

@@ -153,8 +153,7 @@ def _passing(flow: Any, row: int, column: int, radius: float, enough: int) -> in
 
 
 @numba.njit(
-    "int64(uint8[:,::1], int64[:,::1], int64, int64, float64, float64, float64, float64, float64, float64)",
-    cache=True,
+    "int64(uint8[:,::1], int64[:,::1], int64, int64, float64, float64, float64, float64, float64, float64)", cache=True
 )
 def _search(
     free: Any,

@@ -5,7 +5,7 @@ something else moves them. A trial, in which all bodies move at once, uses `htho
 """
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -238,9 +238,9 @@ class Actor:
         Raises:
             HthorError: when this seat may not send, or the arguments do not fit.
         """
-        mail, tick = self._world.mail, self._world.tick
-        self._post(mail.send(tick, self.seat, Send(text=text, object=object, position=position), self._frame()))
-        receipt = mail.receipt(self.seat)
+        world, words = self._world, Send(text=text, object=object, position=position)
+        self._post(world.mail.send(world.tick, self.seat, words, world.frame(self.seat)))
+        receipt = world.mail.receipt(self.seat)
         assert receipt is not None
         return receipt
 
@@ -267,9 +267,6 @@ class Actor:
     def receipt(self) -> Receipt | None:
         """What became of this robot's last message: sent, shown, confirmed, declined or covered; None before any."""
         return self._world.mail.receipt(self.seat)
-
-    def _frame(self) -> Callable[[], NDArray[np.uint8]]:
-        return self._world.frame(self.seat)
 
     def _post(self, events: Iterable[Event]) -> None:
         for event in events:

@@ -109,8 +109,7 @@ class Simulation:
         self._seed = 0
         begin: dict[str, tuple[Vec3, float, str]] = {}
         for id, movable in movables.items():
-            placed = placements.get(id)
-            if placed is not None:
+            if (placed := placements.get(id)) is not None:
                 begin[id] = (placed.position, placed.yaw, placed.support)
             elif movable.home is not None:
                 begin[id] = (movable.home, movable.yaw, movable.support)

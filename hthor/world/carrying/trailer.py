@@ -83,10 +83,8 @@ class TrailerLoad(Load):
         Returns:
             whether anything moved. A step that would end in a wall, in a body or out of a bearer's reach is not taken.
         """
-        obstacles, strangers = (
-            trailer_kernel.nearby_rectangles(self.state, self._horizon, self._obstacles()),
-            self._stranger_discs(),
-        )
+        obstacles = trailer_kernel.nearby_rectangles(self.state, self._horizon, self._obstacles())
+        strangers = self._stranger_discs()
         self._steer_left = max(0, self._steer_left - 1)
         step = self._step(leader, (dx, dy), self._steer_angle if self._steer_left else 0.0, obstacles, strangers)
         if step is None or (self._displacement(step) < _STANDSTILL_M and self._is_stuck(leader, obstacles)):
@@ -206,11 +204,7 @@ class TrailerLoad(Load):
 
     def _path(self, seat: BodyState, state: Floats, place: Vec2) -> tuple[Vec2, ...]:
         """The path between the handle and its bearer once both have moved."""
-        path, now, end = (
-            self._paths.get(seat.name, ()),
-            (seat.pose.x, seat.pose.y),
-            self._handle(seat, self.state),
-        )
+        path, now, end = self._paths.get(seat.name, ()), (seat.pose.x, seat.pose.y), self._handle(seat, self.state)
         before = (end,) if math.dist(end, self._handle(seat, state)) > _PATH_RESOLUTION_M else ()
         after = (now,) if math.dist(now, place) > _PATH_RESOLUTION_M else ()
         return (*before, *path, *after)
@@ -221,10 +215,8 @@ class TrailerLoad(Load):
         """Whether every arm is within reach, and the thing is in no bearer more deeply than before."""
         for seat in self.bearers:
             place = places[seat.name]
-            if (
-                trailer_kernel.taut_length((self._handle(seat, state), *paths[seat.name], place), obstacles)
-                > seat.spec.reach
-            ):
+            way = (self._handle(seat, state), *paths[seat.name], place)
+            if trailer_kernel.taut_length(way, obstacles) > seat.spec.reach:
                 return False
             now = np.array((seat.pose.x, seat.pose.y, seat.spec.radius))
             deep = trailer_kernel.disc_contact(state, self.half, np.array((*place, seat.spec.radius)))[0]

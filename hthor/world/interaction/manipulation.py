@@ -55,15 +55,10 @@ class HandMotion:
         held = self._seat.holding
         reason = self._hands.finish(self._seat, self._motion)
         news = self._hands.news()
-        if reason:
-            data = {"motion": verb, "reason": reason}
-            return Outcome(motion=verb, ok=False, reason=reason), (
-                Event(tick=tick, seat=name, kind="refused", data=data),
-            )
-        told = news or ((_EVENT_KINDS[verb], _event_data(self._motion, held)),)
-        return Outcome(motion=verb, ok=True), tuple(
-            Event(tick=tick, seat=name, kind=kind, data=data) for kind, data in told
-        )
+        done = news or ((_EVENT_KINDS[verb], _event_data(self._motion, held)),)
+        told = (("refused", {"motion": verb, "reason": reason}),) if reason else done
+        events = tuple(Event(tick=tick, seat=name, kind=kind, data=data) for kind, data in told)
+        return Outcome(motion=verb, ok=not reason, reason=reason), events
 
 
 class Manipulation:
@@ -283,8 +278,6 @@ def _event_data(motion: HandAction, held: str) -> dict[str, str]:
 
 
 def _is_point(position: object) -> bool:
-    return (
-        isinstance(position, (tuple, list))
-        and len(position) == 3
-        and all(numbers.is_finite(value) for value in position)
-    )
+    if not isinstance(position, (tuple, list)):
+        return False
+    return len(position) == 3 and all(numbers.is_finite(value) for value in position)

@@ -93,22 +93,13 @@ class HouseArena(Arena):
 
     def _walls(self, house: HouseSpec) -> None:
         for panel in walls.wall_panels(house):
-            geoms.add_box(
-                self.mjcf_model.worldbody,
-                self._name(panel.name),
-                panel.centre,
-                panel.half,
-                panel.yaw,
-                rgba=panel.rgba,
-                group=geoms.CEILINGS if panel.sort == "lintel" else geoms.WALLS,
-                **geoms.STATIC,
-            )
+            world, name = self.mjcf_model.worldbody, self._name(panel.name)
+            group = geoms.CEILINGS if panel.sort == "lintel" else geoms.WALLS
+            look: dict[str, Any] = {"rgba": panel.rgba, "group": group, **geoms.STATIC}
+            geoms.add_box(world, name, panel.centre, panel.half, panel.yaw, **look)
 
     def _thing(self, thing: Thing) -> None:
         for part in catalog.kind(thing.kind).parts(thing.size, thing.variant):
             if not part.moves:
-                name = self._name(thing.id)
-                bits = geoms.STATIC
-                geoms.add_part(
-                    self.mjcf_model.worldbody, name, part, thing.centre, thing.yaw, group=geoms.FURNITURE, **bits
-                )
+                world, name = self.mjcf_model.worldbody, self._name(thing.id)
+                geoms.add_part(world, name, part, thing.centre, thing.yaw, group=geoms.FURNITURE, **geoms.STATIC)

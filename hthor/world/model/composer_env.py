@@ -55,20 +55,7 @@ class LazyComposerEnv(Environment):
         self._step_s = float(self.model.opt.timestep)
         free = self.model.jnt_dofadr[self.model.jnt_type == int(mujoco.mjtJoint.mjJNT_FREE)]
         self._free = (free[:, None] + np.arange(6)).ravel()
-        self._limits = (
-            np.tile(
-                (
-                    STEP_TRAVEL_MAX_M,
-                    STEP_TRAVEL_MAX_M,
-                    STEP_TRAVEL_MAX_M,
-                    STEP_TURN_MAX_RAD,
-                    STEP_TURN_MAX_RAD,
-                    STEP_TURN_MAX_RAD,
-                ),
-                len(free),
-            )
-            / self._step_s
-        )
+        self._limits = np.tile((STEP_TRAVEL_MAX_M,) * 3 + (STEP_TURN_MAX_RAD,) * 3, len(free)) / self._step_s
         self._sound = self.data.qpos.copy()
         self._most = np.tile((SPEED_MAX_M_S,) * 3 + (SPIN_MAX_RAD_S,) * 3, len(free))
 

@@ -38,10 +38,7 @@ def landmarks(statics: Iterable[Thing], openings: Iterable[Opening]) -> tuple[La
     """Furniture by id, then doorways by id."""
     furniture = [_furniture(thing) for thing in statics if _is_furniture(thing)]
     doorways = [_doorway(opening) for opening in openings if opening.passable]
-    return (
-        *sorted(furniture, key=lambda landmark: landmark.id),
-        *sorted(doorways, key=lambda landmark: landmark.id),
-    )
+    return (*sorted(furniture, key=lambda landmark: landmark.id), *sorted(doorways, key=lambda landmark: landmark.id))
 
 
 def pack_targets(found: Sequence[Landmark], span: Mapping[str, tuple[int, int]]) -> tuple[Floats, Floats]:

@@ -50,12 +50,7 @@ _SIDES = (1.0, -1.0)
 
 def look() -> tuple[Part, ...]:
     """A dressed figure 1.75 m tall, the right hand held out palm up, body frame (x ahead, y left)."""
-    return (
-        *(part for side in _SIDES for part in _leg(side)),
-        *_trunk(),
-        *_arms(),
-        *_head(),
-    )
+    return (*(part for side in _SIDES for part in _leg(side)), *_trunk(), *_arms(), *_head())
 
 
 def _leg(side: float) -> tuple[Part, ...]:

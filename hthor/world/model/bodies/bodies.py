@@ -111,8 +111,7 @@ class Body(Entity):
         self.seat, self.spec = seat, spec
         self._root = mjcf.RootElement(model=f"body|{seat}")
         for index, part in enumerate(look(spec)):
-            bits = geoms.GHOST
-            geoms.add_part(self._root.worldbody, f"part:{index}", part, group=geoms.BODIES, **bits)
+            geoms.add_part(self._root.worldbody, f"part:{index}", part, group=geoms.BODIES, **geoms.GHOST)
 
     @property
     def mjcf_model(self) -> mjcf.RootElement:
