@@ -266,16 +266,15 @@ def evaluate(
         return
     paper = talk if json else output.console()
     done: list[FinishedRun] = []
-    words = options.humans
-    single = len(agent or ()) <= 1 and len(words) == 1 and words[0].partition("@")[0] not in human_populations.WORDS
+    several = any(word.partition("@")[0] in human_populations.WORDS for word in options.humans)
+    single = len(options.agents) <= 1 and len(options.humans) == 1 and not several
     for one in experiment.run_experiment(options, watcher):
         done.append(one)
         if single or not quiet:
             results.show_run(paper if single else talk, one)
     run_results = [one.result for one in done]
-    whole = (
-        population_matrix.make_matrix(run_results) if len({result.humans.name for result in run_results}) > 1 else None
-    )
+    populations = {result.humans.name for result in run_results}
+    whole = population_matrix.make_matrix(run_results) if len(populations) > 1 else None
     if whole is not None:
         results.show_populations(paper, whole)
     elif len(done) > 1:

@@ -75,15 +75,10 @@ def check_trial(notes: ProbeResult, agent: str) -> list[Finding]:
         began = bool(notes.asked or fault.tick)
         broken = _broken("acts" if began else "begins", fault, agent, len(notes.actions) + 1)
         return [Finding(check="begins", status="ok"), broken] if began else [broken]
-    slow = notes.begin_s > _SLOW_BEGIN_S
-    begins = Finding(
-        check="begins",
-        status="warning" if slow else "ok",
-        told=f"in {notes.begin_s:.2f} s",
-        advice="Every trial takes that. Import libraries at the top of the file; persistent = True keeps the process."
-        if slow
-        else "",
-    )
+    begins = Finding(check="begins", status="ok", told=f"in {notes.begin_s:.2f} s")
+    if notes.begin_s > _SLOW_BEGIN_S:
+        advice = "Every trial takes that. Import libraries at the top of the file; persistent = True keeps the process."
+        begins = Finding(check="begins", status="warning", told=begins.told, advice=advice)
     return [begins, Finding(check="acts", status="ok", told=f"{len(notes.actions)} actions in a trial, all legal")]
 
 
@@ -153,9 +148,8 @@ def warnings(trials: tuple[ProbeResult, ...], character: AgentInfo) -> list[Find
     found += _moving(trials)
     refused, motions = sum(one.refused for one in trials), sum(one.motions for one in trials)
     if motions and refused > motions / 2:
-        found.append(
-            (f"{refused} of {motions} motions failed", "observation.outcome says why: blocked, out of reach ...")
-        )
+        why = "observation.outcome says why: blocked, out of reach ..."
+        found.append((f"{refused} of {motions} motions failed", why))
     found += _speaking(trials)
     unseen, claims = sum(one.unseen for one in trials), sum(one.claims for one in trials)
     if unseen and "object_poses" not in character.ref.privileges:

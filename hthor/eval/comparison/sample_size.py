@@ -122,9 +122,8 @@ def _measured(folders: Sequence[Path]) -> _Known:
         raise HthorError(
             f"{one.folder} and {other.folder} have no trials in common yet. Finish both with 'hthor eval'."
         )
-    return _Known(
-        found.first, found.second, found.correlation or 0.0, paired_difference.trial_noise(pairs, "sr"), len(pairs)
-    )
+    noise = paired_difference.trial_noise(pairs, "sr")
+    return _Known(found.first, found.second, found.correlation or 0.0, noise, len(pairs))
 
 
 def _rates(words: str) -> _Known:

@@ -38,11 +38,6 @@ def platform_differences(there: Platform, here: Platform) -> list[str]:
     return [f"{name} {here.get(name, 'unknown')} here, {there.get(name, 'unknown')} there" for name in names]
 
 
-def note(folder: Path) -> None:
-    """Add this machine to the platforms of the run in a folder."""
-    join(folder, (), (this_platform(),))
-
-
 def join(out: Path, folders: Iterable[Path], more: Iterable[Platform] = ()) -> None:
     """Keep the platforms of several folders, and ``more``, with the run in ``out``."""
     before = load(out)

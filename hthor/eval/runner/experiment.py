@@ -95,7 +95,7 @@ class _Experiment:
             if note not in self._notes:
                 self._notes.add(note)
                 watcher.note(note)
-        agents = scheduled.team.agent_paths
+        check = functools.partial(opened_files.check_opened_files, scheduled.team.agent_paths, scheduled.sources.guests)
         return run.run_evaluation(
             scheduled.config,
             scheduled.sessions,
@@ -105,9 +105,7 @@ class _Experiment:
             engine=_engine(self._options, scheduled),
             extra=self._extra_files(scheduled),
             rerun_command=_rerun_command(self._options, scheduled),
-            check=functools.partial(opened_files.check_opened_files, agents, scheduled.sources.guests)
-            if scheduled.config.agents
-            else None,
+            check=check if scheduled.config.agents else None,
         )
 
     def _extra_files(self, scheduled: ScheduledRun) -> dict[str, bytes]:

@@ -98,7 +98,7 @@ def _run_missing(
         watcher.note(f"cut {log.torn} bytes of a trial that was being written when the last command ended")
     collected = None
     if left:
-        platform.note(folder.path)
+        platform.join(folder.path, (), (platform.this_platform(),))
         collected = collector.collect(left, make, repeatable=not config.realtime)
     if stop.is_set():
         raise Interrupted(f"interrupted after {len(log)} trials; resume with the same command.")

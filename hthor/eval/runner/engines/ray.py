@@ -220,10 +220,8 @@ def _compare(host: str, code: str, versions: dict[str, str]) -> None:
     """Check that a machine has the same hthor as this one: other code could give other trials."""
     here = {"code": installation.sha256()[:10], **installation.versions()}
     there = {"code": code[:10], **versions}
-    different = [
-        f"{name} is {there.get(name)} there and {here[name]} here" for name in here if there.get(name) != here[name]
-    ]
-    if different:
+    names = [name for name in here if there.get(name) != here[name]]
+    if different := [f"{name} is {there.get(name)} there and {here[name]} here" for name in names]:
         raise HthorError(
             f"{host} of the Ray cluster is no match: {'; '.join(different)}. Install the same on all machines."
         )
