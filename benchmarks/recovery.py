@@ -25,8 +25,7 @@ from hthor.calibration.simulation.trial_table import AGENTS
 from hthor.eval.config.sessions import make_sessions
 from hthor.eval.records import trial_record
 from hthor.eval.records.trial_record import TrialRecord
-from hthor.eval.runner.sources import Sources
-from hthor.eval.runner.trial_runner import TrialRunner
+from hthor.eval.runner.trial_runner import Sources, TrialRunner
 from hthor.humans.population import parameter_registry
 from hthor.humans.population.parameters import Parameters
 from hthor.tasks import Suite

@@ -104,10 +104,13 @@ class CostSampler:
                 now = time.monotonic() - started
                 if isinstance(message, TrialDone):
                     ends.append(now)
-                late = len(ends) > 1 and ends[-1] > _BUDGET_S
-                if late or isinstance(message, (SessionRestarted, SessionAbandoned, Failed)):
+                if isinstance(message, (SessionRestarted, SessionAbandoned, Failed)) or _enough(ends):
                     break
         return ends
+
+
+def _enough(ends: list[float]) -> bool:
+    return len(ends) > 1 and ends[-1] > _BUDGET_S
 
 
 def _cost_of(ends: list[float]) -> TrialCost | None:

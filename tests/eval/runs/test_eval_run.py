@@ -26,7 +26,6 @@ from hthor.eval.runner import (
     engines,
     experiment,
     progress,
-    queue,
     run,
     run_options,
     trial_runner,
@@ -170,8 +169,8 @@ def test_a_run_that_lacks_trials_does_not_keep_others_from_being_played(tmp_path
 
 def test_a_worker_has_as_long_as_its_agents_deadlines_allow():
     tasks = [fakes.task()]
-    assert queue.trial_limit_s(tasks, 0) == queue.LIMIT_S
-    assert queue.trial_limit_s(tasks, 2) > 2 * (60 + 60 + 60 + 5 * tasks[0].time_limit / rules.TICK_S)
+    assert engines.trial_limit_s(tasks, 0) == engines.LIMIT_S
+    assert engines.trial_limit_s(tasks, 2) > 2 * (60 + 60 + 60 + 5 * tasks[0].time_limit / rules.TICK_S)
 
 
 def test_a_users_error_in_a_worker_keeps_its_exit_code(tmp_path: Path):
