@@ -13,8 +13,7 @@ from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.runner import experiment, fault_report, progress, run_options
 from hthor.tasks.suite import encode_suite, make_suite
 from hthor.tasks.suites import commitment
-from hthor.tasks.suites.commitment import Commitment, Revealed
-from hthor.tasks.suites.secret_salt import Salt
+from hthor.tasks.suites.commitment import Commitment, Revealed, Salt
 
 ROOT = Path(__file__).resolve().parents[2]
 SALT = "5d41402abc4b2a76b9719d911017c592a1b2c3d4e5f60718293a4b5c6d7e8f90"

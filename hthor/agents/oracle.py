@@ -8,7 +8,7 @@ from hthor.agents.skills.knowledge import PAPER_KINDS
 from hthor.types import Action, Briefing, Observation
 
 if TYPE_CHECKING:
-    from hthor.agents.skills.single_task_oracle import SingleTaskOracle
+    from hthor.agents.skills.oracle_policies import SingleTaskOracle
 
 
 class Agent:
@@ -24,8 +24,7 @@ class Agent:
 
     def begin(self, briefing: Briefing) -> None:
         """Prepare the shortest paths of this house."""
-        from hthor.agents.skills.single_task_oracle import SingleTaskOracle
-        from hthor.agents.skills.team_oracle import TeamOracle
+        from hthor.agents.skills.oracle_policies import SingleTaskOracle, TeamOracle
 
         several = briefing.kind not in PAPER_KINDS or len(briefing.todo) > 1
         self.policy: SingleTaskOracle = TeamOracle(briefing) if several else SingleTaskOracle(briefing)

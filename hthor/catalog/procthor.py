@@ -76,7 +76,7 @@ _ROUND_CORNERS = re.compile(r"Countertop_([LC])_")
 class Asset(Struct, frozen=True, kw_only=True):
     """A foreign asset: the kind that stands in for it, and its size (width, depth, height) [m], and variant.
 
-    ``plan`` is its outline seen from above where that is no rectangle: "L" or "C", see `hthor.houses.worktops`.
+    ``plan`` is its outline seen from above where that is no rectangle: "L" or "C", see `hthor.houses.loader`.
     """
 
     kind: str

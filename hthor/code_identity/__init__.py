@@ -7,10 +7,11 @@ a package speaks for everything in it. Modules in which trials begin say ``CODE_
 houses and tasks ``CODE_ROOT = "makers"``. Each hash says which parts it covers.
 """
 
-from hthor.code_identity.compiled import compiled, keep_compiled
 from hthor.code_identity.hashes import (
     agent_sha256,
     code_sha256,
+    compiled,
+    keep_compiled,
     makers_sha256,
     modules_sha256,
     pictures_sha256,

@@ -1,10 +1,14 @@
-"""The hashes of code that a result depends on: of trials, agents, robots, pictures, and of what makes tasks."""
+"""The hashes of code that a result depends on: of trials, agents, robots, pictures, and of what makes tasks; and the
+folder in which numba caches compiled functions of exactly this code.
+"""
 
 import contextlib
+import os
 from collections.abc import Iterable, Sequence
+from pathlib import Path
 
 from hthor import installation, jsonio, plugins
-from hthor.code_identity import sources
+from hthor.code_identity.sources import ours
 from hthor.code_identity.syntax import PICTURES, SIMULATION, TOOLS
 
 _TRIAL, _MAKERS = "trial", "makers"
@@ -50,7 +54,7 @@ def makers_sha256() -> str:
 
 def roots(of: str) -> list[str]:
     """Names of the modules that say ``CODE_ROOT = "OF"``, such as "trial"."""
-    return sources.ours().roots(of)
+    return ours().roots(of)
 
 
 def modules_sha256(names: Sequence[str], parts: Sequence[str] = (SIMULATION,)) -> str:
@@ -65,7 +69,7 @@ def modules_sha256(names: Sequence[str], parts: Sequence[str] = (SIMULATION,)) -
         cached = ""
     if len(cached) == _HEX:
         return cached
-    digest = sources.ours().sha256(names, parts)
+    digest = ours().sha256(names, parts)
     with contextlib.suppress(OSError):  # without a writable cache it is computed every time
         jsonio.write(place, digest.encode("ascii"))
     return digest
@@ -76,3 +80,22 @@ def _modules(sort: str, name: str) -> list[str]:
     return [
         plugins.module_name(sort, one) for one in ([name] if plugins.is_built_in(sort, name) else plugins.names(sort))
     ]
+
+
+def compiled() -> Path:
+    """The folder, in the user's cache, for compiled functions of exactly this code.
+
+    By itself, numba's cache checks only the file of a function, not those of the functions that it calls: after an
+    update it could silently run old code.
+    """
+    kernels = modules_sha256(ours().containing(b"import numba"), (SIMULATION, PICTURES, TOOLS))
+    return installation.cache() / f"compiled-{kernels[:16]}"
+
+
+def keep_compiled() -> None:
+    """Make this process and its children cache compiled functions in `compiled`, unless the user chose a folder.
+
+    To be called before trials are run: without it every process, the agents' too, compiles for 20 s.
+    """
+    if "NUMBA_CACHE_DIR" not in os.environ:
+        os.environ["NUMBA_CACHE_DIR"] = str(compiled())

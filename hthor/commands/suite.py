@@ -30,7 +30,7 @@ def salt(
     out: Annotated[Path, typer.Option(help="The file to write, readable only by you.")], json: Json = False
 ) -> None:
     """Make a secret salt of 256 bits. Keep it: the suite cannot be revealed without it."""
-    from hthor.tasks.suites import secret_salt as salts
+    from hthor.tasks.suites import commitment as salts
 
     salts.create_salt(out)
     output.put_files([out], json)
@@ -142,7 +142,7 @@ def _made_with() -> dict[str, str]:
 def _salt(path: Path, folder: Path) -> Any:
     """The salt in a file, which must not lie among what is published."""
     from hthor.tasks.generation import secret_suites
-    from hthor.tasks.suites import secret_salt as salts
+    from hthor.tasks.suites import commitment as salts
 
     secret_suites.check_salt_outside(path, folder)
     held = salts.read_salt(path)

@@ -4,17 +4,20 @@ A message is first "sent", then "shown" to the person, and ends as "confirmed" (
 that is never answered stays sent or shown. At most one message is open: a new one, from any robot, covers it.
 """
 
+import math
+import unicodedata
 from collections.abc import Sequence
 from typing import Any
 
 from hthor import rules
-from hthor.comms import text
 from hthor.types import HUMAN, Event, Message, Receipt, Reply, Send, Status, Vec3
 from hthor.types.observations import ImageSource
 
 _OPEN = ("sent", "shown")
 _NAME_MAX = 80
 """Characters of the name of an object that a message may be about."""
+_READ_FACTOR = 8
+"""A text is read only up to this many times the limit, so that a very long one costs no more."""
 
 
 class Mailbox:
@@ -45,9 +48,9 @@ class Mailbox:
             return (self._refused(tick, sender, reason),)
         events = self._cover(tick, sender)
         number = len(self._messages)
-        written, cut = text.clean_text(send.text, rules.TEXT_MAX)
-        name, _ = text.clean_text(send.object, _NAME_MAX)
-        position = None if send.position is None else text.parse_point(send.position)
+        written, cut = clean_text(send.text, rules.TEXT_MAX)
+        name, _ = clean_text(send.object, _NAME_MAX)
+        position = None if send.position is None else parse_point(send.position)
         self._messages.append(
             Message(id=number, sender=sender, tick=tick, text=written, object=name, position=position, image=image)
         )
@@ -122,7 +125,7 @@ class Mailbox:
         written: tuple[Any, Any] = (send.text, send.object)
         if not all(isinstance(part, str) for part in written):
             return "text and object must be str"
-        if send.position is not None and text.parse_point(send.position) is None:
+        if send.position is not None and parse_point(send.position) is None:
             return "position must be None or three finite numbers x, y, z in metres of the house frame"
         return ""
 
@@ -147,3 +150,28 @@ class Mailbox:
 def _plain(position: Vec3 | None) -> list[float] | None:
     """A position for the log, to the millimetre."""
     return None if position is None else [round(number, 3) for number in position]
+
+
+def clean_text(text: str, limit: int) -> tuple[str, int]:
+    """The text on one line, without control and formatting characters, at most ``limit`` characters long.
+
+    Returns:
+        the text, and how many characters were cut from its end.
+    """
+    seen = text[: limit * _READ_FACTOR]
+    spaced = "".join(" " if char.isspace() else char for char in seen)
+    plain = " ".join("".join(char for char in spaced if unicodedata.category(char)[0] != "C").split())
+    plain = unicodedata.normalize("NFC", plain)
+    kept = plain[:limit].rstrip()
+    return kept, len(plain) - len(kept) + len(text) - len(seen)
+
+
+def parse_point(value: Any) -> Vec3 | None:
+    """The three finite numbers of a position as plain floats, or None when it is something else."""
+    if isinstance(value, (str, bytes)) or not (isinstance(value, Sequence) or hasattr(value, "__array__")):
+        return None
+    try:
+        x, y, z = (float(number) for number in value)
+    except (TypeError, ValueError, OverflowError):
+        return None
+    return (x, y, z) if math.isfinite(x) and math.isfinite(y) and math.isfinite(z) else None

@@ -20,10 +20,9 @@ from hthor.guest.agent.manifest import File, Manifest
 from hthor.guest.agent.reference import AgentReference, is_served
 from hthor.guest.confinement import SERVED, Isolation, IsolationError, suffices
 from hthor.guest.host.channel import GuestFault
-from hthor.guest.host.config import GuestConfig
 from hthor.guest.host.guest import Guest, in_force, load_info
 from hthor.guest.host.guest_pool import GuestPool
-from hthor.guest.host.info import GuestInfo
+from hthor.guest.host.info import GuestConfig, GuestInfo
 from hthor.guest.host.websocket_client import Unreachable
 
 CODE_PART = "tools"

@@ -1,22 +1,33 @@
 """From the content of a house file to a `HouseSpec`: frames turned, rooms named, doors classified.
 
 Unity's (x, y up, z) becomes the house frame's (x, z, y), and its clockwise yaw a counter-clockwise one.
+
+An L- or C-shaped worktop, for which ProcTHOR's database gives one bounding box up to 3 m square, becomes the straight
+units that it is made of, each a thing of its own with its front to the inside: so it is as deep as a worktop everywhere
+for who walks, reaches, looks and searches.
 """
 
 import math
 from collections import Counter
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+import msgspec
+
 from hthor import jsonio
 from hthor.errors import HouseError
-from hthor.geometry.plane import signed_area, wrap
-from hthor.houses import laying, schema, worktops
+from hthor.geometry.plane import distance_to_rectangle, signed_area, to_house, wrap
+from hthor.houses import laying, schema
 from hthor.houses.assets import Assets
 from hthor.houses.checks import structure
 from hthor.houses.checks.structure import EXTERIOR, ROOM_KINDS
 from hthor.houses.schema import Agent, HouseFile, OpeningRow, RoomRow, WallRow
-from hthor.types import HouseSpec, Opening, Pose, Room, Thing, Vec3, Wall
+from hthor.types import HouseSpec, Opening, Pose, Room, Thing, Vec2, Vec3, Wall
+
+DEPTH_M = 0.61
+"""How deep a worktop is: as ProcTHOR's straight ones are."""
+_LEAST_M = 0.1
 
 
 def house_from_document(document: Any, name: str) -> HouseSpec:
@@ -127,9 +138,9 @@ def _things(house: HouseFile, file: str, assets: Assets) -> tuple[Thing, ...]:
             size=asset.size,
             yaw=wrap(0.0 - math.radians(row.rotation.y)),
             room=structure.room_at((at.x, at.z), rooms) or "",
-            parent=worktops.unit_below((at.x, at.z), units[parent]).id if parent in units else parent,
+            parent=unit_below((at.x, at.z), units[parent]).id if parent in units else parent,
         )
-        units[row.id] = worktops.split_worktop(thing, asset.plan)
+        units[row.id] = split_worktop(thing, asset.plan)
         things += units[row.id]
     return tuple(things)
 
@@ -137,3 +148,47 @@ def _things(house: HouseFile, file: str, assets: Assets) -> tuple[Thing, ...]:
 def _pose(agent: Agent) -> Pose:
     heading = wrap(math.pi / 2 - math.radians(agent.rotation.y))
     return Pose(x=agent.position.x, y=agent.position.z, yaw=heading, pitch=0.0 - math.radians(agent.horizon))
+
+
+def split_worktop(thing: Thing, plan: str) -> tuple[Thing, ...]:
+    """The units of a worktop whose bounding box is ``thing``, the one along the back first, under the worktop's own id.
+
+    Args:
+        plan: "L", along the back and forward on the right, as seen from behind; "C", along the back and forward on
+            both sides; anything else, or a box too small for these, gives the thing itself.
+    """
+    w, d, _ = thing.size
+    wide = DEPTH_M * {"L": 1, "C": 2}.get(plan, 0)
+    if not wide or w < wide + _LEAST_M or d < DEPTH_M + _LEAST_M:
+        return (thing,)
+    return tuple(_units(thing, plan))
+
+
+def unit_below(place: Vec2, parts: Sequence[Thing]) -> Thing:
+    """The unit under a place [m] on the plan, or the nearest one."""
+    return min(parts, key=lambda one: distance_to_rectangle(place, one.centre[:2], one.size[:2], one.yaw))
+
+
+def _units(thing: Thing, plan: str) -> Iterator[Thing]:
+    w, d, _ = thing.size
+    left = -w / 2 + (DEPTH_M if plan == "C" else 0.0)
+    right, front = w / 2 - DEPTH_M, DEPTH_M - d / 2
+    yield _unit(thing, "", (left, -d / 2), (right, front), 0)
+    yield _unit(thing, "right_corner", (right, -d / 2), (w / 2, front), 0)
+    yield _unit(thing, "right", (right, front), (w / 2, d / 2), 1)
+    if plan == "C":
+        yield _unit(thing, "left_corner", (-w / 2, -d / 2), (left, front), 0)
+        yield _unit(thing, "left", (-w / 2, front), (left, d / 2), -1)
+
+
+def _unit(thing: Thing, name: str, low: Vec2, high: Vec2, turns: int) -> Thing:
+    """The unit between two corners [m] of the worktop's frame, turned by so many quarters."""
+    (x0, y0), (x1, y1) = low, high
+    across, along = (x1 - x0, y1 - y0) if not turns else (y1 - y0, x1 - x0)
+    return msgspec.structs.replace(
+        thing,
+        id=f"{thing.id}|{name}" if name else thing.id,
+        centre=to_house(((x0 + x1) / 2, (y0 + y1) / 2, 0.0), thing.centre, thing.yaw),
+        size=(across, along, thing.size[2]),
+        yaw=wrap(thing.yaw + turns * math.pi / 2),
+    )

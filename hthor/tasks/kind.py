@@ -130,3 +130,16 @@ class TaskKind(ABC):
     def least(self, task: TaskSpec) -> float:
         """The least time [s] that a task's T* stands for."""
         return round((task.t_star - self.t_star_base) / self.t_star_slowness, 3)
+
+
+def target_of(goal: Goal, objects: tuple[Placement, ...]) -> Placement:
+    """Where the goal's target is placed."""
+    return next(placement for placement in objects if placement.id == goal.target)
+
+
+def kind_of(thing_id: str, house: HouseSpec) -> str:
+    """The kind of the house's thing with this id, empty when there is none."""
+    for thing in house.things if thing_id else ():  # asked at every tick of a trial
+        if thing.id == thing_id:
+            return thing.kind
+    return ""

@@ -22,9 +22,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from hthor import catalog, rules
 from hthor.geometry import plane
-from hthor.tasks.arrangement.avatar import REACH_M
-from hthor.tasks.arrangement.reachability import SLACK_M, Bools, ReachableFloor, Walk
-from hthor.tasks.kind import LeastTimes, TaskKind
+from hthor.tasks.arrangement.reachability import REACH_M, SLACK_M, Bools, ReachableFloor, Walk
+from hthor.tasks.kind import LeastTimes, TaskKind, kind_of
 from hthor.types import Goal, HouseSpec, Job, Placement, Snapshot, TaskSpec, Thing, ThingState, Vec2, Vec3
 
 PLACE_M = 0.30
@@ -97,7 +96,7 @@ def is_done(job: Job, state: ThingState | None, house: HouseSpec) -> bool:
         return job.place is not None
     if job.relation == "at":
         return any(_indoors(state, room, house) for room in job.destinations)
-    return state.support in job.destinations or _kind_of(state.support, house) in job.destinations
+    return state.support in job.destinations or kind_of(state.support, house) in job.destinations
 
 
 def jobs_left(goal: Goal, objects: tuple[Placement, ...], house: HouseSpec) -> tuple[Job, ...]:
@@ -106,10 +105,6 @@ def jobs_left(goal: Goal, objects: tuple[Placement, ...], house: HouseSpec) -> t
         one.id: ThingState(id=one.id, kind=one.kind, position=one.position, support=one.support) for one in objects
     }
     return tuple(job for job in goal.todo if not is_done(job, lying.get(job.target), house))
-
-
-def _state(placement: Placement) -> ThingState:
-    return ThingState(id=placement.id, kind=placement.kind, position=placement.position, support=placement.support)
 
 
 def max_bearers(destinations: Collection[str], house: HouseSpec) -> tuple[Thing, ...]:
@@ -190,10 +185,3 @@ def _within(reach: float, point: Vec2, polygons: Sequence[Sequence[Vec2]]) -> bo
 
 def _indoors(state: ThingState, room: str, house: HouseSpec) -> bool:
     return any(one.id == room and plane.inside(state.position[:2], one.polygon) for one in house.rooms)
-
-
-def _kind_of(thing_id: str, house: HouseSpec) -> str:
-    for thing in house.things if thing_id else ():
-        if thing.id == thing_id:
-            return thing.kind
-    return ""

@@ -33,12 +33,7 @@ class Suite(SuiteFile, frozen=True, kw_only=True):
 
 def make_suite(name: str, version: int, tasks: tuple[TaskSpec, ...], houses: HouseLibrary = OURS) -> Suite:
     """A suite with the hash of its tasks."""
-    return Suite(name=name, version=version, sha256=tasks_sha256(tasks), tasks=tasks, houses=houses)
-
-
-def tasks_sha256(tasks: tuple[TaskSpec, ...]) -> str:
-    """Hash of the tasks' canonical JSON, 64 hexadecimal digits."""
-    return jsonio.sha256(tasks)
+    return Suite(name=name, version=version, sha256=jsonio.sha256(tasks), tasks=tasks, houses=houses)
 
 
 def encode_suite(suite: Suite) -> bytes:

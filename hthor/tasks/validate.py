@@ -13,8 +13,8 @@ from hthor import catalog, plugins
 from hthor.errors import HouseError, HthorError, TaskError, UnknownName
 from hthor.houses.space.free_space import FreeSpace
 from hthor.houses.space.solids import overlap_depth
-from hthor.tasks.arrangement.avatar import HEIGHT_M, RADIUS_M
 from hthor.tasks.arrangement.placement import SupportSurfaces, as_thing, footprint, rests_on, supports_of
+from hthor.tasks.arrangement.reachability import HEIGHT_M, RADIUS_M
 from hthor.tasks.kind import TaskKind
 from hthor.tasks.suite import Suite
 from hthor.types import HouseSpec, Placement, TaskSpec

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hthor import jsonio, rules
-from hthor.comms import text
+from hthor.comms import mailbox
 from hthor.comms.mailbox import Mailbox
 from hthor.types import HUMAN, Reply, Send
 
@@ -91,7 +91,7 @@ def test_a_long_text_costs_no_more_than_a_short_one(monkeypatch: pytest.MonkeyPa
     looked: list[str] = []
     category = unicodedata.category
     monkeypatch.setattr(unicodedata, "category", lambda char: looked.append(char) or category(char))
-    kept, cut = text.clean_text("x" * 60_000, 280)
+    kept, cut = mailbox.clean_text("x" * 60_000, 280)
     assert (kept, cut) == ("x" * 280, 59_720)
     assert len(looked) < 3_000
 
@@ -151,12 +151,12 @@ def test_replies_that_make_no_sense_are_refused(seat, reply):
 
 @given(st.text())
 def test_text_is_one_line_of_encodable_characters(written):
-    kept, cut = text.clean_text(written, 20)
+    kept, cut = mailbox.clean_text(written, 20)
     assert len(kept) <= 20
     assert cut >= 0
     assert kept == " ".join(kept.split())
     assert all(char.isprintable() for char in kept)
-    assert text.clean_text(kept, 20) == (kept, 0)
+    assert mailbox.clean_text(kept, 20) == (kept, 0)
     kept.encode()
 
 

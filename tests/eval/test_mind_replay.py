@@ -21,7 +21,7 @@ from hthor.eval.replay import human_trace, session_history
 from hthor.eval.replay.human_trace import HumanTrace
 from hthor.eval.replay.session_history import RunFiles
 from hthor.eval.runner import experiment, progress, run_options
-from hthor.guest.host.config import GuestConfig
+from hthor.guest.host.info import GuestConfig
 from hthor.report.drawing import human_trace_figure, human_trace_timeline, render_trial
 from hthor.report.page import camera_frames
 from hthor.tasks.suite import encode_suite, make_suite

@@ -14,7 +14,7 @@ from msgspec import structs
 from hthor import guest
 from hthor.errors import AgentError, UnknownName
 from hthor.guest import Guest, GuestConfig, GuestFault, IsolationError, load_info
-from hthor.guest.agent import digests, reference
+from hthor.guest.agent import manifest, reference
 from hthor.guest.confinement import paths
 from hthor.guest.protocol import wire
 from hthor.types import (
@@ -139,7 +139,7 @@ def test_a_module_is_imported_by_its_name(package: Path) -> None:
             mind.begin(BRIEFING)
             assert mind.act(look()) == Action(motion=Move(forward=0.25))
     assert (info.name, info.source) == ("minds.careful:Agent", "minds.careful:Agent")
-    assert info.sha256 == digests.file_sha256(package / "minds" / "careful.py")
+    assert info.sha256 == manifest.file_sha256(package / "minds" / "careful.py")
     assert "minds" not in sys.modules
     with pytest.raises(AgentError, match="no agent class 'Brave'"):
         load_info("minds.careful:Brave")

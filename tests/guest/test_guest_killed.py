@@ -14,7 +14,7 @@ from hthor.errors import KILLED, AgentKilled
 from hthor.guest import Guest, GuestConfig, GuestFault
 from hthor.guest.host import guest, startup
 from hthor.guest.host.process import GuestProcess
-from hthor.guest.process_tools import exit_status
+from hthor.guest.process_tools import cleanup
 from tests.support.guest_agents import (
     HEAD,
     PROCESS_CHAINS,
@@ -92,9 +92,9 @@ def test_one_killed_while_it_loads_its_file_is_told_as_such(tmp_path: Path):
     ],
 )
 def test_what_an_agent_does_to_itself_is_its_own(code: int, kind: str, words: str):
-    assert exit_status.describe_exit(code) == (kind, words)
+    assert cleanup.describe_exit(code) == (kind, words)
 
 
 def test_bubblewraps_words_for_a_signal_are_understood():
-    assert exit_status.describe_exit(exit_status.unwrap_bwrap(137)) == (KILLED, "killed by SIGKILL")
-    assert exit_status.unwrap_bwrap(3) == 3
+    assert cleanup.describe_exit(cleanup.unwrap_bwrap(137)) == (KILLED, "killed by SIGKILL")
+    assert cleanup.unwrap_bwrap(3) == 3

@@ -29,7 +29,7 @@ from hthor.errors import AgentError, HthorError, RunError
 from hthor.eval.config import robot_team
 from hthor.eval.runner import engines, trial_runner
 from hthor.guest import AgentInputs, Guest, GuestConfig, GuestFault, IsolationError
-from hthor.guest.agent import agent_files, manifest, source_scan
+from hthor.guest.agent import agent_files, manifest
 from hthor.guest.agent import inputs as giving
 from hthor.guest.agent.agent_paths import AgentPaths
 from hthor.guest.agent.manifest import File
@@ -203,7 +203,7 @@ def test_scanning_never_leaves_the_agents_folder(tmp_path: Path, words: list[str
     (tmp_path / "outside.txt").write_text("")
     (own / "inside.txt").write_text("")
     (own / "x.py").write_text(f"WORDS = {[*words, '../outside.txt', '..', 'inside.txt', str(tmp_path)]!r}")
-    found = source_scan.referenced_files([str(own / "x.py")], AgentPaths(root=str(own), base=str(own)))
+    found = agent_files.referenced_files([str(own / "x.py")], AgentPaths(root=str(own), base=str(own)))
     assert found == {str(own / "x.py"), str(own / "inside.txt")}
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from hypothesis import given
 from hypothesis import strategies as some
 
-from hthor.guest.protocol.sanitize import is_printable_name, sanitize_text
+from hthor.guest.protocol.wire import is_printable_name, sanitize_text
 
 
 @given(some.text(some.characters(exclude_categories=())))

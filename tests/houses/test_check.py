@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from two_rooms import SIDE, TABLE, house, on, thing
 
 from hthor import catalog, houses
-from hthor.houses.checks import plan_rules
+from hthor.houses.checks import house_rules
 from hthor.houses.checks.findings import Finding, is_sound
 from hthor.houses.checks.house_checks import STRICT, check
 from hthor.houses.space import boxes, solids
@@ -50,8 +50,8 @@ def test_a_room_too_narrow(width: float):
 
 def test_the_narrowest_stretch_of_a_crooked_room_counts():
     hook = ((0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (2.9, 4.0), (2.9, 3.0), (0.0, 3.0))
-    assert plan_rules.least_width(hook) == pytest.approx(1.1)
-    assert plan_rules.least_width(((0.0, 0.0), (3.0, 0.0), (3.0, 2.0), (0.0, 2.0))) == pytest.approx(2.0)
+    assert house_rules.least_width(hook) == pytest.approx(1.1)
+    assert house_rules.least_width(((0.0, 0.0), (3.0, 0.0), (3.0, 2.0), (0.0, 2.0))) == pytest.approx(2.0)
 
 
 def test_a_narrow_door():
@@ -84,7 +84,7 @@ def test_an_open_leaf_takes_some_of_the_doorway(width: float, bad: bool):
 @given(st.lists(st.tuples(st.floats(-1, 2), st.floats(1e-3, 1)), max_size=5))
 def test_the_widest_gap_is_free_and_the_widest(spans: list[tuple[float, float]]):
     covers = [(low, low + length) for low, length in spans]
-    widest = plan_rules.widest_gap(1.0, covers)
+    widest = house_rules.widest_gap(1.0, covers)
     marks = sorted({0.0, 1.0, *(m for cover in covers for m in cover if 0.0 < m < 1.0)})
     free = [
         (a, b)

@@ -23,7 +23,7 @@ from hthor.houses.checks.house_checks import check
 from hthor.houses.generator import document, shipped, validity
 from hthor.houses.generator.attempt import AttemptFailed
 from hthor.houses.generator.draws import Dice
-from hthor.houses.generator.floorplan import boundary, doors, growth, layout, room_specs
+from hthor.houses.generator.floorplan import doors, growth, layout, room_specs
 from hthor.houses.generator.furnishing.clutter import all_fit
 from hthor.houses.generator.furnishing.item_styles import ItemStyler
 from hthor.types import HouseSpec
@@ -53,7 +53,7 @@ def test_a_generated_house_is_sound(seed: int, rooms: int) -> None:
     assert {*catalog.RECEPTACLES, "sink", "chair"} <= kinds
     assert not kinds & set(catalog.TARGETS)
     area = sum(signed_area(room.polygon) for room in house.rooms)
-    assert boundary.AREA_M2[0] - 1e-6 <= area <= boundary.AREA_M2[1] + 1e-6
+    assert growth.AREA_M2[0] - 1e-6 <= area <= growth.AREA_M2[1] + 1e-6
 
 
 @pytest.mark.parametrize(("seed", "rooms"), HOUSES)
@@ -144,7 +144,7 @@ def test_a_failed_attempt_is_followed_by_another_one(monkeypatch: pytest.MonkeyP
 @settings(max_examples=40, deadline=None, derandomize=True)
 def test_rooms_tile_the_cells_of_the_outline(seed: int, rooms: int) -> None:
     dice = Dice(seed)
-    shape, tree = boundary.draw_boundary(rooms, dice), room_specs.choose_spec(rooms, dice, None).tree
+    shape, tree = growth.draw_boundary(rooms, dice), room_specs.choose_spec(rooms, dice, None).tree
     if shape is None:
         return
     labels = growth.grow_rooms(shape.cells, tree, dice)
@@ -163,7 +163,7 @@ def test_rooms_tile_the_cells_of_the_outline(seed: int, rooms: int) -> None:
 @settings(max_examples=40, deadline=None, derandomize=True)
 def test_doors_join_all_rooms_as_a_tree_and_bathrooms_are_dead_ends_of_their_level(seed: int, rooms: int) -> None:
     dice = Dice(seed)
-    shape, tree = boundary.draw_boundary(rooms, dice), room_specs.choose_spec(rooms, dice, None).tree
+    shape, tree = growth.draw_boundary(rooms, dice), room_specs.choose_spec(rooms, dice, None).tree
     labels = None if shape is None else growth.grow_rooms(shape.cells, tree, dice)
     plan = None if shape is None or labels is None else layout.plan_rooms(shape, labels, tree)
     pairs = None if plan is None else doors.choose_doors(tree, plan, dice)

@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 from hthor import catalog, houses, plugins
 from hthor.eval.task_check import solvability
 from hthor.houses import laying, loader
-from hthor.houses.checks import thing_rules
+from hthor.houses.checks import house_rules
 from hthor.tasks.arrangement.placement import SupportSurfaces
 from hthor.tasks.generation import custom_suite, generate
 from hthor.tasks.generation.custom_suite import Recipe
@@ -110,9 +110,9 @@ def test_what_cannot_lie_there_stays_where_the_file_has_it():
 
 
 def test_the_height_of_the_file_is_still_judged():
-    found = {finding.where for finding in thing_rules.check_supported(lifted(0.06))}
+    found = {finding.where for finding in house_rules.check_supported(lifted(0.06))}
     assert found >= {thing.id for thing in lifted(0.06).things if thing.lift}
-    assert not list(thing_rules.check_supported(lifted(0.0)))
+    assert not list(house_rules.check_supported(lifted(0.0)))
 
 
 # ------------------------------------------------------------------------------------------------------------- tasks

@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 from hthor import catalog, houses
 from hthor.geometry.plane import to_local
-from hthor.houses import worktops
+from hthor.houses import loader
 from hthor.houses.space import solids
 from hthor.houses.space.free_space import FreeSpace
 from hthor.houses.space.solids import Slab
@@ -51,8 +51,8 @@ def outline(thing: Thing) -> Slab:
 )
 def test_the_units_fill_the_outline_and_nothing_else(plan: str, w: float, d: float, yaw: float):
     whole = worktop(w, d, yaw)
-    units = worktops.split_worktop(whole, plan)
-    depth, arms = worktops.DEPTH_M, {"L": 1, "C": 2}[plan]
+    units = loader.split_worktop(whole, plan)
+    depth, arms = loader.DEPTH_M, {"L": 1, "C": 2}[plan]
     assert len(units) == 1 + 2 * arms
     assert len({unit.id for unit in units}) == len(units)
     area = sum(unit.size[0] * unit.size[1] for unit in units)
@@ -69,7 +69,7 @@ def test_the_units_fill_the_outline_and_nothing_else(plan: str, w: float, d: flo
 
 @pytest.mark.parametrize(("plan", "w", "d"), [("", 3.0, 3.0), ("I", 2.4, 0.61), ("L", 3.0, 0.65), ("C", 1.25, 3.0)])
 def test_a_straight_or_tiny_one_is_one_thing(plan: str, w: float, d: float):
-    assert worktops.split_worktop(worktop(w, d), plan) == (worktop(w, d),)
+    assert loader.split_worktop(worktop(w, d), plan) == (worktop(w, d),)
 
 
 def house(folder: Path, asset: str, rotation: int = 0) -> HouseSpec:

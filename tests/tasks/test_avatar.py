@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from hthor import rules
-from hthor.tasks.arrangement import avatar as assumed
+from hthor.tasks.arrangement import reachability as assumed
 from hthor.world.model.bodies.avatar import HUMAN
 
 

@@ -19,8 +19,8 @@ from hthor.geometry.plane import inside
 from hthor.houses.space.free_space import FreeSpace
 from hthor.houses.space.geodesic import Geodesics
 from hthor.tasks.arrangement import commonsense_places
-from hthor.tasks.arrangement.avatar import HEIGHT_M, RADIUS_M, REACH_M
 from hthor.tasks.arrangement.free_spots import NEAR_M
+from hthor.tasks.arrangement.reachability import HEIGHT_M, RADIUS_M, REACH_M
 from hthor.tasks.generation import generate
 from hthor.tasks.generation.suite_specs import SUITE_SPECS
 from hthor.tasks.kinds import multi_robot_collection as collection

@@ -22,8 +22,8 @@ from hthor.tasks.generation import secret_suites, standard
 from hthor.tasks.generation.secret_suites import Proof, SuiteOrder
 from hthor.tasks.suite import encode_suite, make_suite
 from hthor.tasks.suites import commitment, library
-from hthor.tasks.suites import secret_salt as salts
-from hthor.tasks.suites.secret_salt import Salt
+from hthor.tasks.suites import commitment as salts
+from hthor.tasks.suites.commitment import Salt
 from hthor.tasks.validate import task_faults
 
 TEXT = "5f1d0c9be7a84e2699c3b1d07a4418f2e35b6097cd12fa8870b94d6e1ac53f28"

@@ -14,8 +14,7 @@ from hthor import catalog, houses, seeds
 from hthor.catalog import priors
 from hthor.errors import HthorError, UnknownName
 from hthor.tasks.arrangement import scene_graph
-from hthor.tasks.arrangement.fallback_placement import BROUGHT
-from hthor.tasks.arrangement.target_arrangement import arrange
+from hthor.tasks.arrangement.target_arrangement import BROUGHT, arrange
 from hthor.tasks.generation import suite_specs
 from hthor.tasks.kinds.mobile_manipulation import TEMPLATES
 from hthor.types import Placement

@@ -16,9 +16,8 @@ from hthor.errors import HthorError, TaskError, UnknownName
 from hthor.geometry.plane import to_house, to_local
 from hthor.houses.space.free_space import FreeSpace
 from hthor.houses.space.geodesic import house_geodesics
-from hthor.tasks.arrangement.avatar import EYE_M, HEIGHT_M, RADIUS_M, REACH_M
 from hthor.tasks.arrangement.placement import SupportSurfaces, distance_to_thing
-from hthor.tasks.arrangement.reachability import ReachableFloor, lines_of_sight
+from hthor.tasks.arrangement.reachability import EYE_M, HEIGHT_M, RADIUS_M, REACH_M, ReachableFloor, lines_of_sight
 from hthor.tasks.arrangement.target_arrangement import NEAR_M, arrange
 from hthor.tasks.generation import generate, suite_specs
 from hthor.tasks.kinds.mobile_manipulation import TEMPLATES

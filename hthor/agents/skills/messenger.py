@@ -177,18 +177,13 @@ class Messenger:
         support = self.knowledge.things.get(target.support)
         if support is None or not self._is_close(observation, support):
             return None
-        shut = self._is_shut(support.id)
+        shut = self.knowledge.is_shut(support.id)
         if len(self.misses) < _LOOKS and not shut:
             return None
         text = f"{kind_title(target.kind).capitalize()} is {place_phrase(support.kind)}."
         if shut and self.briefing.kind not in PAPER_KINDS and "open" not in self.briefing.body.capabilities:
             text = look_inside_text(support.kind, (target.kind,))
         return Send(text=text, object=target.id, position=target.position)
-
-    def _is_shut(self, name: str) -> bool:
-        """Whether this is a thing with a door, and the door is closed."""
-        state = self.knowledge.states.get(name)
-        return state is not None and state.kind == "fridge" and not state.open
 
     def _destined(self, observation: Observation, job: Job, target: ThingState, where: Vec3) -> Send | None:
         found = self._belongs(job, target)

@@ -10,7 +10,7 @@ from msgspec import Struct
 from hthor import code_identity, plugins
 from hthor.errors import HthorError, UnknownName
 from hthor.guest.agent.manifest import Manifest
-from hthor.guest.host.config import GuestConfig
+from hthor.guest.host.info import GuestConfig
 from hthor.types import AgentRef, RobotSeat, cameras
 from hthor.types.detector_specs import OWN
 

@@ -17,7 +17,7 @@ from hthor.eval.runner.fault_report import RecordedAgent
 from hthor.eval.runner.messages import TrialOutcome
 from hthor.guest.agent import agent_files
 from hthor.guest.agent.manifest import File, Manifest
-from hthor.guest.host.config import GuestConfig
+from hthor.guest.host.info import GuestConfig
 from hthor.types import Mind, RobotSeat, RobotSpec, TrialSpec
 from hthor.types.cameras import OWN
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from msgspec import Struct
 
-from hthor.guest.agent import command
+from hthor.guest.agent import reference
 from hthor.guest.agent.reference import AgentReference
 from hthor.guest.confinement import paths
 
@@ -64,7 +64,7 @@ def find_agent_paths(agent: AgentReference, readable: tuple[str, ...] = ()) -> A
     strangers = [*_strangers(), os.path.join(root, "runs")]
     apart = [folder for folder in strangers if root and folder != root and _below(folder, root)]
     if agent.words:  # a command may name files anywhere; if none are its own, it consists of the program
-        named = [str(path) for path in command.own_files(agent.words)] or [agent.words[0]]
+        named = [str(path) for path in reference.own_files(agent.words)] or [agent.words[0]]
         readable += tuple(path for path in named if not (root and _below(path, root)))
     return AgentPaths(root=root, base=base, apart=tuple(sorted(set(apart))), readable=tuple(dict.fromkeys(readable)))
 

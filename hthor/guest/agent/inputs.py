@@ -1,16 +1,102 @@
 """What a user gives an agent beyond its own folder: arguments, and files that it may read."""
 
+import difflib
+import inspect
 import os
-from collections.abc import Iterable
+import re
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
+from typing import Any
 
 from msgspec import Struct
 
 from hthor.errors import HthorError
-from hthor.guest.agent import arguments
 from hthor.guest.agent.reference import AgentReference
 
+_KEY = re.compile(r"[A-Za-z_]\w*")
+_YES, _NO = ("true", "yes", "1", "on"), ("false", "no", "0", "off")
 _HINT = "Name the folder with --readable too, so that the agent may read it and its files count as the agent's."
+
+
+class ArgumentMismatch(ValueError):
+    """The agent does not take these arguments; the message is for the user."""
+
+
+def parse_arguments(texts: Iterable[str]) -> dict[str, str]:
+    """The arguments that a user typed as ``key=value``; the path of a file that exists is made absolute.
+
+    Raises:
+        HthorError: when one cannot be read, or a key is there twice.
+    """
+    found: dict[str, str] = {}
+    for text in texts:
+        key, equals, value = text.partition("=")
+        if not equals or not _KEY.fullmatch(key):
+            raise HthorError(f"--agent-args '{text}' is not KEY=VALUE, such as checkpoint=weights/best.npz.")
+        if key in found:
+            raise HthorError(f"--agent-args gives '{key}' twice: '{found[key]}' and '{value}'.")
+        is_path = os.path.isfile(value) or (os.sep in value and os.path.isdir(value))
+        found[key] = os.path.abspath(value) if is_path else value
+    return found
+
+
+def convert_arguments(cls: type[Any], given: Mapping[str, str]) -> dict[str, Any]:
+    """The arguments with values of the types of the constructor's parameters, by annotation or default.
+
+    Raises:
+        ArgumentMismatch: when the constructor has no such parameter, lacks one, or the value is of another type.
+    """
+    try:
+        parameters = dict(inspect.signature(cls).parameters)
+    except (TypeError, ValueError):
+        parameters = {}
+    open_ended = any(one.kind is inspect.Parameter.VAR_KEYWORD for one in parameters.values())
+    named = {
+        name: one
+        for name, one in parameters.items()
+        if one.kind in (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
+    }
+    for key in given:
+        if key not in named and not open_ended:
+            near = difflib.get_close_matches(key, named, n=1, cutoff=0.5)
+            guess = f" Did you mean '{near[0]}'?" if near else ""
+            takes = f"It takes: {', '.join(named)}." if named else "Its constructor takes no arguments."
+            raise ArgumentMismatch(f"{cls.__name__} has no argument '{key}' (--agent-args {key}=...).{guess} {takes}")
+    missing = [name for name, one in named.items() if one.default is inspect.Parameter.empty and name not in given]
+    if missing:
+        raise ArgumentMismatch(
+            f"{cls.__name__} needs the argument '{missing[0]}'. Give it: --agent-args {missing[0]}=VALUE"
+        )
+    return {key: _typed(key, value, named.get(key)) for key, value in given.items()}
+
+
+def make_factory(cls: type[Any], given: Mapping[str, str]) -> Callable[[], Any]:
+    """A function that makes a new agent with these arguments, which must fit."""
+    values = convert_arguments(cls, given)
+    return lambda: cls(**values)
+
+
+def _typed(key: str, value: str, parameter: inspect.Parameter | None) -> Any:
+    if parameter is None:
+        return value
+    wanted = parameter.annotation
+    name = wanted if isinstance(wanted, str) else getattr(wanted, "__name__", "")
+    if wanted is inspect.Parameter.empty:
+        name = type(parameter.default).__name__
+    name = name.replace(" ", "").removesuffix("|None").removeprefix("Optional[").removesuffix("]")
+    try:
+        if name == "bool":
+            if value.lower() not in (*_YES, *_NO):
+                raise ValueError
+            return value.lower() in _YES
+        return {"int": int, "float": float}.get(name, str)(value)
+    except ValueError:
+        raise ArgumentMismatch(f"--agent-args {key}={value}: the agent takes {name} there.") from None
+
+
+def as_options(given: Mapping[str, str]) -> tuple[str, ...]:
+    """The arguments as options of a command, ``--key=value``."""
+    return tuple(f"--{key}={value}" for key, value in given.items())
 
 
 class AgentInputs(Struct, frozen=True, kw_only=True):
@@ -53,7 +139,7 @@ def parse_inputs(args: Iterable[str] = (), readable: Iterable[Path | str] = ()) 
     names = [os.path.basename(place) for place in places]
     if twice := sorted({name for name in names if names.count(name) > 1 and len(set(places)) == len(places)}):
         raise HthorError(f"--readable names two files or folders called '{twice[0]}'; rename one of them.")
-    found = arguments.parse_arguments(args)
+    found = parse_arguments(args)
     folders = [place for place in places if os.path.isdir(place)]
     for key, value in found.items():  # a folder without a slash could be any word
         if os.path.isdir(value) and os.path.realpath(value) in folders:

@@ -4,9 +4,13 @@ Every command that takes an agent parses it here, so that all accept the same fo
 """
 
 import difflib
+import hashlib
+import os
 import re
+import shlex
 import shutil
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from urllib.parse import urlsplit
 
@@ -14,13 +18,15 @@ from msgspec import Struct
 
 from hthor import plugins
 from hthor.errors import AgentError, UnknownName
-from hthor.guest.agent import command, digests
+from hthor.guest.agent import manifest
 
 FORMS = ("my_agent.py", "my_agent.py:Class", "package.module:Class", "cmd:PROGRAM ARGS", "ws://HOST:PORT[/PATH]")
 """The ways to name an agent that is not built in."""
 HINT = f"An agent of your own is {', '.join(FORMS)} or wss://...; see docs/agents.md."
 _MODULE = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*:[A-Za-z_]\w*")
 _COMMANDS = ("cmd", "command", "exec", "run", "program", "process", "shell")
+_SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib64", sys.prefix, sys.base_prefix)
+_ENV = ("/usr/bin/env", "/bin/env")
 
 
 class AgentReference(Struct, frozen=True, kw_only=True):
@@ -50,14 +56,16 @@ class AgentReference(Struct, frozen=True, kw_only=True):
 
     @property
     def sha256(self) -> str:
-        """Hash of its file, or of its command with the files that it names; empty when it is served.
+        """Hash of its file, or of its command without folders and its files (else the program); empty when served.
 
         Raises:
             AgentError: when a file cannot be read.
         """
-        if self.words:
-            return command.command_sha256(self.words)
-        return digests.file_sha256(Path(self.path)) if self.path else ""
+        if not self.words:
+            return manifest.file_sha256(Path(self.path)) if self.path else ""
+        own = own_files(self.words) or [Path(self.words[0])]
+        parts = [*map(_bare, self.words), *map(manifest.file_sha256, own)]
+        return hashlib.sha256("\0".join(parts).encode()).hexdigest()
 
 
 def is_served(text: str) -> bool:
@@ -122,12 +130,12 @@ def _module(text: str) -> AgentReference:
 
 
 def _command(text: str) -> AgentReference:
-    words = command.parse_command(text.removeprefix("cmd:"))
-    own = command.own_files(words)
+    words = _parse_command(text.removeprefix("cmd:"))
+    own = own_files(words)
     return AgentReference(
         form="command",
-        text=command.as_text(words),
-        source=command.as_source(words),
+        text="cmd:" + shlex.join(words),
+        source="cmd:" + shlex.join(map(_bare, words)),
         name=(own[0] if own else Path(words[0])).stem,
         path=words[0],
         root=str(own[0].parent) if own else "",
@@ -170,3 +178,55 @@ def _guess(text: str) -> str:
     elif "/" in text and shutil.which(text.split()[0]):
         meant = f"cmd:{text}"
     return f"Did you mean '{meant}'? " if meant else ""
+
+
+def _parse_command(text: str) -> tuple[str, ...]:
+    """The words of a command as it will be started, with absolute paths of the program and of files.
+
+    A script that names its interpreter by ``env`` gets the interpreter in front: a confined program cannot start it.
+    """
+    try:
+        words = shlex.split(text)
+    except ValueError as error:
+        raise AgentError(
+            f"agent 'cmd:{text}': {error}. Write it as in a shell, such as cmd:'node my_agent.js'."
+        ) from None
+    if not words:
+        raise AgentError("agent 'cmd:' names no program. Write cmd:PROGRAM ARGS, such as 'cmd:node my_agent.js'.")
+    return (*_found(words[0], text), *(os.path.abspath(word) if Path(word).is_file() else word for word in words[1:]))
+
+
+def _found(program: str, text: str) -> list[str]:
+    path = shutil.which(program)
+    if path is None:
+        reason = "is not executable (chmod +x)" if Path(program).is_file() else "was not found"
+        raise AgentError(f"agent 'cmd:{text}': the program '{program}' {reason}.")
+    path = os.path.abspath(path)
+    try:
+        with open(path, "rb") as file:
+            first = file.readline(256)
+    except OSError:
+        return [path]
+    line = first[2:].decode(errors="replace").split() if first.startswith(b"#!") else []
+    if not line or line[0] not in _ENV:
+        return [path]
+    rest = line[2:] if line[1:2] == ["-S"] else line[1:]
+    if not rest or rest[0].startswith("-") or "=" in rest[0]:
+        raise AgentError(f"{path}: its first line must name an interpreter: '#!/usr/bin/env NAME', got {first!r}.")
+    return [*_found(rest[0], text), *rest[1:], path]
+
+
+def own_files(words: Sequence[str]) -> list[Path]:
+    """The files of a command that do not come with the machine or with this Python."""
+    files = [Path(word) for word in words if os.path.isabs(word) and Path(word).is_file()]
+    return [path for path in files if not _comes_with_the_machine(path)]
+
+
+def _comes_with_the_machine(path: Path) -> bool:
+    """Whether a program is in a folder of the system or of this Python, or links to such a program."""
+    return any(place.is_relative_to(root) for place in (path, path.resolve()) for root in _SYSTEM)
+
+
+def _bare(word: str) -> str:
+    """A word of a command without folders of this machine."""
+    return Path(word).name if os.path.isabs(word) else word

@@ -10,7 +10,7 @@ from hthor.guest.client import file_recorder, loading
 from hthor.guest.client.file_recorder import FileRecorder
 from hthor.guest.client.remote_senses import HostConnection, HostGone, RemoteSenses
 from hthor.guest.protocol import wire
-from hthor.guest.protocol.sanitize import sanitize_text
+from hthor.guest.protocol.wire import sanitize_text
 from hthor.types import Action, Message
 
 

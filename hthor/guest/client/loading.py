@@ -13,9 +13,9 @@ from pathlib import Path
 from types import CodeType, ModuleType
 from typing import Any
 
-from hthor.guest.agent import arguments
+from hthor.guest.agent import inputs
 from hthor.guest.agent.agent_paths import AgentPaths
-from hthor.guest.protocol import sanitize, wire
+from hthor.guest.protocol import wire
 
 _MODULE = "hthor_guest_agent"  # not the file's name, which could hide a module of the standard library
 
@@ -52,7 +52,7 @@ def load_agent(order: wire.Load) -> tuple[type[Any], wire.Ready]:
     """The class in an agent's file or module, and its description of itself.
 
     Raises:
-        Refusal: when there is none, or it cannot be imported.
+        ContractViolation: when there is none, or it cannot be imported.
     """
     path = Path(order.path)
     module = _import(path, order)
@@ -69,13 +69,13 @@ def load_agent(order: wire.Load) -> tuple[type[Any], wire.Ready]:
         robots=_names(cls, "robots", path),
         absent=bool(getattr(cls, "absent", False)),
         persistent=bool(getattr(cls, "persistent", False)),
-        doc=sanitize.sanitize_text(str(cls.__doc__ or module.__doc__ or "").strip())[: wire.TEXT_MAX],
+        doc=wire.sanitize_text(str(cls.__doc__ or module.__doc__ or "").strip())[: wire.TEXT_MAX],
         ahead=True,
         gpus=_gpus(cls, path),
     )
     try:
-        arguments.convert_arguments(cls, order.args)
-    except arguments.ArgumentMismatch as error:
+        inputs.convert_arguments(cls, order.args)
+    except inputs.ArgumentMismatch as error:
         raise ContractViolation(f"{path}: {error}") from None
     return cls, ready
 
@@ -162,4 +162,4 @@ def format_traceback(error: BaseException) -> str:
     trace = error.__traceback__
     while trace is not None and trace.tb_frame.f_code.co_filename.startswith(ours):
         trace = trace.tb_next
-    return sanitize.sanitize_text("".join(traceback.format_exception(type(error), error, trace)))[-wire.TEXT_MAX :]
+    return wire.sanitize_text("".join(traceback.format_exception(type(error), error, trace)))[-wire.TEXT_MAX :]

@@ -4,24 +4,28 @@ A submitted file is executed here and nowhere else, and nothing of it lasts: the
 """
 
 import os
+import signal
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from typing import NoReturn
 
 import msgspec
 
-from hthor.guest.agent import arguments
-from hthor.guest.client import exec_program, loading
+from hthor.guest.agent import inputs
+from hthor.guest.client import loading
 from hthor.guest.client.agent_loop import run_trial
 from hthor.guest.client.file_recorder import FileRecorder
 from hthor.guest.confinement import enforcement, seccomp
-from hthor.guest.confinement.enforcement import Refused
+from hthor.guest.confinement.kernel import Refused
 from hthor.guest.confinement.landlock import Ruleset
-from hthor.guest.protocol import sanitize, shared_frames, wire
-from hthor.guest.protocol.pipe import HostPipe
-from hthor.guest.protocol.trial_channel import GuestEnds
+from hthor.guest.protocol import shared_frames, wire
+from hthor.guest.protocol.trial_channel import GuestEnds, HostPipe
 
 COMPLETED = 97
 """Exit status of a completed trial, which an agent would hardly choose by chance."""
+_OURS = ("PYTHONPATH", "PYTHONHASHSEED", "PYTHONDONTWRITEBYTECODE", "NUMBA_CACHE_DIR", "NUMBA_NUM_THREADS")
+_FRAMES = 3
+_MOST_FOLDERS = 1000
 
 
 def run_trials(awaited: Callable[[], GuestEnds | None], order: wire.Load, held: Ruleset | None, *, first: bool) -> None:
@@ -49,7 +53,7 @@ def run_trials(awaited: Callable[[], GuestEnds | None], order: wire.Load, held: 
         pipe.send(_confined(held))
     if order.words:
         try:
-            exec_program.exec_program(order.words, order.root, pipe.handles, pipe.shared, word)
+            exec_program(order.words, order.root, pipe.handles, pipe.shared, word)
         except Refused as error:
             pipe.send(wire.Failed(kind="contract", detail=str(error)))
             return
@@ -59,11 +63,11 @@ def run_trials(awaited: Callable[[], GuestEnds | None], order: wire.Load, held: 
     try:
         cls, ready = loading.load_agent(order)
     except loading.ContractViolation as error:
-        pipe.send(wire.Failed(kind="contract", detail=sanitize.sanitize_text(str(error))[-wire.TEXT_MAX :]))
+        pipe.send(wire.Failed(kind="contract", detail=wire.sanitize_text(str(error))[-wire.TEXT_MAX :]))
         return
     if first:
         pipe.send(msgspec.structs.replace(ready, files=recorder.take() if recorder else ()))
-    make = arguments.make_factory(cls, order.args)
+    make = inputs.make_factory(cls, order.args)
     while isinstance(begin := pipe.receive(), wire.Begin):
         run_trial(pipe, make, begin, recorder)
         if not ready.persistent:
@@ -115,3 +119,49 @@ def _tidy_numba(scratch: str) -> None:
 
     caching._CacheLocator.ensure_cache_path = lambda _: None  # numba would test whether it may write there
     caching.Cache.save_overload = lambda *_: None
+
+
+def exec_program(words: Sequence[str], folder: str, pipes: tuple[int, int], shared: int, word: bytes) -> NoReturn:
+    """Replace this confined process by the agent's program, in any language.
+
+    It reads messages from standard input and writes them to standard output; standard error is its log.
+
+    Args:
+        words: the program and its arguments. folder: its working folder.
+        pipes: from the host and to it. shared: the shared memory for pictures, -1 for none.
+        word: the token that the system call filter demands, empty where there is no filter.
+
+    Raises:
+        Refused: when it cannot be started.
+    """
+    env = {name: value for name, value in os.environ.items() if name not in (*_OURS, shared_frames.VARIABLE)}
+    read, write = (os.dup(handle) for handle in pipes)
+    held = os.dup(shared) if shared >= 0 else -1
+    if folder and _has_compiled(folder):
+        env["PYTHONPYCACHEPREFIX"] = os.path.join(env["TMPDIR"], "compiled")
+    try:
+        os.chdir(folder or env["TMPDIR"])
+        os.dup2(read, 0)
+        os.dup2(write, 1)
+        if held >= 0:
+            os.dup2(held, _FRAMES)
+            env[shared_frames.VARIABLE] = str(_FRAMES)
+        for number in (signal.SIGPIPE, signal.SIGXFSZ):  # ignored by Python, which the program would inherit
+            signal.signal(number, signal.SIG_DFL)
+        if word:
+            seccomp.exec_with_token(words, env, word)
+        os.execve(words[0], list(words), env)
+    except OSError as error:
+        raise Refused(f"starting {words[0]}: {error.strerror}") from None
+
+
+def _has_compiled(folder: str) -> bool:
+    """Whether the folder has compiled modules, which a Python program would use even if their sources have changed.
+
+    Then the program must compile all that it imports itself, which takes libraries about a second.
+    """
+    for count, (_, inner, _) in enumerate(os.walk(folder)):
+        if "__pycache__" in inner or count > _MOST_FOLDERS:
+            return True
+        inner[:] = [name for name in inner if not name.startswith(".") and name != "site-packages"]
+    return False

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import msgspec
 
 from hthor.errors import AgentError, UnknownName
-from hthor.guest.agent import agent_files, agent_paths, arguments, reference
+from hthor.guest.agent import agent_files, agent_paths, inputs, reference
 from hthor.guest.agent.inputs import AgentInputs
 from hthor.guest.client import loading
 from hthor.guest.client.agent_loop import run_trial
@@ -98,7 +98,7 @@ def serve(text: str, host: str, port: int, given: AgentInputs | None = None) -> 
     ready = msgspec.structs.replace(ready, name=agent.name, version=version, persistent=True)
 
     opened = recorder.take()
-    make = arguments.make_factory(cls, more.args)
+    make = inputs.make_factory(cls, more.args)
 
     def talk(connection: ServerConnection) -> None:
         files = agent_files.list_files(agent, more, ground, opened)

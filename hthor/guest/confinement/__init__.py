@@ -3,7 +3,15 @@
 L1 is a process with limits, L2 adds Landlock and seccomp, and L3 adds namespaces. Results describe it by `Isolation`.
 """
 
-from hthor.guest.confinement.isolation import AUTO, LEVELS, SERVED, Isolation, IsolationError, check_level, suffices
-from hthor.guest.confinement.policy import Policy
+from hthor.guest.confinement.isolation import (
+    AUTO,
+    LEVELS,
+    SERVED,
+    Isolation,
+    IsolationError,
+    Policy,
+    check_level,
+    suffices,
+)
 
 __all__ = ["AUTO", "LEVELS", "SERVED", "Isolation", "IsolationError", "Policy", "check_level", "suffices"]

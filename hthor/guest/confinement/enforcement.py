@@ -8,9 +8,9 @@ import resource
 import socket
 
 from hthor.guest.confinement import landlock, limits, paths, seccomp
+from hthor.guest.confinement.isolation import Policy
 from hthor.guest.confinement.kernel import Refused
 from hthor.guest.confinement.landlock import Ruleset
-from hthor.guest.confinement.policy import Policy
 
 __all__ = ["Refused", "confine_supervisor", "confine_trial", "make_ruleset"]
 _PROCESSES = ("/proc",)

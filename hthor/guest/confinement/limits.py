@@ -16,7 +16,6 @@ _OPEN_FILES = 256
 _MORE_PROCESSES = 1024
 _CAPSET, _CAPBSET_DROP = 126, 24
 _HELD = ("VmRSS", "VmPTE", "VmSwap")
-_PAGE = os.sysconf("SC_PAGE_SIZE")
 
 
 def die_with(parent: int) -> None:
@@ -57,14 +56,6 @@ def set_limits(memory_mb: int, disk_mb: int, *, processes: bool) -> None:
     _lower(resource.RLIMIT_NOFILE, _OPEN_FILES)
     if processes and sys.platform == "linux":
         _lower(resource.RLIMIT_NPROC, _threads_of_user() + _MORE_PROCESSES)
-
-
-def resident_mb(pid: int) -> float:
-    """Resident memory of a process, shared memory included [MB]; 0 when it has ended."""
-    try:
-        return int(Path(f"/proc/{pid}/statm").read_text().split()[1]) * _PAGE / (1 << 20)
-    except (OSError, IndexError):
-        return 0.0
 
 
 def process_memory_mb(pid: int) -> float:

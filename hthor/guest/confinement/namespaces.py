@@ -7,7 +7,7 @@ What it writes goes to memory of a fixed size and ends with it.
 import shutil
 from collections.abc import Sequence
 
-from hthor.guest.confinement.policy import Policy
+from hthor.guest.confinement.isolation import Policy
 
 _HELP = "Install it: apt-get install bubblewrap"
 _APART = ("--unshare-user", "--unshare-ipc", "--unshare-pid", "--unshare-net", "--unshare-uts", "--unshare-cgroup-try")

@@ -9,6 +9,7 @@ demands, in arguments that the kernel itself ignores. The token is random, and i
 
 import ctypes
 import errno
+import itertools
 import os
 import platform
 import struct
@@ -69,25 +70,15 @@ def install_filter(me: int, word: bytes = b"", *, driven: bool = False) -> None:
 
 
 def install_supervisor_filter(*, execute: bool) -> None:
-    """Filter the calls of the supervisor, which starts and watches confined processes. It starts no program itself.
-
-    Raises:
-        Refused: when it cannot be.
-    """
+    """Filter the supervisor's calls, as `install_filter`; it starts and watches confined processes, but no program."""
     needed = (*calls.SUPERVISOR_CALLS, *(["execve"] if execute else []))
     refused = {**calls.DENIED, "execve": calls.EXECVE}
-    lines = _begin()
-    for number in (number for name, number in refused.items() if name not in needed):
-        lines += _on(number, [_no(errno.EPERM)])
-    load_filter(_assembled(lines))
+    lines = [_on(number, [_no(errno.EPERM)]) for name, number in refused.items() if name not in needed]
+    load_filter(_assembled(itertools.chain(_begin(), *lines)))
 
 
 def load_filter(code: bytes) -> None:
-    """Put a filter's instructions on this process for good.
-
-    Raises:
-        Refused: when it cannot be.
-    """
+    """Put a filter's instructions on this process for good; errors as of `install_filter`."""
     if reason := unavailable():
         raise Refused(reason)
     text = ctypes.create_string_buffer(code, len(code))
@@ -96,7 +87,7 @@ def load_filter(code: bytes) -> None:
 
 
 def filter_program(me: int, word: bytes = b"", *, driven: bool = False) -> bytes:
-    """The filter's instructions; arguments as `put_on`."""
+    """The filter's instructions; arguments as `install_filter`."""
     refuse = _no(errno.EPERM)
     answers = {
         errno.EPERM: calls.DENIED,
@@ -116,8 +107,7 @@ def filter_program(me: int, word: bytes = b"", *, driven: bool = False) -> bytes
     lines += _on(calls.PRLIMIT, _own_limits(me, refuse))
     lines += _on(calls.SOCKETPAIR, _streams(refuse))
     lines += _on(calls.PRCTL, [_argument(0), *_any(calls.PRCTLS, refuse), _YES])
-    flags = [_argument(calls.READ_FLAGS), (_EQUAL, 1, 0, 0), _no(errno.EOPNOTSUPP), _YES]
-    lines += _on(calls.PREADV2, flags)
+    lines += _on(calls.PREADV2, [_argument(calls.READ_FLAGS), (_EQUAL, 1, 0, 0), _no(errno.EOPNOTSUPP), _YES])
     lines += _on(calls.MADVISE, [_argument(2), *_any(calls.COLD, _no(0)), _YES])
     locks = _any(calls.FCNTL_LOCKS, _no(0))
     lines += _on(calls.FCNTL, [_argument(1), *_any(calls.FCNTLS, _YES), *locks, refuse])

@@ -6,7 +6,7 @@ from typing import Protocol
 import msgspec
 
 from hthor.guest.protocol import wire
-from hthor.guest.protocol.sanitize import sanitize_text
+from hthor.guest.protocol.wire import sanitize_text
 
 _guests_messages = msgspec.msgpack.Decoder(wire.ToHost)
 _MOST_OPENED, _LONGEST = 20_000, 1000

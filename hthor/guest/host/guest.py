@@ -6,12 +6,11 @@ import contextlib
 from pathlib import Path
 
 from hthor.guest.agent import agent_paths, reference
-from hthor.guest.confinement import AUTO, Isolation
-from hthor.guest.host import failure_explanation, noop_agent
+from hthor.guest.confinement import AUTO, Isolation, paths
+from hthor.guest.host import failure_explanation
 from hthor.guest.host.channel import GuestFault, MessageChannel
-from hthor.guest.host.config import GuestConfig
 from hthor.guest.host.guest_pool import GuestPool
-from hthor.guest.host.info import GuestInfo
+from hthor.guest.host.info import GuestConfig, GuestInfo
 from hthor.guest.host.process import GuestProcess
 from hthor.guest.host.startup import GuestStartup
 from hthor.guest.host.trial_exchange import TrialExchange
@@ -20,7 +19,7 @@ from hthor.guest.process_tools import cpu_affinity
 from hthor.guest.protocol import wire
 from hthor.types import Action, Briefing, Observation
 
-_NOOP_AGENT = Path(noop_agent.__file__)
+_IDLE_AGENT = paths.PACKAGE / "agents" / "silent.py"
 
 
 def load_info(
@@ -40,7 +39,7 @@ def in_force(level: str = AUTO) -> Isolation:
     Raises:
         UnknownName: when there is no such level. IsolationError: when it does not start.
     """
-    return load_info(_NOOP_AGENT, config=GuestConfig(isolation=level)).isolation
+    return load_info(_IDLE_AGENT, config=GuestConfig(isolation=level)).isolation
 
 
 class Guest:

@@ -1,4 +1,4 @@
-"""What a submitted agent says it is, as a record."""
+"""What the agents of a run are given, and what an agent says it is, as records."""
 
 import hashlib
 import math
@@ -7,11 +7,34 @@ import msgspec
 from msgspec import Struct
 
 from hthor.errors import AgentError
+from hthor.guest.agent.inputs import AgentInputs
 from hthor.guest.agent.manifest import File
 from hthor.guest.agent.reference import AgentReference
-from hthor.guest.confinement import Isolation
+from hthor.guest.confinement import AUTO, Isolation, check_level
 from hthor.guest.protocol import wire
-from hthor.guest.protocol.sanitize import is_printable_name, sanitize_text
+from hthor.guest.protocol.wire import is_printable_name, sanitize_text
+
+
+class GuestConfig(Struct, frozen=True, kw_only=True):
+    """What holds for every guest of a run; it travels to the workers with everything else they need.
+
+    Attributes:
+        isolation: "L1", "L2", "L3", or "auto" for the strongest level that starts on this machine.
+        hidden: files and folders that no agent may read, even in its own folder.
+        inputs: constructor arguments, and files beyond the agent's own folder.
+    """
+
+    isolation: str = AUTO
+    hidden: tuple[str, ...] = ()
+    inputs: AgentInputs = AgentInputs()
+
+    def __post_init__(self) -> None:
+        """Check the level.
+
+        Raises:
+            UnknownName: when there is no such level.
+        """
+        check_level(self.isolation)
 
 
 class GuestInfo(Struct, frozen=True, kw_only=True):

@@ -15,11 +15,11 @@ from collections.abc import Mapping
 from hthor.guest.agent.reference import AgentReference
 from hthor.guest.confinement import Policy, limits, namespaces, paths
 from hthor.guest.host.channel import DeadlinePassed, PeerGone
-from hthor.guest.process_tools import cleanup, cpu_affinity, exit_status, resource_usage
+from hthor.guest.process_tools import cleanup, cpu_affinity, resource_usage
 from hthor.guest.protocol import wire
-from hthor.guest.protocol.sanitize import sanitize_text
 from hthor.guest.protocol.shared_frames import FrameWriter
 from hthor.guest.protocol.trial_channel import HostEnds
+from hthor.guest.protocol.wire import sanitize_text
 
 _PASSED_ON = ("PATH", "LANG", "LC_ALL", "TZ", "LD_LIBRARY_PATH", "NUMBA_CACHE_DIR")
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
@@ -53,15 +53,8 @@ class GuestProcess:
             os.set_blocking(handle, False)
         self._ends = HostEnds()
         spaces = policy.level == "L3"
-        words = [
-            sys.executable,
-            "-P",
-            "-u",
-            "-m",
-            "hthor.guest",
-            str(tell.fileno()),
-            "0" if spaces else str(os.getpid()),
-        ]
+        parent = 0 if spaces else os.getpid()
+        words = [sys.executable, "-P", "-u", "-m", "hthor.guest", str(tell.fileno()), str(parent)]
         if spaces:
             words = namespaces.bwrap_command(policy, words)
         try:
@@ -108,9 +101,9 @@ class GuestProcess:
 
     def pin(self) -> bool:
         """Run the trial that begins on this thread's CPU; False if that is impossible. `unpin_thread` undoes it."""
-        if (
-            self.policy.level == "L1" or (cpu := cpu_affinity.pin_thread()) < 0
-        ):  # at L1 an agent may start processes of its own
+        if self.policy.level == "L1":  # there an agent may start processes of its own
+            return False
+        if (cpu := cpu_affinity.pin_thread()) < 0:
             return False
         cpu_affinity.send_cpu(self._supervisor, cpu)
         return True
@@ -209,7 +202,7 @@ class GuestProcess:
         code = self._process.returncode
         if code is None:
             return "died", "the agent closed its pipe"
-        return exit_status.describe_exit(exit_status.unwrap_bwrap(code) if self.policy.level == "L3" else code)
+        return cleanup.describe_exit(cleanup.unwrap_bwrap(code) if self.policy.level == "L3" else code)
 
     def kill(self) -> None:
         """End everything that the guest has started, close the pipes, and remove what it has written."""

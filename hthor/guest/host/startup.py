@@ -1,22 +1,27 @@
-"""Starts a submitted agent: a process at a level of isolation, or a connection to a server."""
+"""Starts a submitted agent: a process at a level of isolation, or a connection to a server.
+
+The level is the one asked for, or the strongest that starts. It counts only once a process has really come up on it.
+"""
+
+import os
 
 from hthor.errors import KILLED, AgentError, AgentKilled
-from hthor.guest.agent import arguments
+from hthor.guest.agent import inputs
 from hthor.guest.agent.agent_paths import AgentPaths
 from hthor.guest.agent.reference import AgentReference
-from hthor.guest.confinement import Isolation, Policy
-from hthor.guest.host import failure_explanation, info, isolation_level, process, websocket_client
+from hthor.guest.confinement import AUTO, LEVELS, Isolation, IsolationError, Policy, namespaces
+from hthor.guest.host import failure_explanation, info, process, websocket_client
 from hthor.guest.host.channel import GuestFault, MessageChannel
-from hthor.guest.host.config import GuestConfig
 from hthor.guest.host.guest_pool import GuestPool, IdleGuest, Key
-from hthor.guest.host.info import GuestInfo
+from hthor.guest.host.info import GuestConfig, GuestInfo
 from hthor.guest.host.process import GuestProcess
 from hthor.guest.protocol import wire
-from hthor.guest.protocol.sanitize import sanitize_text
+from hthor.guest.protocol.wire import sanitize_text
 
 _ENTER_S = 120.0
 """Seconds until a process must say how it is confined: it starts an interpreter and imports the agent's libraries."""
 
+_HINT = "'hthor eval --isolation auto' takes the strongest level that there is; see docs/isolation.md."
 _REFUSED = "operation not permitted"
 _ONE_PROGRAM = (
     " A held program may start no other: name the one that runs in the end, such as an interpreter itself instead of "
@@ -109,9 +114,43 @@ class GuestStartup:
         return websocket_client.ISOLATION
 
     def _start_process(self) -> Isolation:
-        """Start its process, at the level asked for or the strongest that starts."""
-        return isolation_level.start_at_level(
-            self._config.isolation, self._launch, self._enter, self._pool.unavailable, self._memory_mb
+        """Start its process at the level asked for, or the strongest that starts; how that confines it.
+
+        Raises:
+            IsolationError: when that level does not start.
+        """
+        level, unavailable = self._config.isolation, self._pool.unavailable
+        ladder = tuple(reversed(LEVELS)) if level == AUTO else (level,)
+        not_higher = "" if level in (AUTO, LEVELS[-1]) else f"{level} was asked for"
+        reason = ""
+        for rung in ladder:
+            reason = unavailable.get(rung) or (namespaces.unavailable() if rung == "L3" else "")
+            if not reason:
+                try:
+                    started = self._launch(rung)
+                except OSError as error:  # such as too many files beside this agent to name one by one
+                    place = f": {error.filename}" if error.filename else ""
+                    reason = f"its process could not be started: {error.strerror}{place}"
+                    not_higher = not_higher or f"{rung}: {reason}"
+                    continue
+                answer = self._enter(started)
+                if isinstance(answer, wire.Confined):
+                    return self._describe(rung, answer, not_higher)
+                reason = namespaces.failure_reason(answer) if rung == "L3" else answer
+            unavailable[rung] = reason
+            not_higher = not_higher or f"{rung}: {reason}"
+        raise IsolationError(f"isolation {level} cannot be had on this machine: {reason}. {_HINT}")
+
+    def _describe(self, level: str, confined: wire.Confined, not_higher: str) -> Isolation:
+        here = {name: os.readlink(f"/proc/self/ns/{name}") for name in confined.spaces}
+        return Isolation(
+            level=level,
+            landlock_abi=confined.landlock_abi,
+            seccomp=confined.seccomp,
+            netns=bool(here) and confined.spaces["net"] != here["net"],
+            pidns=bool(here) and confined.spaces["pid"] != here["pid"],
+            memory=f"{self._memory_mb} MB, by limit and watch",
+            reason_not_higher=not_higher,
         )
 
     def _launch(self, level: str) -> GuestProcess:
@@ -135,7 +174,7 @@ class GuestStartup:
             cls=agent.cls,
             policy=started.policy,
             module=agent.module,
-            words=(*agent.words, *arguments.as_options(args)) if agent.words else (),
+            words=(*agent.words, *inputs.as_options(args)) if agent.words else (),
             root=agent.root,
             args=args,
             paths=self._paths,

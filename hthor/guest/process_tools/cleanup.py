@@ -1,4 +1,4 @@
-"""Ends the processes that a guest has started, and removes the files that it has written."""
+"""Ends the processes that a guest has started, says how they ended, and removes the files that they have written."""
 
 import contextlib
 import os
@@ -6,7 +6,11 @@ import signal
 import time
 from pathlib import Path
 
+from hthor.errors import KILLED
+from hthor.guest.confinement.calls import FROM_OUTSIDE
+
 _FOLDER = os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW
+_SHELLS = 128
 
 
 def end_descendants(ancestor: int) -> None:
@@ -87,3 +91,26 @@ def _emptied(at: int) -> list[str]:
         except OSError:
             full += [name] * deep
     return full
+
+
+def describe_exit(code: int) -> tuple[str, str]:
+    """A fault's kind and description for an exit code as `subprocess` reports it.
+
+    Some signals are sent only by a person or by a machine that runs out of memory or shuts down. What they end is
+    "killed" and may be tried again. From L2 on an agent cannot send itself such a signal.
+    """
+    if code >= 0:
+        return "died", f"exited with status {code}"
+    return KILLED if -code in FROM_OUTSIDE else "died", f"killed by {_name(-code)}"
+
+
+def unwrap_bwrap(code: int) -> int:
+    """The exit code of what bubblewrap ran; bubblewrap reports a signal as shells do."""
+    return _SHELLS - code if code > _SHELLS else code
+
+
+def _name(number: int) -> str:
+    try:
+        return signal.Signals(number).name
+    except ValueError:  # those of real time have none
+        return f"signal {number}"

@@ -10,9 +10,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from hthor.guest.confinement import limits
-
 _TICK_S = 1.0 / os.sysconf("SC_CLK_TCK")
+_PAGE = os.sysconf("SC_PAGE_SIZE")
 
 
 class _Total:
@@ -61,8 +60,12 @@ def cpu_s(pid: int) -> float:
 
 
 def resident_mb(pid: int) -> float:
-    """Memory of the largest process among ``pid`` and its descendants [MB]."""
-    return max((limits.resident_mb(one) for one in _family(pid)), default=0.0)
+    """Resident memory of the largest process among ``pid`` and its descendants, shared memory included [MB]."""
+    pages = 0
+    for one in _family(pid):
+        with contextlib.suppress(OSError, IndexError):  # it has ended
+            pages = max(pages, int(Path(f"/proc/{one}/statm").read_text().split()[1]))
+    return pages * _PAGE / (1 << 20)
 
 
 def _family(pid: int) -> list[int]:

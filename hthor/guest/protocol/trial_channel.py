@@ -7,12 +7,16 @@ import contextlib
 import fcntl
 import os
 import socket
+from typing import NamedTuple, NoReturn
 
-from hthor.guest.protocol import shared_frames
+import msgspec
+
+from hthor.guest.protocol import shared_frames, wire
 
 _PIPE_BYTES = 1 << 20
 _F_SETPIPE_SZ = 1031
 _SIGN = b"c"
+_hosts_words = msgspec.msgpack.Decoder(wire.ToGuest)
 
 
 class HostEnds:
@@ -55,29 +59,21 @@ class HostEnds:
             os.close(handle)
 
 
-class GuestEnds:
-    """The guest's ends.
+class GuestEnds(NamedTuple):
+    """The guest's ends: pipes from the host, to it and for output, and shared memory for pictures, -1 for none."""
 
-    Attributes:
-        read: pipe from the host. write: pipe to it. printed: pipe for output.
-        shared: shared memory for pictures, -1 for none.
-    """
-
-    def __init__(self, read: int, write: int, printed: int, shared: int = -1) -> None:
-        self.read, self.write, self.printed, self.shared = read, write, printed, shared
+    read: int
+    write: int
+    printed: int
+    shared: int = -1
 
     @property
     def handles(self) -> tuple[int, ...]:
-        """All of them."""
-        every = (self.read, self.write, self.printed, self.shared)
-        return tuple(handle for handle in every if handle >= 0)
+        """All of them that there are."""
+        return tuple(handle for handle in self if handle >= 0)
 
     def send_copies(self, line: socket.socket) -> None:
-        """Send copies of them to another process.
-
-        Raises:
-            BrokenPipeError: when it has ended.
-        """
+        """Send copies to another process; BrokenPipeError when it has ended."""
         socket.send_fds(line, [_SIGN], self.handles)
 
     def close(self) -> None:
@@ -100,3 +96,37 @@ def receive_ends(line: socket.socket) -> GuestEnds | None:
             return GuestEnds(*handles)
         if not said:
             return None
+
+
+class HostPipe:
+    """Messages over pipes. Reads exactly one message at a time, so that a fork shares nothing half read."""
+
+    def __init__(self, read: int, write: int, shared: int = -1) -> None:
+        self._read, self._write = read, write
+        self.handles, self.shared = (read, write), shared
+        self.view = shared_frames.FrameReader(shared) if shared >= 0 else None
+
+    def receive(self) -> wire.ToGuest:
+        """The host's next message; ends the process when the host has closed the pipe."""
+        size = int.from_bytes(self._exactly(4), "little")
+        message: wire.ToGuest = _hosts_words.decode(self._exactly(size))
+        return message
+
+    def send(self, message: wire.ToHost | wire.SupervisorToHost) -> None:
+        data = memoryview(wire.frame(message))
+        while data:
+            data = data[os.write(self._write, data) :]
+
+    def fail(self) -> NoReturn:
+        """The host has broken the protocol: end the process."""
+        os._exit(1)
+
+    def _exactly(self, size: int) -> bytes:
+        chunks = []
+        while size:
+            chunk = os.read(self._read, min(size, 1 << 20))
+            if not chunk:
+                os._exit(0)
+            chunks.append(chunk)
+            size -= len(chunk)
+        return b"".join(chunks)

@@ -33,6 +33,13 @@ FAULTS = ("raised", "timeout", "died", KILLED, "memory", "disk", "garbage", "wro
 """Kinds of failure during a trial."""
 OWN_FAULTS = ("raised", "wrong_type", "garbage", "oversized")
 """Kinds that a guest may report itself; the supervisor and the host find the others."""
+_KEPT = (ord("\n"), ord("\t"))
+_TURNING = (0x61C, *range(0x200E, 0x2010), *range(0x2028, 0x202F), *range(0x2066, 0x206A))
+_UNSEEN = (*range(0x20), *range(0x7F, 0xA0), *_TURNING)
+_HALVES = range(0xD800, 0xE000)
+_ESCAPED = {
+    code: f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}" for code in (*_UNSEEN, *_HALVES) if code not in _KEPT
+}
 
 
 class InvalidAction(ValueError):
@@ -177,7 +184,7 @@ def to_plain_action(action: Action) -> Action:
     """The same action with NumPy's numbers and arrays turned into Python's.
 
     Raises:
-        Unfit: when a value is of the wrong type.
+        InvalidAction: when a value is of the wrong type.
     """
     try:
         return _action_decoder.decode(_plain_encoder.encode(action))
@@ -227,3 +234,15 @@ def find_action_fault(action: Action) -> tuple[str, str] | None:
             if isinstance(value, str) and name != "text" and len(value) > NAME_MAX:
                 return "oversized", f"{field} has {len(value)} characters, at most {NAME_MAX} are taken"
     return None
+
+
+def sanitize_text(text: str) -> str:
+    """A guest's text, safe to show and to write to files: with escapes for control characters, characters that change
+    the writing direction, and surrogates; line ends and tabs stay.
+    """
+    return text.replace("\r\n", "\n").translate(_ESCAPED)
+
+
+def is_printable_name(text: str, most: int) -> bool:
+    """Whether this fits in a table or a file's name."""
+    return text.isprintable() and len(text) <= most

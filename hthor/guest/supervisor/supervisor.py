@@ -17,8 +17,8 @@ from hthor.guest.confinement import enforcement, kernel, limits
 from hthor.guest.confinement.enforcement import Refused
 from hthor.guest.process_tools import cleanup
 from hthor.guest.protocol import trial_channel, wire
-from hthor.guest.protocol.pipe import HostPipe
-from hthor.guest.supervisor import forking, watchdog
+from hthor.guest.protocol.trial_channel import HostPipe
+from hthor.guest.supervisor import forking
 from hthor.guest.supervisor.forking import SpareProcess
 from hthor.guest.supervisor.preloading import preload
 
@@ -60,7 +60,7 @@ def main(tell: int, parent: int) -> None:
     pid = forking.fork_trial(ends, tell, order, held, first=True)
     spare: SpareProcess | None = None
     while True:
-        told = watchdog.watch_trial(pid, order, tell)
+        told = forking.watch_trial(pid, order, tell)
         if scratch.reset() and held is not None:  # the rules are for the old folder
             held.close()
             held = enforcement.make_ruleset(order.policy)

@@ -13,7 +13,7 @@ import numpy as np
 
 from hthor import catalog, rules
 from hthor.geometry.plane import distance_to_rectangle, to_house, to_local
-from hthor.houses.checks import plan_rules, thing_rules
+from hthor.houses.checks import house_rules
 from hthor.houses.checks.findings import Finding, error, is_sound, readable_kind, warning
 from hthor.houses.space import boxes
 from hthor.houses.space.free_space import Bools, FreeSpace
@@ -61,17 +61,17 @@ def check(house: HouseSpec, radius: float, height: float = 1.8, *, strict: bool 
     findings += _rooms(house, space, reached)
     findings += _doors(house, radius, height)
     findings += _receptacles(house, space, reached)
-    findings += thing_rules.check_indoors(house)
+    findings += house_rules.check_indoors(house)
     if strict:
-        findings += plan_rules.check_rooms(house)
-        findings += plan_rules.check_doors(house, height)
+        findings += house_rules.check_rooms(house)
+        findings += house_rules.check_doors(house, height)
         findings += _present(house)
-        findings += thing_rules.check_supported(house)
-        findings += thing_rules.check_swings(house)
+        findings += house_rules.check_supported(house)
+        findings += house_rules.check_swings(house)
         findings += _objects(house, space, reached)
         findings = [_promoted(finding) for finding in findings]
     else:
-        findings += thing_rules.check_overlaps(house)
+        findings += house_rules.check_overlaps(house)
     return tuple(sorted(findings, key=lambda finding: finding.severity != "error"))
 
 

@@ -10,8 +10,8 @@ from hthor.houses.generator import document, validity
 from hthor.houses.generator.draws import Dice
 from hthor.houses.generator.finishes import Finish
 from hthor.houses.generator.floorplan import doors, growth, layout
-from hthor.houses.generator.floorplan.boundary import draw_boundary
 from hthor.houses.generator.floorplan.doors import Door
+from hthor.houses.generator.floorplan.growth import draw_boundary
 from hthor.houses.generator.floorplan.layout import FloorPlan
 from hthor.houses.generator.floorplan.room_specs import LIVING, RoomSpec, iter_leaves
 from hthor.houses.generator.furnishing import clutter

@@ -6,10 +6,11 @@ from collections.abc import Iterator
 import numpy as np
 
 from hthor import catalog
-from hthor.geometry.plane import inside, to_house, to_local
+from hthor.geometry.plane import inside, to_local
 from hthor.houses.checks.house_checks import check
 from hthor.houses.generator.floorplan.doors import LEAF_M
 from hthor.houses.generator.furnishing.clutter import all_fit
+from hthor.houses.laying import part_slabs
 from hthor.houses.space import grid_kernel, solids
 from hthor.houses.space.free_space import Bools, FreeSpace
 from hthor.houses.space.solids import WALL_M, Slab
@@ -99,21 +100,11 @@ def _within(thing: Thing, box: Slab, reach: float) -> bool:
     return gap < reach + math.hypot(*box.size) / 2
 
 
-def parts(thing: Thing) -> list[Slab]:
-    """The solids of a thing as upright boxes."""
-    found = []
-    for part in catalog.kind(thing.kind).parts(thing.size):
-        x, y, z = to_house(part.centre, thing.centre, thing.yaw)
-        size = (2 * part.half[0], 2 * part.half[1])
-        found.append(Slab((x, y), size, thing.yaw, z - part.half[2], z + part.half[2]))
-    return found
-
-
 def _solids(house: HouseSpec) -> Iterator[Fault]:
     """Nothing stands in anything else; where bounding boxes meet, as a chair's and its table's, the solids decide."""
     walls = solids.wall_slabs(house)
     leaf = [Slab((x, y), (2 * w, 2 * d), yaw, 0.0, 2.0) for x, y, w, d, yaw in leaves(house)]
-    boxes = [(thing, box) for thing, box in solids.furniture_slabs(house)]
+    boxes = solids.furniture_slabs(house)
     for k, (thing, box) in enumerate(boxes):
         for wall in (*walls, *leaf):
             if _within(thing, wall, math.hypot(*box.size) / 2) and solids.overlap_depth(box, wall) > DEEP_M:
@@ -121,7 +112,7 @@ def _solids(house: HouseSpec) -> Iterator[Fault]:
                 break
         for other, rival in boxes[k + 1 :]:
             if _within(thing, rival, math.hypot(*box.size) / 2) and _deep(box, rival) > DEEP_M:
-                deep = max((_deep(a, b) for a in parts(thing) for b in parts(other)), default=0.0)
+                deep = max((_deep(a, b) for a in part_slabs(thing) for b in part_slabs(other)), default=0.0)
                 if deep > DEEP_M:
                     yield "thing-in-thing", thing.id, f"stands {deep:.3f} m inside {other.id}"
 

@@ -19,7 +19,7 @@ Bools = NDArray[np.bool_]
 _CLEAR = 0.5
 """Parts less opaque than this, such as glass, hide nothing."""
 _NEAR_TOP = 0.4
-"""A thing is looked for at its centre and this share of its height above it, as the world does."""
+"""Share of its height from a thing's centre to the point near its top."""
 
 
 class LinesOfSight:
@@ -42,7 +42,7 @@ class LinesOfSight:
 
     def visible(self, thing: Thing, at: Vec3, eyes: ArrayLike) -> bool:
         """Whether any of the ``eyes`` (N, 3) [m] sees the thing, taken to be ``at`` [m]; the first are tried first."""
-        points = [at, (at[0], at[1], at[2] + _NEAR_TOP * thing.size[2])]
+        points = sighting_points(at, thing.size[2])
         own = self._own.get(thing.id, (0, 0))  # the parts of a thing do not hide it
         return bool(self._seen(eyes, points, own, first=True).any())
 
@@ -51,6 +51,12 @@ class LinesOfSight:
         targets = np.asarray(points, dtype=float).reshape(-1, 3)
         solid = (self._half, self._pos, self._mat, self._radius)
         return np.asarray(_seen(places, targets, *solid, own[0], own[1], first), dtype=bool)
+
+
+def sighting_points(centre: Vec3, height: float) -> tuple[Vec3, Vec3]:
+    """Where a thing is looked for, as the world does: its centre [m], and a point near its top."""
+    x, y, z = centre
+    return centre, (x, y, z + _NEAR_TOP * height)
 
 
 def with_all_open(house: HouseSpec) -> LinesOfSight:

@@ -11,7 +11,7 @@ from msgspec import Struct
 
 from hthor.errors import HthorError
 from hthor.guest import File
-from hthor.guest.agent import digests
+from hthor.guest.agent import manifest
 from hthor.leaderboard.entries.entry import Agent
 from hthor.leaderboard.entries.files import Problem, parse_document, raise_problems
 from hthor.leaderboard.submission import archive
@@ -71,7 +71,7 @@ def list_files(folder: Path) -> tuple[File, ...]:
     found = []
     for path in folder.rglob("*"):
         if path.is_file() and not path.is_symlink():
-            sha256, size = digests.hash_file(path)
+            sha256, size = manifest.hash_file(path)
             found.append(File(path=path.relative_to(folder).as_posix(), sha256=sha256, bytes=size))
     return tuple(sorted(found))
 

@@ -28,7 +28,7 @@ from hthor.leaderboard.entries.verification import Fresh
 from hthor.leaderboard.verify import performance_drop, replay
 from hthor.tasks.generation import fresh_tasks, secret_suites
 from hthor.tasks.suite import encode_suite
-from hthor.tasks.suites.secret_salt import Salt
+from hthor.tasks.suites.commitment import Salt
 from hthor.types import TaskSpec
 
 TASKS = 200

@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 from hthor import catalog, seeds
 from hthor.geometry.plane import inside
 from hthor.houses.space.free_space import FreeSpace
-from hthor.tasks.arrangement.avatar import HEIGHT_M
 from hthor.tasks.arrangement.placement import SupportSurface, SupportSurfaces, place_on, place_on_floor
-from hthor.tasks.arrangement.reachability import ReachableFloor
+from hthor.tasks.arrangement.reachability import HEIGHT_M, ReachableFloor
 from hthor.types import HouseSpec, Placement, Room, Thing
 
 Floats = NDArray[np.float64]

@@ -18,9 +18,16 @@ from hthor.geometry.plane import to_house
 from hthor.houses.space import boxes, visibility
 from hthor.houses.space.free_space import FreeSpace
 from hthor.houses.space.geodesic import DistanceField, Geodesics
-from hthor.tasks.arrangement.avatar import EYE_M, HEIGHT_M, RADIUS_M, REACH_M
-from hthor.types import HouseSpec, Placement, Thing, Vec2, Vec3
+from hthor.types import HouseSpec, Placement, Thing, Vec2
 
+RADIUS_M = 0.20
+"""Of the person's avatar, as far as tasks need it: an all-knowing person with this body sets T*."""
+HEIGHT_M = 1.75
+EYE_M = 1.6
+REACH_M = 1.2
+"""Horizontal reach [m] from the body's axis, to an object's centre or to the nearest point of a surface."""
+START_MARGIN_M = 0.30
+"""Free floor around the place where any body starts."""
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
 
@@ -58,7 +65,8 @@ class ReachableFloor:
         places = self.space.centres(mask)
         eyes = np.column_stack((places, np.full(len(places), EYE_M)))
         lit = np.linalg.norm(eyes - placement.position, axis=1) <= reach_m + SLACK_M
-        lit[lit] = lines_of_sight(self.house, opened).seen(eyes[lit], _samples(placement))
+        points = visibility.sighting_points(placement.position, catalog.kind(placement.kind).size[2])
+        lit[lit] = lines_of_sight(self.house, opened).seen(eyes[lit], points)
         mask[mask] = lit
         return mask
 
@@ -135,12 +143,6 @@ class Walk:
         row, column = self._space.cell_of(x, y)
         ny, nx = self._space.free.shape
         return 0 <= row < ny and 0 <= column < nx and bool(self._stops[stop][row, column])
-
-
-def _samples(placement: Placement) -> tuple[Vec3, Vec3]:
-    """Where an object is looked for, as the world does: its centre and a point near its top."""
-    x, y, z = placement.position
-    return (x, y, z), (x, y, z + 0.4 * catalog.kind(placement.kind).size[2])
 
 
 def entry_cells(mask: Bools, free: Bools) -> Bools:

@@ -11,7 +11,7 @@ from hthor.errors import HthorError
 from hthor.tasks.generation import generate, standard
 from hthor.tasks.generation.difficulty import Level
 from hthor.tasks.generation.standard import IsPossible, accept_any
-from hthor.tasks.generation.suite_specs import FIND, MOVE, ROBOTS, SuiteSpec, TaskOrder, by_count
+from hthor.tasks.generation.suite_specs import FIND, MOVE, SuiteSpec, TaskOrder, by_count
 from hthor.types import Goal, HouseSpec, TaskSpec
 
 VERSION = 1
@@ -91,7 +91,8 @@ class _House:
         for goal in self._goals(order):
             for lap in range(_LAPS):
                 try:
-                    made = self._made(order, goal, lap)
+                    wanted = msgspec.structs.replace(order, goal=goal)
+                    made = generate.make_ordered_task(self._spec, self._house, wanted, lap)
                 except HthorError as error:
                     reason = str(error)
                     continue
@@ -114,15 +115,3 @@ class _House:
         known = plugins.load("task kind", order.kind).goals(self._house)
         others = [known[number] for number in seeds.shuffled(len(known), self._spec.root, order.name, "others")]
         return [goal for goal in dict.fromkeys((order.goal, *others)) if goal not in self._hopeless]
-
-    def _made(self, order: TaskOrder, goal: Goal | None, lap: int) -> TaskSpec:
-        return generate.make_task(
-            self._house,
-            plugins.load("task kind", order.kind),
-            goal,
-            seeds.derive(self._spec.root, "lap", lap) if lap else self._spec.root,
-            name=order.name,
-            share=order.share,
-            robots=ROBOTS,
-            level=order.level,
-        )

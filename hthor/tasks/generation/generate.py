@@ -20,13 +20,14 @@ from hthor.tasks.generation.difficulty import Level
 from hthor.tasks.generation.start_poses import StartPoses, draw_start_poses
 from hthor.tasks.generation.suite_specs import ROBOTS, SUITE_SPECS, SuiteSpec, TaskOrder
 from hthor.tasks.kind import TaskKind
-from hthor.tasks.suite import Suite, encode_suite, make_suite
+from hthor.tasks.suite import Suite, encode_suite, in_turn, make_suite
 from hthor.tasks.suites import library
 from hthor.types import Goal, HouseSpec, Placement, TaskSpec
 
 EASY_S, HARD_S = 4.0, 20.5
 """Least times that the easiest and the hardest task of a house are aimed at; a small house falls short of these."""
 _CLOSE_S = 0.5
+Split = Literal["", "seen", "new"]
 _TRIES = 20
 
 
@@ -37,9 +38,7 @@ def build_suite(spec: SuiteSpec) -> Suite:
         HthorError: when a house cannot take one of its tasks.
     """
     columns = [house_tasks(spec, houses.load(name)) for name in spec.houses]
-    longest = max(len(column) for column in columns)
-    tasks = [column[number] for number in range(longest) for column in columns if number < len(column)]
-    return make_suite(spec.name, spec.version, tuple(tasks))
+    return make_suite(spec.name, spec.version, tuple(in_turn(columns)))
 
 
 def house_tasks(spec: SuiteSpec, house: HouseSpec) -> tuple[TaskSpec, ...]:
@@ -47,20 +46,27 @@ def house_tasks(spec: SuiteSpec, house: HouseSpec) -> tuple[TaskSpec, ...]:
     return tuple(make_ordered_task(spec, house, order) for order in spec.orders(spec, house))
 
 
-def make_ordered_task(spec: SuiteSpec, house: HouseSpec, order: TaskOrder) -> TaskSpec:
-    """One task of a suite, independent of its other tasks."""
-    lap = dict(spec.redrawn).get(order.name, 0)
+def make_ordered_task(
+    spec: SuiteSpec, house: HouseSpec, order: TaskOrder, lap: int | None = None, split: Split = ""
+) -> TaskSpec:
+    """One task of a suite, independent of its other tasks.
+
+    Args:
+        lap: how often it was drawn before; as `SuiteSpec.redrawn` says when None. split: as `make_task`.
+    """
+    word, laps = ("again", dict(spec.redrawn).get(order.name, 0)) if lap is None else ("lap", lap)
     return make_task(
         house,
         plugins.load("task kind", order.kind),
         order.goal,
-        seeds.derive(spec.root, "again", lap) if lap else spec.root,
+        seeds.derive(spec.root, word, laps) if laps else spec.root,
         name=order.name,
         fixed=order.fixed,
         share=order.share,
         robots=spec.robots,
         candidates=spec.candidates,
         level=order.level,
+        split=split,
         serial=spec.serial,
         record_difficulty=spec.record_difficulty,
     )
@@ -78,7 +84,7 @@ def make_task(
     robots: int = ROBOTS,
     candidates: int = 2,
     level: Level | Literal[""] = "",
-    split: Literal["", "seen", "new"] = "",
+    split: Split = "",
     serial: bool = False,
     record_difficulty: bool = True,
 ) -> TaskSpec:

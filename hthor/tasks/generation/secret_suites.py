@@ -28,8 +28,7 @@ from hthor.tasks.generation.standard import IsPossible
 from hthor.tasks.generation.suite_specs import SuiteSpec, by_count
 from hthor.tasks.suite import SuiteFile, encode_suite, in_turn, make_suite
 from hthor.tasks.suites import commitment, library
-from hthor.tasks.suites.commitment import COMMITMENT, Commitment
-from hthor.tasks.suites.secret_salt import Salt
+from hthor.tasks.suites.commitment import COMMITMENT, Commitment, Salt
 from hthor.types import HouseSpec, TaskSpec
 
 VERSION = 1

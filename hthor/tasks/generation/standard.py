@@ -13,14 +13,15 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Literal
 
-from hthor import houses, jsonio, plugins, seeds
+from hthor import houses, jsonio
 from hthor.errors import HthorError
 from hthor.tasks.generation import generate
 from hthor.tasks.generation.suite_specs import SCENES, SuiteSpec, by_count
+from hthor.tasks.kind import target_of
 from hthor.tasks.suite import Suite, encode_suite, in_turn, make_suite
 from hthor.tasks.suites import library
 from hthor.tasks.validate import validate
-from hthor.types import HouseSpec, Placement, TaskSpec
+from hthor.types import HouseSpec, TaskSpec
 
 UNSEEN = ("aspen", "beech", "cherry", "fir", "holly", "larch", "oak", "pine", "spruce", "yew")
 """The ten houses that are not among the scenes."""
@@ -83,17 +84,7 @@ def make_tasks(
     done: list[TaskSpec] = []
     for order in spec.orders(spec, house):
         for lap in range(REDRAWN.get(order.name, 0), _LAPS):
-            made = generate.make_task(
-                house,
-                plugins.load("task kind", order.kind),
-                order.goal,
-                seeds.derive(spec.root, "lap", lap) if lap else spec.root,
-                name=order.name,
-                share=order.share,
-                robots=spec.robots,
-                candidates=spec.candidates,
-                split=split,
-            )
+            made = generate.make_ordered_task(spec, house, order, lap, split)
             if not any(are_alike(made, other) for other in done) and possible(made, house):
                 done.append(made)
                 yield made
@@ -106,14 +97,12 @@ def are_alike(one: TaskSpec, two: TaskSpec) -> bool:
     """Whether two tasks ask for the same thing from the same place: their goals are equal, their targets are on the
     same thing of the same house, and the person's starts are less than `ALIKE_M` apart.
     """
-    if (one.house, one.goal) != (two.house, two.goal) or _target(one).support != _target(two).support:
+    if (one.house, one.goal) != (two.house, two.goal):
+        return False
+    if target_of(one.goal, one.objects).support != target_of(two.goal, two.objects).support:
         return False
     here, there = one.human_start, two.human_start
     return math.dist((here.x, here.y), (there.x, there.y)) < ALIKE_M
-
-
-def _target(task: TaskSpec) -> Placement:
-    return next(placement for placement in task.objects if placement.id == task.goal.target)
 
 
 def main(arguments: Sequence[str]) -> int:

@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 
 from hthor import seeds
 from hthor.houses.space.free_space import FreeSpace
-from hthor.tasks.arrangement.avatar import HEIGHT_M, START_MARGIN_M
-from hthor.tasks.arrangement.reachability import ReachableFloor, entry_cells
+from hthor.tasks.arrangement.reachability import HEIGHT_M, START_MARGIN_M, ReachableFloor, entry_cells
 from hthor.tasks.kind import TaskKind
 from hthor.types import Goal, HouseSpec, Placement, Pose
 

@@ -14,7 +14,7 @@ Turning, recognising and reading cost nothing, and lines of sight do not matter.
 from typing import Literal
 
 from hthor import catalog, rules
-from hthor.tasks.kind import LeastTimes, TaskKind
+from hthor.tasks.kind import LeastTimes, TaskKind, kind_of, target_of
 from hthor.types import Goal, HouseSpec, Placement, Snapshot, TaskSpec
 
 _FOOD = ("fridge", "counter_top", "dining_table")
@@ -55,7 +55,7 @@ class MobileManipulation(TaskKind):
         return ""
 
     def instruction(self, goal: Goal, objects: tuple[Placement, ...]) -> str:
-        target = catalog.kind(next(placement.kind for placement in objects if placement.id == goal.target))
+        target = catalog.kind(target_of(goal, objects).kind)
         destination = catalog.kind(goal.destination)
         return f"Pick {target.indefinite} and place it {goal.relation} {destination.indefinite}."
 
@@ -63,17 +63,16 @@ class MobileManipulation(TaskKind):
         target = snapshot.things[task.goal.target]
         if target.held_by or not target.support:
             return False
-        return _kind_of(target.support, house) == task.goal.destination
+        return kind_of(target.support, house) == task.goal.destination
 
     def solved(self, goal: Goal, objects: tuple[Placement, ...], house: HouseSpec) -> bool:
-        support = next(placement.support for placement in objects if placement.id == goal.target)
-        return _kind_of(support, house) == goal.destination
+        return kind_of(target_of(goal, objects).support, house) == goal.destination
 
     def least_times(self, house: HouseSpec, objects: tuple[Placement, ...], goal: Goal) -> LeastTimes:
         from hthor.tasks.arrangement.reachability import ReachableFloor
 
-        target = next(placement for placement in objects if placement.id == goal.target)
-        opening = [_kind_of(target.support, house) if target.relation == "in" else "", goal.destination]
+        target = target_of(goal, objects)
+        opening = [kind_of(target.support, house) if target.relation == "in" else "", goal.destination]
         doors = sum(1 for kind in opening if kind and catalog.kind(kind).hides)
         ground = ReachableFloor.of(house)
         walk = ground.walk([ground.touching(target), ground.serving(goal.destination)])
@@ -83,14 +82,6 @@ class MobileManipulation(TaskKind):
 
 def _relation(destination: str) -> Literal["on", "in"]:
     return catalog.kind(destination).relation
-
-
-def _kind_of(thing_id: str, house: HouseSpec) -> str:
-    """The kind of the house's thing with this id, empty when there is none."""
-    for thing in house.things if thing_id else ():  # asked at every tick of a trial
-        if thing.id == thing_id:
-            return thing.kind
-    return ""
 
 
 KIND = MobileManipulation()

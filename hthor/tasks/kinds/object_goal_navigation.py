@@ -15,7 +15,7 @@ Turning, recognising and reading cost nothing.
 # ruff: noqa: ARG002 - a search asks nothing of the house; the signatures are those of every kind
 
 from hthor import catalog, rules
-from hthor.tasks.kind import LeastTimes, TaskKind
+from hthor.tasks.kind import LeastTimes, TaskKind, target_of
 from hthor.types import HUMAN, Goal, HouseSpec, Placement, Snapshot, TaskSpec
 
 
@@ -36,7 +36,7 @@ class ObjectGoalNavigation(TaskKind):
         return ""
 
     def instruction(self, goal: Goal, objects: tuple[Placement, ...]) -> str:
-        return f"Find {_kind(goal, objects).indefinite}."
+        return f"Find {catalog.kind(target_of(goal, objects).kind).indefinite}."
 
     def met(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec) -> bool:
         return task.goal.target in snapshot.in_view.get(HUMAN, ())
@@ -47,7 +47,7 @@ class ObjectGoalNavigation(TaskKind):
     def least_times(self, house: HouseSpec, objects: tuple[Placement, ...], goal: Goal) -> LeastTimes:
         from hthor.tasks.arrangement.reachability import ReachableFloor
 
-        target = next(placement for placement in objects if placement.id == goal.target)
+        target = target_of(goal, objects)
         ground = ReachableFloor.of(house)
         holder = next((thing for thing in house.things if thing.id == target.support), None)
         if holder is not None and target.relation == "in" and catalog.kind(holder.kind).hides:
@@ -56,10 +56,6 @@ class ObjectGoalNavigation(TaskKind):
         else:
             walk, handling = ground.walk([ground.seeing(target)]), 0.0
         return lambda starts: walk.lengths(starts) / rules.PACE_M_S + handling
-
-
-def _kind(goal: Goal, objects: tuple[Placement, ...]) -> catalog.Kind:
-    return catalog.kind(next(placement.kind for placement in objects if placement.id == goal.target))
 
 
 KIND = ObjectGoalNavigation()

@@ -1,21 +1,128 @@
-"""What is published about a suite made from a secret salt.
+"""A secret salt, and what is published about the suite that is made from it.
+
+The salt's commitment is SHA-256 over a fixed prefix and the salt: it neither reveals a salt of 128 bits or more, nor
+can a second salt with the same commitment be found. Roots of random draws come from HMAC-SHA256 with the salt as the
+key, 128 bits for each purpose: somebody who knows one root, or everything made from it, learns nothing about the salt
+or other roots.
 
 ``commitment.json`` fixes the salt and every file of the suite by hashes that reveal neither. It can be published before
 anybody is evaluated. ``revealed.json`` holds the salt, once the season is over.
 """
 
 import hashlib
+import hmac
+import math
+import os
+import secrets
+import stat
+import zlib
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from msgspec import Struct
 
 from hthor import documents, jsonio
-from hthor.errors import TaskError
-from hthor.tasks.suites.secret_salt import Salt
+from hthor.errors import HthorError, TaskError
+from hthor.seeds import Name
 
+LEAST_CHARACTERS, LEAST_BITS = 32, 128
+_TO_COMMIT, _TO_DRAW = b"hthor.commitment/1\0", b"hthor.root/1\0"
+_FRAME = 8
+"""Bytes that zlib adds to what it packs."""
 COMMITMENT, REVEALED = "commitment.json", "revealed.json"
 _COMMITTED, _PUBLISHED = "hthor.commitment/1", "hthor.revealed/1"
+
+
+class Salt:
+    """A secret text. It is shown by nothing but `reveal`: not when printed, and not in a traceback."""
+
+    __slots__ = ("_bytes",)
+
+    def __init__(self, text: str) -> None:
+        """Take a salt as it is; only `read_salt` checks its strength."""
+        self._bytes = text.encode("ascii")
+
+    def __repr__(self) -> str:
+        return "Salt(hidden)"
+
+    def __reduce__(self) -> tuple[object, ...]:
+        raise TypeError("a salt stays in the process that read it; pass on the roots that are drawn from it")
+
+    def commitment(self) -> str:
+        """A hash that fixes the salt without revealing it, 64 hexadecimal digits."""
+        return hashlib.sha256(_TO_COMMIT + self._bytes).hexdigest()
+
+    def root(self, *purpose: Name) -> int:
+        """A root for the draws of one purpose, 128 bits, as `hthor.seeds` takes it."""
+        return int.from_bytes(self._mac(purpose)[:16], "little", signed=True)
+
+    def word(self, digits: int, *purpose: Name) -> str:
+        """So many hexadecimal digits for one purpose: an opaque id."""
+        return self._mac(purpose).hex()[:digits]
+
+    def reveal(self) -> str:
+        """The salt itself, for the day when it is published."""
+        return self._bytes.decode("ascii")
+
+    def _mac(self, purpose: tuple[Name, ...]) -> bytes:
+        return hmac.digest(self._bytes, _TO_DRAW + jsonio.canonical(purpose), "sha256")
+
+
+def create_salt(path: Path) -> None:
+    """Write a new salt of 256 bits to a file that only its owner can read.
+
+    Raises:
+        HthorError: when there is such a file already; a salt that something was made of must not be lost.
+    """
+    path.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+    except FileExistsError:
+        raise HthorError(f"{path} is there already, and a salt is never written over. Choose another name.") from None
+    with os.fdopen(handle, "w", encoding="ascii") as file:
+        file.write(secrets.token_hex(32) + "\n")
+
+
+def read_salt(path: Path) -> Salt:
+    """The salt in a file: its text, without the white space around it.
+
+    Raises:
+        HthorError: when the file cannot be read, or what it holds could be guessed; the salt is never part of the
+            message.
+    """
+    advice = "'hthor suite salt --out FILE' makes a good one."
+    try:
+        text = path.read_text(encoding="ascii").strip()
+    except UnicodeDecodeError:
+        raise HthorError(f"{path}: a salt is plain ASCII text, this is not. {advice}") from None
+    except OSError as error:
+        raise HthorError(f"{path}: the salt cannot be read: {error.strerror}. {advice}") from None
+    if not text.isprintable():
+        raise HthorError(f"{path}: a salt is one line of text, this is more than one. {advice}")
+    if len(text) < LEAST_CHARACTERS:
+        problem = f"the salt has {len(text)} characters, at least {LEAST_CHARACTERS} are needed"
+        raise HthorError(f"{path}: {problem}: a short one can be found by trying. {advice}")
+    if estimate_bits(text) < LEAST_BITS:
+        problem = f"the salt looks as if it held {estimate_bits(text):.0f} bits, at least {LEAST_BITS} are needed"
+        raise HthorError(f"{path}: {problem}: what repeats itself or is a simple word can be found by trying. {advice}")
+    return Salt(text)
+
+
+def estimate_bits(text: str) -> float:
+    """How much a text seems to hold [bit], by its letters' frequencies and by how far it can be packed.
+
+    It finds blunders, such as one letter repeated, but takes a line of a poem for random text.
+    """
+    data = text.encode("ascii")
+    letters = -sum(count * math.log2(count / len(data)) for count in Counter(data).values())
+    packed = 8.0 * max(len(zlib.compress(data, 9)) - _FRAME, 0)
+    return min(letters, packed)
+
+
+def is_exposed(path: Path) -> bool:
+    """Whether others than the owner can read the file."""
+    return bool(path.stat().st_mode & (stat.S_IRGRP | stat.S_IROTH))
 
 
 class Commitment(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

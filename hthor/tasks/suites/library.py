@@ -3,10 +3,10 @@
 import difflib
 from pathlib import Path
 
-from hthor import documents
+from hthor import documents, jsonio
 from hthor.errors import TaskError, UnknownName
 from hthor.houses.library import OURS, HouseLibrary
-from hthor.tasks.suite import Suite, SuiteFile, tasks_sha256
+from hthor.tasks.suite import Suite, SuiteFile
 from hthor.types import TaskSpec
 
 _FOLDER = Path(__file__).parent / "data"
@@ -46,7 +46,7 @@ def read_suite(name_or_path: str | Path) -> Suite:
     """
     path, shown = _locate(name_or_path)
     file = documents.read(path, SuiteFile, TaskError, shown=shown)
-    digest = tasks_sha256(file.tasks)
+    digest = jsonio.sha256(file.tasks)
     if digest != file.sha256:
         problem = f"the tasks hash to {digest}, the file says {file.sha256}, so it was changed after it was made"
         raise TaskError(

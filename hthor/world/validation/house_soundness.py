@@ -7,7 +7,7 @@ from msgspec import Struct
 
 from hthor.errors import HthorError
 from hthor.houses import generator, loader
-from hthor.houses.checks import thing_rules
+from hthor.houses.checks import house_rules
 from hthor.houses.checks.findings import Finding, error, is_sound
 from hthor.houses.checks.house_checks import check
 from hthor.types import HouseSpec
@@ -33,7 +33,7 @@ def check_soundness(house: HouseSpec, radius: float = 0.25) -> tuple[Finding, ..
 
 def _leaves(house: HouseSpec) -> Iterator[Finding]:
     for leaf in door_geometry.doorway_leaves(house):
-        for finding in thing_rules.check_swing(house, leaf.thing, leaf.parts, leaf.joints, "door"):
+        for finding in house_rules.check_swing(house, leaf.thing, leaf.parts, leaf.joints, "door"):
             yield error(finding.rule, finding.where, finding.problem)
 
 

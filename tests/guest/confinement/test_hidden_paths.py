@@ -13,7 +13,7 @@ from hthor.guest import Guest, GuestConfig, GuestFault
 from hthor.guest.confinement import hidden_paths, paths
 from hthor.humans.population import population_file
 from hthor.tasks.suite import encode_suite, make_suite
-from hthor.tasks.suites import secret_salt
+from hthor.tasks.suites import commitment
 from hthor.types import Observation, Pose
 from tests.support.guest_agents import BRIEFING
 
@@ -62,7 +62,7 @@ def home(tmp_path: Path) -> Path:
         path = tmp_path / "home" / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(data)
-    secret_salt.create_salt(tmp_path / "home" / "season" / "word")
+    commitment.create_salt(tmp_path / "home" / "season" / "word")
     (tmp_path / "home" / "shortcut").symlink_to(tmp_path / "home" / "study" / "one")
     return tmp_path / "home"
 

@@ -19,7 +19,7 @@ from hthor.console import completion
 from hthor.errors import HthorError, UnknownName
 from hthor.eval.config import cli_command, robot_team, run_config, sessions, task_selection
 from hthor.eval.runner import run_options
-from hthor.guest.host.config import GuestConfig
+from hthor.guest.host.info import GuestConfig
 from hthor.leaderboard.entries import overrides
 from hthor.types import Pose, RobotSeat, cameras
 from hthor.world import World

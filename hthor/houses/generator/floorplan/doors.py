@@ -1,6 +1,7 @@
 """Which rooms a door joins, and where it stands and swings."""
 
 import math
+from collections.abc import Iterable, Sequence
 
 from msgspec import Struct
 
@@ -136,17 +137,12 @@ def _inner(one: int, two: int, plan: FloorPlan, dice: Dice, others: list[Door]) 
         else:
             share = dice.unit("place") * (seam.length - width - 2 * _STUB_M)
             door = _at(seam, "frame", one, two, _STUB_M + share, round(width, 2))
-        return door if all(apart(door, other) for other in others) else None
+        return _first_apart([door], others)
     private = [room for room in (one, two) if plan.room(room).kind in (BEDROOM, BATHROOM)]
-    for door in dice.order([d for room in private for d in _leaves(seam, room, plan)], "leaf"):
-        if all(apart(door, other) for other in others):
-            return door
-    for attempt in range(8):
-        slack = seam.length - _WIDTH_M - 2 * _JAMB_M
-        door = _at(seam, "frame", one, two, _JAMB_M + slack * dice.unit("frame", attempt), _WIDTH_M)
-        if all(apart(door, other) for other in others):
-            return door
-    return None
+    leaves = dice.order([door for room in private for door in _leaves(seam, room, plan)], "leaf")
+    slack = seam.length - _WIDTH_M - 2 * _JAMB_M
+    offsets = (_JAMB_M + slack * dice.unit("frame", attempt) for attempt in range(8))
+    return _first_apart([*leaves, *(_at(seam, "frame", one, two, offset, _WIDTH_M) for offset in offsets)], others)
 
 
 def _leaves(seam: Seam, room: int, plan: FloorPlan) -> list[Door]:
@@ -155,10 +151,8 @@ def _leaves(seam: Seam, room: int, plan: FloorPlan) -> list[Door]:
     found = []
     for start, end in ((seam.a, seam.b), (seam.b, seam.a)):
         if start in plan.room(room).polygon and not _inner_corner(start, room, plan):
-            door = Door(
-                "leaf", room, beyond, seam, _along(start, end, _HINGE_M), _along(start, end, _HINGE_M + _WIDTH_M)
-            )
-            found.append(door)
+            ends = _along(start, end, _HINGE_M), _along(start, end, _HINGE_M + _WIDTH_M)
+            found.append(Door("leaf", room, beyond, seam, *ends))
     return found
 
 
@@ -193,7 +187,7 @@ def _front(plan: FloorPlan, dice: Dice, others: list[Door]) -> Door | None:
             slack = seam.length - _OUTSIDE_M - 2 * _JAMB_M
             room = max(seam.left, seam.right)
             door = _at(seam, "outside", room, room, _JAMB_M + slack * dice.unit(*wanted, number), _OUTSIDE_M)
-            if all(apart(door, other) for other in others):
+            if _first_apart([door], others):
                 return door
     return None
 
@@ -238,8 +232,12 @@ def _strip(door: Door, room: int, beside: float, depth: float) -> tuple[float, f
 
 def apart(one: Door, two: Door) -> bool:
     """Whether neither door blocks the other."""
-    for room, x0, y0, x1, y1 in zones(one):
-        for other, u0, v0, u1, v1 in zones(two):
-            if room == other and min(x1, u1) - max(x0, u0) > 0.0 and min(y1, v1) - max(y0, v0) > 0.0:
-                return False
-    return True
+    return not any(
+        room == other and min(x1, u1) - max(x0, u0) > 0.0 and min(y1, v1) - max(y0, v0) > 0.0
+        for room, x0, y0, x1, y1 in zones(one)
+        for other, u0, v0, u1, v1 in zones(two)
+    )
+
+
+def _first_apart(doors: Iterable[Door], others: Sequence[Door]) -> Door | None:
+    return next((door for door in doors if all(apart(door, other) for other in others)), None)

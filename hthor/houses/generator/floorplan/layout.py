@@ -8,8 +8,7 @@ import math
 import numpy as np
 from msgspec import Struct
 
-from hthor.houses.generator.floorplan.boundary import Boundary, Cells
-from hthor.houses.generator.floorplan.growth import Labels
+from hthor.houses.generator.floorplan.growth import Boundary, Cells, Labels
 from hthor.houses.generator.floorplan.room_specs import BATHROOM, BEDROOM, KITCHEN, LIVING, RoomGroup, iter_leaves
 from hthor.types import Vec2
 

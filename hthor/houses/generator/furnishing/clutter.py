@@ -4,6 +4,7 @@ import math
 from collections import Counter
 from collections.abc import Sequence
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -19,9 +20,8 @@ from hthor.houses.generator.furnishing.clutter_table import (
     Size,
 )
 from hthor.houses.generator.furnishing.item_styles import ItemStyler
-from hthor.houses.generator.furnishing.pieces import Piece
+from hthor.houses.generator.furnishing.pieces import Piece, swept_boxes
 from hthor.houses.generator.furnishing.requirements import Requirements
-from hthor.houses.generator.furnishing.swept_areas import swept_boxes
 from hthor.types import Surface
 
 Floats = NDArray[np.float64]
@@ -87,10 +87,8 @@ class Table:
 
     def _child(self, child: Piece, surface: Surface, place: tuple[float, float], quarter: int) -> Piece:
         """The thing in the frame of its parent, its height counted from the floor."""
-        return Piece(
-            kind=child.kind,
-            asset=child.asset,
-            size=child.size,
+        return msgspec.structs.replace(
+            child,
             middle=(round(surface.centre[0] + place[0], 4), round(surface.centre[1] + place[1], 4)),
             bottom=self.piece.bottom + self.piece.size[2] / 2 + surface.centre[2],
             yaw=quarter * math.pi / 2,

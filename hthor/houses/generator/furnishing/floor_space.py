@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 from hthor.houses.generator.draws import Dice
 from hthor.houses.generator.floorplan.doors import Door, inward, leaf, zones
 from hthor.houses.generator.floorplan.layout import FloorPlan, RoomPlan
-from hthor.houses.generator.furnishing.pieces import Piece, PieceGroup, Rect, move_piece
-from hthor.houses.generator.furnishing.swept_areas import Box, swept_boxes_of_piece
+from hthor.houses.generator.furnishing.pieces import Box, Piece, PieceGroup, Rect, move_piece, swept_boxes_of_piece
 from hthor.houses.space.free_space import FreeSpace
 from hthor.houses.space.solids import WALL_M
 from hthor.types import Vec2

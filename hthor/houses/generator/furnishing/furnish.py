@@ -143,59 +143,16 @@ def _store(rooms: Sequence[RoomSpace], wants: Requirements, maker: ItemStyler, d
                 break
 
 
-_MORE: dict[str, tuple[tuple[str, float], ...]] = {
-    KITCHEN: (
-        ("bin", 0.8),
-        ("house_plant", 0.4),
-        ("shelf", 0.2),
-        ("cart", 0.25),
-        ("stool", 0.3),
-        ("box", 0.1),
-        ("dog_bed", 0.1),
-    ),
-    LIVING: (
-        ("shelf", 0.65),
-        ("reading", 0.35),
-        ("dresser", 0.3),
-        ("house_plant", 0.8),
-        ("floor_lamp", 0.5),
-        ("ottoman", 0.25),
-        ("house_plant", 0.25),
-        ("dog_bed", 0.2),
-        ("bin", 0.25),
-        ("box", 0.2),
-        ("basketball", 0.15),
-        ("side_table", 0.2),
-        ("watering_can", 0.1),
-    ),
-    BEDROOM: (
-        ("wardrobe", 0.7),
-        ("dresser", 0.6),
-        ("shelf", 0.3),
-        ("reading", 0.2),
-        ("desk", 0.25),
-        ("house_plant", 0.4),
-        ("laundry_hamper", 0.25),
-        ("floor_lamp", 0.25),
-        ("bin", 0.25),
-        ("box", 0.2),
-        ("ottoman", 0.15),
-        ("boots", 0.2),
-        ("basketball", 0.15),
-        ("teddy_bear", 0.15),
-        ("vacuum_cleaner", 0.1),
-        ("dumbbell", 0.1),
-    ),
-    BATHROOM: (
-        ("washing_machine", 0.4),
-        ("laundry_hamper", 0.35),
-        ("bin", 0.5),
-        ("brush", 0.4),
-        ("house_plant", 0.15),
-        ("side_table", 0.1),
-    ),
+_MORE = {
+    KITCHEN: "bin 0.8, house_plant 0.4, shelf 0.2, cart 0.25, stool 0.3, box 0.1, dog_bed 0.1",
+    LIVING: "shelf 0.65, reading 0.35, dresser 0.3, house_plant 0.8, floor_lamp 0.5, ottoman 0.25, house_plant 0.25, "
+    "dog_bed 0.2, bin 0.25, box 0.2, basketball 0.15, side_table 0.2, watering_can 0.1",
+    BEDROOM: "wardrobe 0.7, dresser 0.6, shelf 0.3, reading 0.2, desk 0.25, house_plant 0.4, laundry_hamper 0.25, "
+    "floor_lamp 0.25, bin 0.25, box 0.2, ottoman 0.15, boots 0.2, basketball 0.15, teddy_bear 0.15, "
+    "vacuum_cleaner 0.1, dumbbell 0.1",
+    BATHROOM: "washing_machine 0.4, laundry_hamper 0.35, bin 0.5, brush 0.4, house_plant 0.15, side_table 0.1",
 }
-"""What else stands in a room, in this order, and how often."""
+"""What else stands in a room, in this order: kinds, each with how often."""
 _RUGS: dict[str, tuple[tuple[str, ...], float, float, tuple[tuple[int, int, int], ...]]] = {
     LIVING: (("tv_stand", "coffee_table"), 0.6, 0.8, ((200, 140, 1), (180, 120, 1), (160, 90, 1), (140, 70, 1))),
     BEDROOM: (("bed",), 1.8, 0.55, ((160, 110, 1), (140, 80, 1), (120, 60, 1))),
@@ -211,10 +168,11 @@ _ROOMY_M2 = 20.0
 
 def _fill(room: RoomSpace, wants: Requirements, maker: ItemStyler, dice: Dice) -> None:
     size = min(max((room.room.area / _ROOMY_M2) ** 0.5, 0.55), 1.25)
-    for number, (kind, share) in enumerate(_MORE[room.room.kind]):
+    for number, row in enumerate(_MORE[room.room.kind].split(", ")):
+        kind, share = row.split()
         own = dice.of(kind, number)
         wanted = "armchair" if kind == "reading" else kind
-        if not wants.allows(wanted) or not own.chance(share * size, "wanted"):
+        if not wants.allows(wanted) or not own.chance(float(share) * size, "wanted"):
             continue
         names = (room.room.number, number)
         if kind == "reading":

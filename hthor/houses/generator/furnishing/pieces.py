@@ -1,4 +1,4 @@
-"""Things to be placed and groups of them, as records.
+"""Things to be placed and groups of them, as records, and the room that doors and drawers of a thing take.
 
 A group's frame: origin in the middle of its back edge, x to its right seen from inside it, y to the front.
 """
@@ -6,16 +6,23 @@ A group's frame: origin in the middle of its back edge, x to its right seen from
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from functools import lru_cache
 
+import msgspec
 from msgspec import Struct
 
 from hthor import catalog
 from hthor.catalog.kind import Kind
 from hthor.geometry.plane import turn
-from hthor.types import Vec2, Vec3
+from hthor.houses.space import boxes
+from hthor.types import Thing, Vec2, Vec3
 
 Rect = tuple[float, float, float, float]
 """x0, y0, x1, y1 [m]."""
+_STEPS = 6
+Box = tuple[float, float, float, float, float, float]
+"""x0, y0, x1, y1, z0, z1 [m]."""
 
 
 class Piece(Struct, frozen=True, kw_only=True):
@@ -45,10 +52,7 @@ class Piece(Struct, frozen=True, kw_only=True):
     @property
     def rect(self) -> Rect:
         """The upright rectangle about its footprint."""
-        cos, sin = abs(math.cos(self.yaw)), abs(math.sin(self.yaw))
-        hx = (cos * self.size[0] + sin * self.size[1]) / 2
-        hy = (sin * self.size[0] + cos * self.size[1]) / 2
-        return (self.middle[0] - hx, self.middle[1] - hy, self.middle[0] + hx, self.middle[1] + hy)
+        return _rect(self.middle, self.size, self.yaw)
 
 
 class PieceGroup(Struct, frozen=True, kw_only=True):
@@ -70,20 +74,49 @@ class PieceGroup(Struct, frozen=True, kw_only=True):
     @property
     def extent(self) -> Rect:
         """The rectangle about all pieces."""
-        rects = [piece.rect for piece in self.pieces]
-        x0s, y0s, x1s, y1s = zip(*rects, strict=True)
+        x0s, y0s, x1s, y1s = zip(*(piece.rect for piece in self.pieces), strict=True)
         return (min(x0s), min(y0s), max(x1s), max(y1s))
 
 
 def move_piece(piece: Piece, origin: Vec2, yaw: float) -> Piece:
     """The piece of a group whose frame stands at ``origin`` [m], turned by ``yaw``."""
     x, y = turn(piece.middle, yaw)
-    return Piece(
-        kind=piece.kind,
-        asset=piece.asset,
-        size=piece.size,
-        middle=(round(origin[0] + x, 4), round(origin[1] + y, 4)),
-        bottom=piece.bottom,
-        yaw=piece.yaw + yaw,
-        children=piece.children,
-    )
+    middle = (round(origin[0] + x, 4), round(origin[1] + y, 4))
+    return msgspec.structs.replace(piece, middle=middle, yaw=piece.yaw + yaw)
+
+
+@lru_cache(maxsize=512)
+def swept_boxes(kind: str, size: Vec3) -> tuple[Box, ...]:
+    """For each door or drawer, the box around all its places, from the thing's middle on the plan and the floor up."""
+    row = catalog.kind(kind)
+    if not row.joints(size):
+        return ()
+    thing = Thing(id=kind, kind=kind, asset="", centre=(0.0, 0.0, size[2] / 2), size=size, yaw=0.0)
+    places: dict[str, list[Box]] = {}
+    for step in range(1, _STEPS + 1):
+        for part, box in boxes.boxes_of(thing, step / _STEPS):
+            if part.moves:
+                slab = boxes.bounding_slab(box)
+                rect = _rect(slab.centre, slab.size, slab.yaw)
+                places.setdefault(part.moves, []).append((*rect, slab.low, slab.high))
+    columns = [tuple(zip(*rows, strict=True)) for rows in places.values()]
+    return tuple((min(a), min(b), max(c), max(d), min(low), max(high)) for a, b, c, d, low, high in columns)
+
+
+def _rect(centre: Vec2, size: Sequence[float], yaw: float) -> Rect:
+    """The upright rectangle about one that is turned by ``yaw``."""
+    cos, sin = abs(math.cos(yaw)), abs(math.sin(yaw))
+    hx, hy = (cos * size[0] + sin * size[1]) / 2, (sin * size[0] + cos * size[1]) / 2
+    return (centre[0] - hx, centre[1] - hy, centre[0] + hx, centre[1] + hy)
+
+
+def swept_boxes_of_piece(piece: Piece) -> list[Box]:
+    """The same for a piece where it stands; its yaw must be whole quarter turns."""
+    cos, sin = round(math.cos(piece.yaw)), round(math.sin(piece.yaw))
+    placed = []
+    for x0, y0, x1, y1, z0, z1 in swept_boxes(piece.kind, piece.size):
+        xs = (cos * x0 - sin * y0, cos * x1 - sin * y1, cos * x0 - sin * y1, cos * x1 - sin * y0)
+        ys = (sin * x0 + cos * y0, sin * x1 + cos * y1, sin * x0 + cos * y1, sin * x1 + cos * y0)
+        x, y = piece.middle
+        placed.append((x + min(xs), y + min(ys), x + max(xs), y + max(ys), piece.bottom + z0, piece.bottom + z1))
+    return placed

@@ -12,7 +12,7 @@ from hthor.houses.generator.floorplan.doors import Door, inward
 from hthor.houses.generator.floorplan.layout import OUTSIDE, FloorPlan, Seam
 from hthor.houses.generator.floorplan.room_specs import BATHROOM, BEDROOM, KITCHEN, LIVING
 from hthor.houses.generator.furnishing.floor_space import GAP_M, RoomSpace
-from hthor.houses.generator.furnishing.item_styles import ItemStyler
+from hthor.houses.generator.furnishing.item_styles import SIZES, ItemStyler
 from hthor.houses.generator.furnishing.pieces import Piece, Rect
 from hthor.houses.space.solids import WALL_M
 from hthor.types import Vec2
@@ -21,6 +21,8 @@ _FACE_M = WALL_M / 2
 _END_M = 0.25
 _OVER_M = 1.48
 """Height of the lower edge of what hangs over a worktop."""
+_PICTURE_M = 1.58
+"""Height of a picture's middle."""
 _STEP_M = 0.1
 _COUNTS = {KITCHEN: (0.05, 0.5, 0.45), LIVING: (0.0, 0.3, 0.7), BEDROOM: (0.0, 0.5, 0.5), BATHROOM: (0.55, 0.45, 0.0)}
 """Shares of rooms with none, one and two windows."""
@@ -37,6 +39,12 @@ class Window(Struct, frozen=True):
     b: Vec2
     low: float
     high: float
+
+    @property
+    def pane(self) -> Rect:
+        """The floor under it, 0.1 m wider all round."""
+        (ax, ay), (bx, by) = self.a, self.b
+        return (min(ax, bx) - 0.1, min(ay, by) - 0.1, max(ax, bx) + 0.1, max(ay, by) + 0.1)
 
 
 class _Face(Struct, frozen=True):
@@ -91,12 +99,8 @@ class WallDecorator:
             top = piece.top + (_EXTRA_M.get(piece.kind, 0.0) if glass or piece.kind == "tv_stand" else 0.0)
             if _meet(rect, piece.rect) and piece.bottom < high and top > low:
                 return False
-        for window in self.windows:
-            a, b = window.a, window.b
-            pane = (min(a[0], b[0]) - 0.1, min(a[1], b[1]) - 0.1, max(a[0], b[0]) + 0.1, max(a[1], b[1]) + 0.1)
-            if _meet(rect, pane):
-                return False
-        return not any(_meet(rect, zone) for zone in self._space.doorways)
+        taken = (*(window.pane for window in self.windows), *self._space.doorways)
+        return not any(_meet(rect, other) for other in taken)
 
     # ------------------------------------------------------------------------------------------------------- windows
 
@@ -116,8 +120,8 @@ class WallDecorator:
                 ]
                 if spots:
                     face, seam, s = own.pick(spots, "spot", round(100 * wide))
-                    number_ = self._space.room.number
-                    self.windows.append(Window(number_, seam, face.point(s), face.point(s + wide), low, high))
+                    ends = face.point(s), face.point(s + wide)
+                    self.windows.append(Window(self._space.room.number, seam, *ends, low, high))
                     if kind != BATHROOM and own.chance(0.35, "curtains"):
                         self._drape(face, s, s + wide, high)
                     break
@@ -128,33 +132,16 @@ class WallDecorator:
             bottom = high + 0.1 - size[2] / 100
             spans = ((begin - 0.26, begin + 0.02), (end - 0.02, end + 0.26))
             rects = [face.rect(*span, _FACE_M + 0.005, 0.1) for span in spans]
-            others = self._space.pieces
-            fits = spans[0][0] > _FACE_M + 0.02 and spans[1][1] < face.length - _FACE_M - 0.02
-            fits = fits and not any(
-                _meet(rect, piece.rect)
-                and (piece.top > bottom - 0.01 or piece.sort.receptacle)
-                and piece.bottom < high + 0.1
-                for rect in rects
-                for piece in others
-            )
-            fits = fits and not any(_meet(rect, zone) for rect in rects for zone in self._space.doorways)
-            others_ = [w for w in self.windows[:-1] if w.seam == self.windows[-1].seam]
-            fits = fits and not any(
-                _meet(
-                    rect,
-                    (
-                        min(w.a[0], w.b[0]) - 0.1,
-                        min(w.a[1], w.b[1]) - 0.1,
-                        max(w.a[0], w.b[0]) + 0.1,
-                        max(w.a[1], w.b[1]) + 0.1,
-                    ),
-                )
-                for rect in rects
-                for w in others_
-            )
-            swept = [tuple(box[:4]) for box in self._space.swept if box[5] > bottom and box[4] < high]
-            fits = fits and not any(_meet(rect, (x0, y0, x1, y1)) for rect in rects for x0, y0, x1, y1 in swept)
-            if fits:
+            taken = [
+                *(window.pane for window in self.windows[:-1] if window.seam == self.windows[-1].seam),
+                *(box[:4] for box in self._space.swept if box[5] > bottom and box[4] < high),
+                *self._space.doorways,
+            ]
+            for piece in self._space.pieces:
+                if (piece.top > bottom - 0.01 or piece.sort.receptacle) and piece.bottom < high + 0.1:
+                    taken.append(piece.rect)
+            on_face = spans[0][0] > _FACE_M + 0.02 and spans[1][1] < face.length - _FACE_M - 0.02
+            if on_face and not any(_meet(rect, other) for rect in rects for other in taken):
                 self._space.hang([self._flat("curtain", face, sum(span) / 2, bottom, size) for span in spans])
                 return
 
@@ -203,10 +190,9 @@ class WallDecorator:
                 self._space.hang([self._flat("mirror", face, 0.0, 1.2, (60, 4, 80))])
 
     def _picture(self, dice: Dice, number: int) -> None:
-        size = dice.pick(((80, 4, 60), (60, 4, 80), (100, 4, 70), (45, 4, 45), (50, 4, 70), (120, 4, 60)), "size")
+        size = dice.pick(SIZES["painting"], "size")
         w, h = size[0] / 100, size[2] / 100
-        middle = 1.58
-        low, high = middle - h / 2, middle + h / 2
+        low, high = _PICTURE_M - h / 2, _PICTURE_M + h / 2
         spots, weights = [], []
         for face, _ in self._faces(outer=False):
             for s in np.arange(0.2 + w / 2, face.length - 0.2 - w / 2, _STEP_M).round(2).tolist():
@@ -215,8 +201,7 @@ class WallDecorator:
                     weights.append(12.0 if self._above(face, s) else 1.0)
         if spots:
             face, s = dice.weighted(spots, weights, "spot")
-            names = (self._space.room.number, number)
-            self._space.hang([self._flat("painting", face, s, low, size, *names)])
+            self._space.hang([self._flat("painting", face, s, low, size, self._space.room.number, number)])
 
     def _above(self, face: _Face, along: float) -> bool:
         """Whether a low thing stands at the wall right below, with its middle there."""
@@ -245,9 +230,7 @@ class WallDecorator:
     def _switch(self, dice: Dice) -> None:
         """A switch beside the doorway, where the leaf does not hide it."""
         number = self._space.room.number
-        for door in dice.order(self._doors, "door"):
-            if door.sort == "open":
-                continue
+        for door in [door for door in dice.order(self._doors, "door") if door.sort != "open"]:
             u = ((door.b[0] - door.a[0]) / door.width, (door.b[1] - door.a[1]) / door.width)
             face = _Face(door.a, u, inward(door, number), door.width)
             ends = (door.width + 0.16, -0.16) if door.sort == "leaf" else (-0.16, door.width + 0.16)
