@@ -77,9 +77,8 @@ def modules_sha256(names: Sequence[str], parts: Sequence[str] = (SIMULATION,)) -
 
 def _modules(sort: str, name: str) -> list[str]:
     """The module of a built-in plug-in; for a user's own, all built-in ones of its sort, which it may build on."""
-    return [
-        plugins.module_name(sort, one) for one in ([name] if plugins.is_built_in(sort, name) else plugins.names(sort))
-    ]
+    names = [name] if plugins.is_built_in(sort, name) else plugins.names(sort)
+    return [plugins.module_name(sort, one) for one in names]
 
 
 def compiled() -> Path:

@@ -11,11 +11,7 @@ PACKAGE = Path(__file__).resolve().parents[1]
 
 
 class Sources:
-    """The modules of a package by name, read when they are asked for.
-
-    Args:
-        root: the package's folder.
-    """
+    """The modules of the package in folder ``root`` by name, read when they are asked for."""
 
     def __init__(self, root: Path = PACKAGE) -> None:
         self._root = root

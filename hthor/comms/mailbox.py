@@ -21,10 +21,9 @@ _READ_FACTOR = 8
 
 
 class Mailbox:
-    """Keeps every message of a trial. It never raises: an invalid message or reply is refused, with a reason.
+    """Keeps every message of a trial that the seats of ``robots`` send.
 
-    Args:
-        robots: the seats that may send.
+    It never raises: an invalid message or reply is refused, with a reason.
     """
 
     def __init__(self, robots: Sequence[str]) -> None:

@@ -42,10 +42,7 @@ def house_from_document(document: Any, name: str) -> HouseSpec:
 
 
 def convert_house(house: HouseFile, name: str, sha256: str, file: str, assets: Assets) -> HouseSpec:
-    """A house from the valid content of a house file.
-
-    Args:
-        name: the house's id. sha256: of the file's document. file: what errors call it. assets: kinds and sizes.
+    """A house with the id ``name``, from the valid content of a house file, which errors call ``file``.
 
     Raises:
         HouseError: naming ``file`` and the field.

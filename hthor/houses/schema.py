@@ -138,11 +138,7 @@ class HouseFile(Struct, frozen=True):
 
 
 def read_house_file(path: Path, file: str) -> tuple[Any, HouseFile]:
-    """The file's JSON document, and the same as records.
-
-    Args:
-        path: where the file is.
-        file: its name as the user gave it, for errors.
+    """The file's JSON document, and the same as records; ``file`` is its name as the user gave it, for errors.
 
     Raises:
         HouseError: when the file cannot be read, is not JSON, holds a number that is not finite, is of another

@@ -95,7 +95,8 @@ def is_done(job: Job, state: ThingState | None, house: HouseSpec) -> bool:
     if not job.destinations:
         return job.place is not None
     if job.relation == "at":
-        return any(_indoors(state, room, house) for room in job.destinations)
+        rooms = [room for room in house.rooms if room.id in job.destinations]
+        return any(plane.inside(state.position[:2], room.polygon) for room in rooms)
     return state.support in job.destinations or kind_of(state.support, house) in job.destinations
 
 
@@ -181,7 +182,3 @@ def _way(house: HouseSpec, relation: str, destinations: tuple[str, ...], place: 
 
 def _within(reach: float, point: Vec2, polygons: Sequence[Sequence[Vec2]]) -> bool:
     return any(plane.inside(point, one) or plane.distance_to_edge(point, one) <= reach for one in polygons)
-
-
-def _indoors(state: ThingState, room: str, house: HouseSpec) -> bool:
-    return any(one.id == room and plane.inside(state.position[:2], one.polygon) for one in house.rooms)

@@ -115,7 +115,7 @@ def _objects(task: TaskSpec, house: HouseSpec) -> Iterator[tuple[str, str]]:
         if crowd := shelves.within(placement, _ALOFT_M):
             yield f"{where}.position", f"'{placement.id}' and '{crowd}' of the house are in one another"
         for other in task.objects[:number]:
-            if other.kind in catalog.names() and _crowded(placement, other):
+            if other.kind in catalog.names() and overlap_depth(footprint(placement), footprint(other)) > _ALOFT_M:
                 yield f"{where}.position", f"'{placement.id}' and '{other.id}' are in one another"
 
 
@@ -133,10 +133,6 @@ def _support(
         yield f"{where}.support", f"there is no thing '{placement.support}'; valid: {', '.join(sorted(things))}"
     elif not any(rests_on(placement, rest, _ALOFT_M) for rest in supports_of(things[placement.support])):
         yield f"{where}.position", f"'{placement.id}' rests on no surface of '{placement.support}'"
-
-
-def _crowded(one: Placement, two: Placement) -> bool:
-    return overlap_depth(footprint(one), footprint(two)) > _ALOFT_M
 
 
 def _goal(task: TaskSpec, house: HouseSpec) -> Iterator[tuple[str, str]]:

@@ -4,6 +4,7 @@ import math
 from collections.abc import Sequence
 from functools import partial
 
+from hthor.agents.skills.yielding import seat_bumped
 from hthor.geometry.plane import wrap
 from hthor.navigation.frontier import Frontier, Survey
 from hthor.navigation.grid_map import CELL_M, UNKNOWN, GridMap
@@ -50,7 +51,7 @@ class Explorer:
             self._integrated = pose
         outcome = observation.outcome
         if observation.idle and outcome is not None and not outcome.ok and outcome.motion == "move":
-            self._bumped(pose, outcome.by)
+            self._bumped(pose, seat_bumped(observation))
 
     def motion(self, observation: Observation) -> Motion:
         """The next motion of the exploration."""
@@ -117,10 +118,10 @@ class Explorer:
         self._tries.clear()
 
     def _bumped(self, pose: Pose, by: str) -> None:
-        """After a stop: block the cell in front, which no scan showed, or give up a place that a body stands before."""
+        """After a stop: block the cell in front, which no scan showed, or give up a place that ``by`` stands before."""
         assert self.grid is not None
         goal = self.follower.ahead
-        if _is_seat(by):
+        if by:
             if self._place is not None:
                 self._tries[_key(self._place)] = _TRIES
         elif goal is not None:
@@ -192,7 +193,3 @@ def _turning(pose: Pose, point: Vec2) -> float:
 
 def _key(place: Frontier) -> tuple[int, int]:
     return round(place.centre[0] / 0.2), round(place.centre[1] / 0.2)
-
-
-def _is_seat(name: str) -> bool:
-    return name == "human" or name.startswith("robot")

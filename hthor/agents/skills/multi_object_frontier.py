@@ -5,7 +5,7 @@ import math
 from hthor import rules
 from hthor.agents.skills.carrying import Carrier
 from hthor.agents.skills.explorer import Explorer, ObservedRoutes
-from hthor.agents.skills.knowledge import Knowledge, ObservedKnowledge
+from hthor.agents.skills.knowledge import ObservedKnowledge
 from hthor.agents.skills.manipulation import Manipulator
 from hthor.agents.skills.message_timing import (
     MessageTiming,
@@ -123,10 +123,8 @@ class MultiObjectFrontier:
 
     def _open(self, observation: Observation) -> Motion | None:
         """Open furniture while an object is still missing."""
-        return next(
-            (motion for thing in self.seen.shut() if (motion := self.manipulator.open(observation, thing)) is not None),
-            None,
-        )
+        motions = (self.manipulator.open(observation, thing) for thing in self.seen.shut())
+        return next((motion for motion in motions if motion is not None), None)
 
     def _missing(self) -> list[Job]:
         """The jobs whose objects have never been seen."""
@@ -145,9 +143,8 @@ class MultiObjectFrontier:
             if seen is None or seen.held_by or job is self.mine or self.seen.is_done(job):
                 continue
             if self._is_due(observation, job.target):
-                return self._note(
-                    observation, job.target, sighting_text(seen, _kinds(self.seen)), seen.id, seen.position
-                )
+                kinds = {thing.id: thing.kind for thing in self.seen.things.values()}
+                return self._note(observation, job.target, sighting_text(seen, kinds), seen.id, seen.position)
         return self._ask(observation)
 
     def _ask_for_help(self, observation: Observation, job: Job) -> Send | None:
@@ -179,10 +176,6 @@ class MultiObjectFrontier:
         self._timings[name].note(observation.tick)
         self._spoken = name
         return Send(text=text, object=about, position=position)
-
-
-def _kinds(seen: Knowledge) -> dict[str, str]:
-    return {thing.id: thing.kind for thing in seen.things.values()}
 
 
 def _kind(target: str) -> str:

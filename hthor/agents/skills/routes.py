@@ -12,7 +12,7 @@ from hthor.geometry import plane
 from hthor.houses.space.free_space import FreeSpace
 from hthor.houses.space.geodesic import house_geodesics
 from hthor.houses.space.grid_kernel import are_free_points
-from hthor.houses.space.visibility import LinesOfSight, with_all_open
+from hthor.houses.space.visibility import with_all_open
 from hthor.navigation.waiting_spots import park
 from hthor.types import BodySpec, HouseSpec, Room, Thing, Vec2, Vec3
 
@@ -22,10 +22,7 @@ _BESIDE_M = 0.2
 _BROAD_M = 0.38
 
 
-@functools.lru_cache(maxsize=8)
-def _sight(house: HouseSpec) -> LinesOfSight:
-    """Lines of sight through a house, computed once per process."""
-    return with_all_open(house)
+_sight = functools.lru_cache(maxsize=8)(with_all_open)
 
 
 class HouseRoutes:
@@ -133,8 +130,7 @@ class HouseRoutes:
     def to_view(self, here: Vec2, place: Vec3, but: Sequence[Vec2] = ()) -> tuple[Vec2, ...]:
         """The shortest path to a spot from which ``place`` is within range in the same room; () when there is none.
 
-        Args:
-            but: spots that failed; nothing within 0.4 m of them is proposed.
+        Nothing within 0.4 m of the spots ``but``, which failed, is proposed.
         """
         spots = self._spots(place, but)
         if not len(spots):

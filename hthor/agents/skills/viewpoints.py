@@ -77,7 +77,8 @@ def closest_thing(
     for thing in things:
         points = over(thing)
         spots = routes.standing(_lattice(tuple(points), reach, _GRID_M))
-        looked.append((_least(here, spots), thing.id, thing, points, spots))
+        least = min((math.dist(here, spot) for spot in spots), default=math.inf)
+        looked.append((least, thing.id, thing, points, spots))
     crow = routes.stands(here)  # or else the way begins elsewhere
     best, answer = (math.inf, ""), things[0]
     for least, id, thing, points, spots in sorted(looked, key=lambda one: one[:2]):
@@ -142,11 +143,6 @@ def keeps_clear(a: Vec2, b: Vec2, point: Vec2, radius: float) -> bool:
     along = ((point[0] - a[0]) * ex + (point[1] - a[1]) * ey) / max(ex * ex + ey * ey, 1e-12)
     share = max(0.0, min(1.0, along))
     return along <= 0.0 or math.dist((a[0] + share * ex, a[1] + share * ey), point) >= radius
-
-
-def _least(here: Vec2, spots: Sequence[Vec2]) -> float:
-    """Straight distance [m] to the nearest of the spots."""
-    return min((math.dist(here, spot) for spot in spots), default=math.inf)
 
 
 @functools.lru_cache(maxsize=256)

@@ -48,7 +48,7 @@ class Yielding:
         """A step out of the way, or None to carry on."""
         seconds = observation.tick * self.tick_s
         by = seat_bumped(observation)
-        if by and by != HUMAN and self._goes_first(by) and seconds >= self._rest:
+        if by and by != HUMAN and self._precedence(by) < self._precedence(self.seat) and seconds >= self._rest:
             self._until, self._rest = seconds + _YIELD_S, seconds + _YIELD_S + _REST_S
         if seconds >= self._until:
             return None
@@ -97,9 +97,6 @@ class Yielding:
             return None
         share = self._touching(seat) / length
         return (observation.pose.x + share * self._along[0], observation.pose.y + share * self._along[1])
-
-    def _goes_first(self, seat: str) -> bool:
-        return self._precedence(seat) < self._precedence(self.seat)
 
     def _precedence(self, seat: str) -> tuple[bool, tuple[int, str]]:
         body = self.bodies.get(seat)

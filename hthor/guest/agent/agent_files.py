@@ -32,10 +32,7 @@ _DEEPEST = 3
 def list_files(
     agent: AgentReference, inputs: AgentInputs, paths: AgentPaths, opened: Iterable[str]
 ) -> tuple[File, ...]:
-    """The files of an agent, with their hashes, sorted.
-
-    Args:
-        opened: names of files that it has reported as opened.
+    """The files of an agent, with their hashes, sorted; ``opened`` are those that it has reported as opened.
 
     Raises:
         AgentError: when a file cannot be read.
@@ -49,10 +46,7 @@ def list_files(
 
 
 def unlisted_files(names: Iterable[str], known: Manifest, paths: AgentPaths, agent: str = "") -> tuple[File, ...]:
-    """Files that an agent has opened and that are not in its manifest.
-
-    Args:
-        agent: the agent's own file.
+    """Files that an agent has opened and that are not in its manifest; ``agent`` is its own file.
 
     Raises:
         AgentError: when one of them cannot be read.

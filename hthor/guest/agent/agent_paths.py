@@ -56,9 +56,8 @@ class AgentPaths(Struct, frozen=True, kw_only=True):
 
 def find_agent_paths(agent: AgentReference, readable: tuple[str, ...] = ()) -> AgentPaths:
     """The folders of an agent; ``readable`` as in `AgentPaths`."""
-    root = agent.root
-    base = root
-    if agent.module and any(_below(root, folder) for folder in _libraries()):
+    base = root = agent.root
+    if agent.module and any(_below(root, os.path.realpath(folder)) for folder in paths.library_folders()):
         base = os.path.join(root, agent.module.partition(".")[0])
         base = base if os.path.isdir(base) else f"{base}.py"
     strangers = [*_strangers(), os.path.join(root, "runs")]
@@ -67,10 +66,6 @@ def find_agent_paths(agent: AgentReference, readable: tuple[str, ...] = ()) -> A
         named = [str(path) for path in reference.own_files(agent.words)] or [agent.words[0]]
         readable += tuple(path for path in named if not (root and _below(path, root)))
     return AgentPaths(root=root, base=base, apart=tuple(sorted(set(apart))), readable=tuple(dict.fromkeys(readable)))
-
-
-def _libraries() -> list[str]:
-    return [os.path.realpath(folder) for folder in paths.library_folders()]
 
 
 def _strangers() -> list[str]:

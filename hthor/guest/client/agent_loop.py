@@ -17,10 +17,9 @@ from hthor.types import Action, Message
 def run_trial(
     pipe: HostConnection, make: Callable[[], Any], order: wire.Begin, recorder: FileRecorder | None = None
 ) -> None:
-    """Run one trial. After a failure, which is reported, the host ends the process.
+    """Run one trial with the new agent that ``make`` returns; ``recorder`` records the files that it opens.
 
-    Args:
-        make: returns a new agent. recorder: records the files that it opens; None for no record.
+    After a failure, which is reported, the host ends the process.
     """
     try:
         agent = make()

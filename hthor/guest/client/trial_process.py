@@ -50,7 +50,7 @@ def run_trials(awaited: Callable[[], GuestEnds | None], order: wire.Load, held: 
         pipe.send(wire.Failed(kind="confinement", detail=problem))
         return
     if first:
-        pipe.send(_confined(held))
+        pipe.send(wire.Confined(landlock_abi=held.abi if held else 0, seccomp=held is not None, spaces=NAMESPACES))
     if order.words:
         try:
             exec_program(order.words, order.root, pipe.handles, pipe.shared, word)
@@ -94,10 +94,6 @@ def _taken(ends: GuestEnds) -> HostPipe:
     if ends.shared >= 0:
         os.environ[shared_frames.VARIABLE] = str(ends.shared)
     return HostPipe(ends.read, ends.write, ends.shared)
-
-
-def _confined(held: Ruleset | None) -> wire.Confined:
-    return wire.Confined(landlock_abi=held.abi if held else 0, seccomp=held is not None, spaces=NAMESPACES)
 
 
 def namespaces() -> dict[str, str]:

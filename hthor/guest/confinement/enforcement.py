@@ -6,6 +6,7 @@ Each layer is tested once it is on: a filter that lets something through must no
 import os
 import resource
 import socket
+from collections.abc import Iterable
 
 from hthor.guest.confinement import landlock, limits, paths, seccomp
 from hthor.guest.confinement.isolation import Policy
@@ -26,14 +27,7 @@ def make_ruleset(policy: Policy) -> Ruleset | None:
         return None
     if reason := seccomp.unavailable():
         raise Refused(reason)
-    return landlock.Ruleset(
-        policy.read,
-        listed=policy.listed,
-        write=[policy.scratch],
-        devices=paths.DEVICES,
-        driven=policy.devices,
-        execute=policy.execute,
-    )
+    return _ruleset(policy, policy.read, [policy.scratch])
 
 
 def confine_supervisor(policy: Policy) -> None:
@@ -46,14 +40,8 @@ def confine_supervisor(policy: Policy) -> None:
     """
     if policy.level == "L1":
         return
-    own = landlock.Ruleset(
-        (*policy.read, *_PROCESSES),
-        listed=policy.listed,
-        write=[os.path.dirname(policy.scratch), *([policy.compiled] if policy.compiled else [])],
-        devices=paths.DEVICES,
-        driven=policy.devices,
-        execute=policy.execute,
-    )
+    write = [os.path.dirname(policy.scratch), *([policy.compiled] if policy.compiled else [])]
+    own = _ruleset(policy, (*policy.read, *_PROCESSES), write)
     own.apply()
     own.close()
     seccomp.install_supervisor_filter(execute=policy.execute)
@@ -75,6 +63,11 @@ def confine_trial(policy: Policy, held: Ruleset | None, word: bytes = b"") -> No
     held.close()
     seccomp.install_filter(os.getpid(), word, driven=bool(policy.devices))
     _prove()
+
+
+def _ruleset(policy: Policy, read: Iterable[str], write: Iterable[str]) -> Ruleset:
+    devices = {"devices": paths.DEVICES, "driven": policy.devices}
+    return landlock.Ruleset(read, listed=policy.listed, write=write, execute=policy.execute, **devices)
 
 
 def _prove() -> None:

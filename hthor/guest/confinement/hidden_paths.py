@@ -30,8 +30,7 @@ _known: dict[tuple[str, str], tuple[float, tuple[Path, ...]]] = {}
 def hidden_below(root: Path, agent: str = "") -> tuple[Path, ...]:
     """Files and folders below ``root`` that no agent may read.
 
-    Args:
-        agent: the agent's own file. In the folders that contain it, only hthor's files are hidden.
+    In the folders that contain the file ``agent``, its own, only hthor's files are hidden.
     """
     key, now = (str(root), agent), time.monotonic()
     if key not in _known or now - _known[key][0] > _FRESH_S:

@@ -64,16 +64,15 @@ class Ruleset:
         size = 24 if self.abi >= 6 else 16 if self.abi >= 4 else 8
         attributes = ctypes.create_string_buffer(struct.pack("<QQQ", *words)[:size], size)
         self._handle = kernel.syscall("making Landlock rules", _CREATE, attributes, size, 0)
-        for path in read:
-            self._allow(path, _READ_FILE | _READ_DIR | (_EXECUTE if execute else 0))
-        for path in listed:
-            self._allow(path, _READ_DIR)
-        for path in write:
-            self._allow(path, self._handled & ~_EXECUTE & ~_DEVICES_AND_SOCKETS)
-        for path in devices:
-            self._allow(path, _READ_FILE | _WRITE_FILE)
-        for path in driven:
-            self._allow(path, _READ_FILE | _WRITE_FILE | _READ_DIR | _IOCTL)
+        for paths, rights in (
+            (read, _READ_FILE | _READ_DIR | (_EXECUTE if execute else 0)),
+            (listed, _READ_DIR),
+            (write, self._handled & ~_EXECUTE & ~_DEVICES_AND_SOCKETS),
+            (devices, _READ_FILE | _WRITE_FILE),
+            (driven, _READ_FILE | _WRITE_FILE | _READ_DIR | _IOCTL),
+        ):
+            for path in paths:
+                self._allow(path, rights)
 
     def apply(self) -> None:
         """Apply the rules to this process, which must have a single thread, for good."""

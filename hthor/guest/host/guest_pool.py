@@ -25,13 +25,9 @@ class IdleGuest(Struct, frozen=True, kw_only=True):
 
 
 class GuestPool:
-    """Idle guests of one owner; they end with the pool.
+    """Idle guests of one owner, ``most`` at most; they end with the pool.
 
-    Args:
-        most: how many processes are kept; 0 to keep none.
-
-    Attributes:
-        unavailable: levels of isolation that did not start, with the reason; they are not tried again.
+    ``unavailable`` holds levels of isolation that did not start, with the reason; they are not tried again.
     """
 
     def __init__(self, most: int = _MOST) -> None:

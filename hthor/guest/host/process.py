@@ -38,8 +38,7 @@ _HOME = "home"
 class GuestProcess:
     """A running guest: a socket to its supervisor, a pipe for what that prints, and the pipes of the current trial.
 
-    Args:
-        folder: made for it and removed at its end; empty for none.
+    Its ``folder``, empty for none, was made for it and is removed at its end.
     """
 
     def __init__(self, policy: Policy, folder: str) -> None:

@@ -13,10 +13,7 @@ from hthor.types import BodySpec, Briefing
 
 
 def take_manifest(guest: Guest, name: str) -> Manifest:
-    """The manifest of an agent; its guest is started, and of no further use.
-
-    Args:
-        name: what results call it.
+    """The manifest of an agent that results call ``name``; its guest is started, and of no further use.
 
     Raises:
         AgentError: when it cannot be loaded, or a file cannot be read.

@@ -127,7 +127,15 @@ class GuestStartup:
             reason = unavailable.get(rung) or (namespaces.unavailable() if rung == "L3" else "")
             if not reason:
                 try:
-                    started = self._launch(rung)
+                    started = process.start_process(
+                        self._agent,
+                        rung,
+                        hidden=self._config.hidden,
+                        memory_mb=self._memory_mb,
+                        disk_mb=self._disk_mb,
+                        gpus=self._gpus > 0.0,
+                        readable=self._paths.readable,
+                    )
                 except OSError as error:  # such as too many files beside this agent to name one by one
                     place = f": {error.filename}" if error.filename else ""
                     reason = f"its process could not be started: {error.strerror}{place}"
@@ -151,17 +159,6 @@ class GuestStartup:
             pidns=bool(here) and confined.spaces["pid"] != here["pid"],
             memory=f"{self._memory_mb} MB, by limit and watch",
             reason_not_higher=not_higher,
-        )
-
-    def _launch(self, level: str) -> GuestProcess:
-        return process.start_process(
-            self._agent,
-            level,
-            hidden=self._config.hidden,
-            memory_mb=self._memory_mb,
-            disk_mb=self._disk_mb,
-            gpus=self._gpus > 0.0,
-            readable=self._paths.readable,
         )
 
     def _enter(self, started: GuestProcess) -> wire.Confined | str:

@@ -30,7 +30,7 @@ def pin_thread() -> int:
         return -1
     if not _here.guests:
         try:
-            cpu = _current()
+            cpu = int(ctypes.CDLL(None).sched_getcpu())
             _here.before = frozenset(os.sched_getaffinity(0))
             os.sched_setaffinity(0, {cpu})
         except (OSError, AttributeError):
@@ -100,7 +100,3 @@ def _move(thread: int, cpus: frozenset[int] | set[int]) -> bool:
     except OSError:  # it has ended, or the CPU has been taken away
         return False
     return True
-
-
-def _current() -> int:
-    return int(ctypes.CDLL(None).sched_getcpu())

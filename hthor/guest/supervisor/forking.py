@@ -17,11 +17,9 @@ _LOOK_MS = 50
 
 
 def fork_trial(ends: GuestEnds, tell: int, order: wire.Load, held: Ruleset | None, *, first: bool = False) -> int:
-    """Fork a process that runs one trial; its process id.
+    """Fork a process that runs one trial, as `trial_process.run_trials`; its process id.
 
-    Args:
-        ends: the trial's pipes. tell: the supervisor's own socket, which no child may have.
-        held: rules for files. first: as in `trial_process.run_trials`.
+    ``tell`` is the supervisor's own socket, which no child may have.
     """
     return _forked(lambda: ends, (tell,), order, held, first=first)
 
@@ -29,10 +27,8 @@ def fork_trial(ends: GuestEnds, tell: int, order: wire.Load, held: Ruleset | Non
 class SpareProcess:
     """A child that is confined already, and waits for its trial; it saves the time to fork and confine one.
 
-    It has seen nothing of the agent, so that nothing of one trial can reach the next through it.
-
-    Args:
-        playing: the pipes of the trial that runs meanwhile, which it must not have.
+    It has seen nothing of the agent, so that nothing of one trial can reach the next through it; nor does it have the
+    pipes of the trial that is ``playing`` meanwhile.
     """
 
     def __init__(self, playing: GuestEnds, tell: int, order: wire.Load, held: Ruleset | None) -> None:
@@ -87,8 +83,7 @@ def _forked(
 def watch_trial(pid: int, order: wire.Load, tell: int) -> wire.SupervisorToHost:
     """Wait for a trial's process to end, or end it when it exceeds a limit; the message to the host.
 
-    Args:
-        tell: the socket to the host, which may say on which CPU it waits.
+    Meanwhile the host may say by the socket ``tell`` on which CPU it waits.
     """
     policy = order.policy
     found = _excess(pid, policy, tell) if hasattr(os, "pidfd_open") else None

@@ -24,8 +24,7 @@ _OURS = ("hthor.types", "hthor.navigation", "hthor.agents", "hthor.geometry", "h
 def preload(path: Path, module: str = "") -> None:
     """Import what the file is going to import, and freeze it so that forks share its memory.
 
-    Args:
-        module: the agent's module, where it is imported by name; nothing of its own package is imported here.
+    Where the agent is imported by name, as ``module``, nothing of its own package is imported here.
     """
     own = module.partition(".")[0]
     wanted = [one for one in _named(path) if one[0].partition(".")[0] != own or own == "hthor"]

@@ -82,8 +82,7 @@ def main(tell: int, parent: int) -> None:
 class ScratchFolder:
     """The folder that an agent may write to, which every trial finds as the first one did.
 
-    Args:
-        folder: its path, in a folder that this process may change.
+    It lies in a folder that this process may change.
     """
 
     def __init__(self, folder: str) -> None:

@@ -69,14 +69,10 @@ def check(house: HouseSpec, radius: float, height: float = 1.8, *, strict: bool 
         findings += house_rules.check_supported(house)
         findings += house_rules.check_swings(house)
         findings += _objects(house, space, reached)
-        findings = [_promoted(finding) for finding in findings]
+        findings = [msgspec.structs.replace(one, severity="error") if one.rule in STRICT else one for one in findings]
     else:
         findings += house_rules.check_overlaps(house)
     return tuple(sorted(findings, key=lambda finding: finding.severity != "error"))
-
-
-def _promoted(finding: Finding) -> Finding:
-    return msgspec.structs.replace(finding, severity="error") if finding.rule in STRICT else finding
 
 
 def _rooms(house: HouseSpec, space: FreeSpace, reached: Bools) -> Iterator[Finding]:
@@ -102,15 +98,12 @@ def _receptacles(house: HouseSpec, space: FreeSpace, reached: Bools) -> Iterator
     for thing in house.things:
         if thing.kind in catalog.RECEPTACLES:
             places = floors.get(thing.room, anywhere)
-            near = places[np.hypot(places[:, 0] - thing.centre[0], places[:, 1] - thing.centre[1]) < _radius(thing)]
+            reach = math.hypot(*thing.size[:2]) / 2 + STAND_M
+            near = places[np.hypot(places[:, 0] - thing.centre[0], places[:, 1] - thing.centre[1]) < reach]
             gaps = (distance_to_rectangle((x, y), thing.centre[:2], thing.size[:2], thing.yaw) for x, y in near)
             if not any(gap <= STAND_M for gap in gaps):
                 problem = f"nowhere to stand within {STAND_M} m of the {readable_kind(thing.kind)}"
                 yield warning("receptacle-reachable", thing.id, problem)
-
-
-def _radius(thing: Thing) -> float:
-    return math.hypot(thing.size[0], thing.size[1]) / 2 + STAND_M
 
 
 def _present(house: HouseSpec) -> Iterator[Finding]:
@@ -137,15 +130,9 @@ def _objects(house: HouseSpec, space: FreeSpace, reached: Bools) -> Iterator[Fin
         order = np.argsort(gaps, kind="stable")
         near = places[order[: int(np.searchsorted(gaps[order], reach, side="right"))]]
         if not sight.visible(thing, at, np.column_stack((near, np.full(len(near), EYE_M)))):
-            where = (
-                f"no floor within {reach:.2f} m"
-                if not len(near)
-                else f"none of {len(near)} places within {reach:.2f} m"
-            )
-            problem = (
-                f"the {readable_kind(thing.kind)} on or in '{thing.parent or 'the floor'}' is hidden: {where} shows it"
-            )
-            yield warning("object-visible", thing.id, problem)
+            where = f"{f'none of {len(near)} places' if len(near) else 'no floor'} within {reach:.2f} m"
+            what = f"the {readable_kind(thing.kind)} on or in '{thing.parent or 'the floor'}'"
+            yield warning("object-visible", thing.id, f"{what} is hidden: {where} shows it")
 
 
 def _opened(thing: Thing, support: Thing | None) -> Vec3:

@@ -83,15 +83,12 @@ def build_document(spec: RoomSpec, wants: Requirements, dice: Dice, record: dict
     if hidden:
         pieces = document.without(pieces, hidden)
         shell["objects"] = document.objects(pieces)
-        if gone := next(iter(sorted(wants.must - _kinds(pieces))), ""):
+        kinds = {each.kind for piece in pieces for each in (piece, *piece.children)}
+        if gone := next(iter(sorted(wants.must - kinds)), ""):
             raise AttemptFailed("object-visible", f"the only {gone.replace('_', ' ')} cannot be seen from the floor")
         if _judged(shell, spec, dice, record):
             raise AttemptFailed("object-visible", "things came to be hidden when others were taken away")
     return shell
-
-
-def _kinds(pieces: list[Piece]) -> set[str]:
-    return {each.kind for piece in pieces for each in (piece, *piece.children)}
 
 
 def _judged(shell: dict[str, Any], spec: RoomSpec, dice: Dice, record: dict[str, Any]) -> set[str]:

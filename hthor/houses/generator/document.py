@@ -54,7 +54,8 @@ class Walls:
         self._ends: dict[tuple[Vec2, Vec2], tuple[Vec2, Vec2]] = {}
         for seam in plan.seams:
             door = next((door for door in doors if door.seam == seam), None)
-            a, b = (seam.a, seam.b) if door is None or _runs(seam, door) else (seam.b, seam.a)
+            along = door is None or math.dist(seam.a, door.a) <= math.dist(seam.a, door.b)
+            a, b = (seam.a, seam.b) if along else (seam.b, seam.a)
             self._ends[seam.a, seam.b] = (a, b)
             cuts = [a, b] if door is None or door.sort != "open" else [a, door.a, door.b, b]
             for k, (p, q) in enumerate(itertools.pairwise(cuts)):
@@ -89,10 +90,6 @@ class Walls:
             "holePolygon": [{"x": _round(near), "y": low, "z": 0}, {"x": _round(far), "y": high, "z": 0}],
             "assetPosition": {"x": _round((near + far) / 2), "y": _round((low + high) / 2), "z": 0},
         }
-
-
-def _runs(seam: Seam, door: Door) -> bool:
-    return math.dist(seam.a, door.a) <= math.dist(seam.a, door.b)
 
 
 def doors(found: Sequence[Door], walls: Walls, style: int) -> list[dict[str, Any]]:

@@ -111,15 +111,12 @@ def _solids(house: HouseSpec) -> Iterator[Fault]:
                 yield "thing-in-wall", thing.id, f"the {thing.kind} reaches into a wall or an open door"
                 break
         for other, rival in boxes[k + 1 :]:
-            if _within(thing, rival, math.hypot(*box.size) / 2) and _deep(box, rival) > DEEP_M:
-                deep = max((_deep(a, b) for a in part_slabs(thing) for b in part_slabs(other)), default=0.0)
+            if _within(thing, rival, math.hypot(*box.size) / 2) and solids.penetration(box, rival) > DEEP_M:
+                deep = max(
+                    (solids.penetration(a, b) for a in part_slabs(thing) for b in part_slabs(other)), default=0.0
+                )
                 if deep > DEEP_M:
                     yield "thing-in-thing", thing.id, f"stands {deep:.3f} m inside {other.id}"
-
-
-def _deep(one: Slab, two: Slab) -> float:
-    """How deep two boxes are in one another, upwards too."""
-    return min(solids.overlap_depth(one, two), min(one.high, two.high) - max(one.low, two.low))
 
 
 def _surfaces(house: HouseSpec) -> Iterator[Fault]:

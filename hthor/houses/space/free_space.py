@@ -41,11 +41,8 @@ class FreeSpace:
     body ``height`` tall, and stays inside the rooms. A place is free when its cell is; a cell's edge belongs to both
     sides. Where two blocked cells meet only at a corner, nothing passes between them.
 
-    Args:
-        house: the floor plan.
-        radius, height: of the body [m].
-
     Attributes:
+        radius, height: of the body [m].
         free: (ny, nx) bool; ``free[j, i]`` is the cell with its lower left corner at ``origin + (i, j) * cell``.
         raw: (ny, nx) bool, true where a range scan's beam passes: no obstacle within half a cell of the centre.
         origin: [m] house frame. cell: side of a cell [m].

@@ -116,6 +116,11 @@ def overlap_depth(one: Slab, two: Slab) -> float:
     return max(depth, 0.0)
 
 
+def penetration(one: Slab, two: Slab) -> float:
+    """How deep [m] two boxes are in one another, by the least shift that parts them, sideways or upward."""
+    return min(overlap_depth(one, two), min(one.high, two.high) - max(one.low, two.low))
+
+
 def _spread(slab: Slab, ux: float, uy: float) -> float:
     """Half the extent of a footprint along a unit direction."""
     cos, sin = math.cos(slab.yaw), math.sin(slab.yaw)

@@ -72,8 +72,7 @@ def find_floor_spot(
 ) -> Placement | None:
     """A place on a room's floor with ``clear`` [m] free all round the object's middle, or None.
 
-    Args:
-        near: a thing to stand next to: only the places nearest to it are used.
+    With ``near`` only the places nearest to that thing are used.
     """
     cells = _room_floor(house, room, clear)
     if not len(cells):

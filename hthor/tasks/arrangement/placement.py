@@ -12,7 +12,7 @@ from msgspec import Struct
 from hthor import catalog
 from hthor.geometry.plane import distance_to_rectangle, inside, rectangle, to_house, to_local
 from hthor.houses.laying import part_slabs
-from hthor.houses.space.solids import Slab, overlap_depth
+from hthor.houses.space.solids import Slab, overlap_depth, penetration
 from hthor.types import HouseSpec, Placement, Surface, Thing, Vec2, Vec3
 
 EDGE_M = 0.01
@@ -80,7 +80,7 @@ class SupportSurfaces:
     def within(self, placement: Placement, deep: float) -> str:
         """Id of a thing of the house that the object is more than ``deep`` [m] in, empty for none."""
         body = footprint(placement)
-        rivals = (number for number in self._about(body) if _depth(body, self._solids[number]) > deep)
+        rivals = (number for number in self._about(body) if penetration(body, self._solids[number]) > deep)
         return next((self._owners[number] for number in rivals), "")
 
     def _clear(self, placement: Placement, others: Iterable[Placement]) -> bool:
@@ -160,8 +160,3 @@ def footprint(placement: Placement, gap: float = 0.0) -> Slab:
 def distance_to_thing(point: Vec2, thing: Thing) -> float:
     """Distance [m] on the plan from a point to a thing's edge, zero within."""
     return distance_to_rectangle(point, (thing.centre[0], thing.centre[1]), (thing.size[0], thing.size[1]), thing.yaw)
-
-
-def _depth(one: Slab, two: Slab) -> float:
-    """How deep [m] two boxes are in one another, by the least shift that parts them, sideways or upward."""
-    return min(overlap_depth(one, two), min(one.high, two.high) - max(one.low, two.low))

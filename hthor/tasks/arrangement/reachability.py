@@ -160,8 +160,7 @@ def entry_cells(mask: Bools, free: Bools) -> Bools:
 def lines_of_sight(house: HouseSpec, opened: frozenset[str]) -> visibility.LinesOfSight:
     """Lines of sight past every opaque part of the house's walls and things, worked out once a process.
 
-    Args:
-        opened: ids of things whose doors are left out, as if they were open.
+    The doors of things whose ids are ``opened`` are left out, as if they were open.
     """
     parts = [
         box

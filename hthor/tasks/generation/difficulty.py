@@ -12,7 +12,7 @@ from hthor import catalog, plugins
 from hthor.catalog import priors
 from hthor.tasks.arrangement.reachability import ReachableFloor
 from hthor.tasks.kind import TaskKind
-from hthor.types import HouseSpec, Placement, TaskSpec, Thing
+from hthor.types import HouseSpec, Placement, TaskSpec
 
 Level = Literal["easy", "medium", "hard"]
 
@@ -106,8 +106,4 @@ def _beside(house: HouseSpec) -> NDArray[np.float64]:
     """(N, 2) [m] for each thing the place nearest to its middle where somebody can stand."""
     space = ReachableFloor.of(house).space
     floor = space.component(*space.nearest_free(house.start.x, house.start.y))
-    return np.array([_nearest(house, thing, floor) for thing in house.things]).reshape(-1, 2)
-
-
-def _nearest(house: HouseSpec, thing: Thing, floor: NDArray[np.bool_]) -> tuple[float, float]:
-    return ReachableFloor.of(house).space.nearest_free(thing.centre[0], thing.centre[1], floor)
+    return np.array([space.nearest_free(*thing.centre[:2], floor) for thing in house.things]).reshape(-1, 2)

@@ -128,7 +128,7 @@ def each_template(spec: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
     kind: TaskKind = plugins.load("task kind", MOVE)
     kinds = scene_graph.kinds_present(house)
     return [
-        _exact(spec, house, kind.name, goal, row, _delivery(goal, row))
+        _exact(spec, house, kind.name, goal, row, f"{goal.target}-to-{goal.destination}/{row.relation}-{row.reference}")
         for goal in kind.goals(house)
         for row in scene_graph.applicable_triplets(goal.target, kinds)
         if (row.relation, row.reference) != (goal.relation, goal.destination)
@@ -138,10 +138,6 @@ def each_template(spec: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
 def _exact(spec: SuiteSpec, house: HouseSpec, kind: str, goal: Goal, row: Triplet, words: str) -> TaskOrder:
     name = f"{spec.name}/{house.id}/{words}"
     return TaskOrder(name=name, kind=kind, share=seeds.draw(spec.root, name, "share"), goal=goal, fixed=row)
-
-
-def _delivery(goal: Goal, row: Triplet) -> str:
-    return f"{goal.target}-to-{goal.destination}/{row.relation}-{row.reference}"
 
 
 def _goals(kind: TaskKind, house: HouseSpec, count: int, root: int) -> list[Goal]:

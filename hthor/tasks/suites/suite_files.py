@@ -67,8 +67,7 @@ def make_files(
 ) -> dict[str, bytes]:
     """The files of a suite by their path in its folder: the suite, its houses, and what it needs of an asset database.
 
-    Args:
-        name, version: of the suite. columns: the tasks of each of the houses ``found``.
+    ``columns`` are the tasks of each of the houses ``found``.
     """
     suite = make_suite(name, version, tuple(in_turn(columns)))
     own = {f"houses/{one.file.stem}.json": one.file for one in found if one.file is not None}
@@ -80,8 +79,7 @@ def make_files(
 def write_files(out: Path, made: Mapping[str, bytes]) -> Path:
     """Write a suite's files, the houses first; gives the path of the suite.
 
-    Args:
-        out: ``mine.json``, with its houses in ``mine.houses``; or a folder, with the suite in ``suite.json``.
+    ``out`` is ``mine.json``, with its houses in ``mine.houses``; or a folder, with the suite in ``suite.json``.
     """
     single = out.suffix == ".json"
     for path, data in sorted(made.items(), key=lambda item: item[0] == SUITE):

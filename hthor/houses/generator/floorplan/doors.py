@@ -79,7 +79,7 @@ def _join(tree: RoomGroup, first: int, plan: FloorPlan, dice: Dice, found: list[
             for old in joined
             for one in rooms[old]
             for two in rooms[new]
-            if not baths[old] and _doorway(plan, one, two)
+            if not baths[old] and _doorways(plan, one, two)
         ]
         if any(not baths[new] for _, _, new in options):
             options = [option for option in options if not baths[option[2]]]
@@ -100,8 +100,9 @@ def _members(part: RoomLeaf | RoomGroup, start: int) -> list[int]:
     return [start + k for k, leaf in enumerate(iter_leaves(part)) if leaf.room != BATHROOM]
 
 
-def _doorway(plan: FloorPlan, one: int, two: int) -> bool:
-    return any(seam.length >= _WIDTH_M + 2 * _JAMB_M for seam in plan.between(one, two))
+def _doorways(plan: FloorPlan, one: int, two: int) -> list[Seam]:
+    """The seams of two rooms that are long enough for a door."""
+    return [seam for seam in plan.between(one, two) if seam.length >= _WIDTH_M + 2 * _JAMB_M]
 
 
 def _wish(plan: FloorPlan, one: int, two: int) -> float:
@@ -127,7 +128,7 @@ def place(pairs: list[tuple[int, int]], plan: FloorPlan, dice: Dice) -> list[Doo
 
 
 def _inner(one: int, two: int, plan: FloorPlan, dice: Dice, others: list[Door]) -> Door | None:
-    seams = [seam for seam in plan.between(one, two) if seam.length >= _WIDTH_M + 2 * _JAMB_M]
+    seams = _doorways(plan, one, two)
     seam = dice.weighted(seams, [seam.length for seam in seams], "seam")
     kinds = {plan.room(one).kind, plan.room(two).kind}
     if kinds == {KITCHEN, LIVING} and dice.chance(_OPEN, "open"):
