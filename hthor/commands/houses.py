@@ -16,7 +16,7 @@ from hthor.console.formats import Format, Shape
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from hthor.houses.checks.findings import Finding
+    from hthor.houses.checks.house_rules import Finding
     from hthor.types import HouseSpec
     from hthor.world.validation.house_soundness import ValidHome
 

@@ -50,7 +50,7 @@ def movable_objects(house: HouseSpec) -> tuple[Thing, ...]:
         if thing.id not in small or not thing.parent:
             continue
         laid = _on_surface(thing, supports.get(thing.parent))
-        if laid is None or not _fits(laid, house.height, crowd):
+        if laid is None or _body(laid).high > house.height + SUNK_M or crowd.holds(_body(laid)):
             crowd.add(part_slabs(thing))
             continue
         crowd.add([_body(laid)])
@@ -92,11 +92,6 @@ def _heights(support: Thing, point: Vec3) -> list[float]:
         for surface in catalog.kind(support.kind).surfaces(support.size)
         if all(abs(local[axis] - surface.centre[axis]) <= surface.half[axis] for axis in (0, 1))
     ]
-
-
-def _fits(thing: Thing, ceiling: float, crowd: _Crowd) -> bool:
-    body = _body(thing)
-    return body.high <= ceiling + SUNK_M and not crowd.holds(body)
 
 
 def _body(thing: Thing) -> Slab:

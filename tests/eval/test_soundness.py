@@ -12,8 +12,8 @@ from two_rooms import SIDE, TABLE, house, on, thing
 
 from hthor import catalog
 from hthor.errors import HthorError
-from hthor.houses.checks.findings import error, is_sound
 from hthor.houses.checks.house_checks import check
+from hthor.houses.checks.house_rules import error, is_sound
 from hthor.world.validation import house_soundness, physics_checks
 from hthor.world.validation.house_soundness import check_soundness
 from hthor.world.validation.physics_checks import PENETRATION_MAX_M, drop_findings, penetration_findings

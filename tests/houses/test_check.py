@@ -13,8 +13,8 @@ from two_rooms import SIDE, TABLE, house, on, thing
 
 from hthor import catalog, houses
 from hthor.houses.checks import house_rules
-from hthor.houses.checks.findings import Finding, is_sound
 from hthor.houses.checks.house_checks import STRICT, check
+from hthor.houses.checks.house_rules import Finding, is_sound
 from hthor.houses.space import boxes, solids
 from hthor.types import HouseSpec, Vec2
 

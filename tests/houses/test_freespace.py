@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from hthor import houses
 from hthor.errors import HthorError
 from hthor.geometry.plane import distance_to_rectangle, signed_area
-from hthor.houses.checks.findings import is_sound
 from hthor.houses.checks.house_checks import check
+from hthor.houses.checks.house_rules import is_sound
 from hthor.houses.space import solids
 from hthor.houses.space.free_space import FreeSpace, obstacle_rectangles
 from hthor.houses.space.geodesic import Geodesics

@@ -18,8 +18,8 @@ from hthor import catalog, houses, jsonio
 from hthor.errors import HthorError, UnknownName
 from hthor.geometry.plane import signed_area
 from hthor.houses import generator, loader
-from hthor.houses.checks.findings import is_sound
 from hthor.houses.checks.house_checks import check
+from hthor.houses.checks.house_rules import is_sound
 from hthor.houses.generator import document, shipped, validity
 from hthor.houses.generator.attempt import AttemptFailed
 from hthor.houses.generator.draws import Dice

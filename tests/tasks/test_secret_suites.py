@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 from hthor import catalog, cli, houses, jsonio, tasks
 from hthor.errors import HthorError, TaskError, UnknownName
-from hthor.houses.checks.findings import error
+from hthor.houses.checks.house_rules import error
 from hthor.tasks.generation import secret_suites, standard
 from hthor.tasks.generation.secret_suites import Proof, SuiteOrder
 from hthor.tasks.suite import encode_suite, make_suite

@@ -81,8 +81,6 @@ class Carrier:
             if seen.id == job.target:
                 self._yaw, self._half = seen.yaw, seen.size[0] / 2
 
-    # --------------------------------------------------------------------------------------------------- taking hold
-
     def _approach(self, observation: Observation, state: ThingState, job: Job) -> Motion:
         """Go to a handle and take it, if possible from the outer side of the thing.
 
@@ -142,8 +140,6 @@ class Carrier:
         """Wait for another to take the other end, facing it."""
         turn = face(observation.pose, state.position, self.body.eye, self.body.pitch_limit)
         return turn if turn is not None and abs(turn.yaw) > 0.2 else Wait(seconds=0.5)
-
-    # -------------------------------------------------------------------------------------------------- on the way
 
     def _led_by(self, state: ThingState) -> str:
         """Who leads: the robot whose seat comes first, or else the person."""

@@ -82,8 +82,6 @@ class Manipulator:
         self._goal_name = ""
         self.follower.take(None)
 
-    # ---------------------------------------------------------------------------------------------- what is to be done
-
     def _fetching(self, knowledge: Knowledge, job: Job) -> ManipulationGoal | None:
         state = knowledge.states.get(job.target)
         if state is None or state.held_by:
@@ -132,8 +130,6 @@ class Manipulator:
         there = [(one.position, _wide(one.kind) + wide) for one in states.values() if one.support == thing.id]
         free = [point for point in points if all(math.dist(point[:2], at[:2]) > apart for at, apart in there)]
         return tuple(free) or points
-
-    # ------------------------------------------------------------------------------------------------------- doing it
 
     def pursue(self, observation: Observation, goal: ManipulationGoal) -> Motion | None:
         """Go, face, act; from another spot when that was refused."""

@@ -76,8 +76,6 @@ class Messenger:
         """When to speak about the job's "target", "destination", "help" or "done"."""
         return self._timings.setdefault((job.target, topic), MessageTiming(self.briefing, most=_MOST[topic]))
 
-    # ------------------------------------------------------------------------------------------------ what to tell of
-
     def hear(self, observation: Observation) -> None:
         """Keep the answer to the last message."""
         if self.several and observation.receipt is not None:
@@ -120,8 +118,6 @@ class Messenger:
         here = (target.position[0], target.position[1])
         thing = min(things, key=lambda thing: (self.routes.near(here, thing.centre), thing.id))
         return thing, thing.centre if job.place is None else job.place
-
-    # ------------------------------------------------------------------------------------------------------- speaking
 
     def say(self, observation: Observation, job: Job) -> Send | None:
         """A message about the current job, when one is due and the thing in question is near."""
@@ -198,8 +194,6 @@ class Messenger:
             here, (thing.centre[0], thing.centre[1]), (thing.size[0], thing.size[1]), thing.yaw
         )
         return apart <= rules.DETECTOR_RANGE_M and self.routes.same_room(here, thing.centre)
-
-    # --------------------------------------------------------------------------------------------------------- walking
 
     def motion(self, observation: Observation, job: Job) -> Motion:
         """Walk to where the place is in range, face it, then stand aside; try another spot if it is not seen."""

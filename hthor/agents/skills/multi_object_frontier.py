@@ -84,8 +84,6 @@ class MultiObjectFrontier:
         self.explorer.drop()
         return motion
 
-    # ------------------------------------------------------------------------------------------------------- carrying
-
     def _own(self, observation: Observation) -> Job | None:
         """The job it does itself now: that of the object it holds, or the first with a known object and destination."""
         holding = next((job for job in self.jobs if job.target == observation.holding), None)
@@ -129,8 +127,6 @@ class MultiObjectFrontier:
     def _missing(self) -> list[Job]:
         """The jobs whose objects have never been seen."""
         return [job for job in self.jobs if job.target not in self.seen.states]
-
-    # -------------------------------------------------------------------------------------------------------- telling
 
     def _say(self, observation: Observation) -> Send | None:
         """A message about an object in view that it does not carry itself, or about a door that it cannot open."""

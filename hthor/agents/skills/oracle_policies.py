@@ -23,7 +23,7 @@ _PATIENCE_S = 25.0
 
 
 class SingleTaskOracle:
-    """One robot's policy for one trial.
+    """One robot's policy for one trial; what differs with several jobs or robots is overridden by `TeamOracle`.
 
     Attributes:
         mine: the job that this robot does itself now. done: the one it has just finished.
@@ -64,8 +64,6 @@ class SingleTaskOracle:
         self.yielding.note(observation, motion)
         return Action(motion=motion, say=say)
 
-    # ---------------------------------------------------------------------------- what differs with several jobs
-
     def _update(self, observation: Observation) -> None:
         """Take in what is new, besides where everything is."""
 
@@ -94,8 +92,6 @@ class SingleTaskOracle:
     def _motion_without_job(self, observation: Observation, topic: Job | None) -> Motion:
         assert topic is not None
         return self.messenger.motion(observation, topic)
-
-    # ------------------------------------------------------------------------------------------------ its own job
 
     def _motion(self, observation: Observation, topic: Job | None) -> Motion:
         mine = self.mine
@@ -217,8 +213,6 @@ class TeamOracle(SingleTaskOracle):
             self.is_aside = True
             self.follower.take(self.routes.retreat(here, here, ASIDE_M))
         return self.follower.next(observation.pose) or Wait(seconds=0.5)
-
-    # ------------------------------------------------------------------------------------------ what to tell about
 
     def _choose_topic(self, observation: Observation) -> Job | None:
         held = [job for job in self.jobs if self._is_held_by_person(job)]

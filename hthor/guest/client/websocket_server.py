@@ -22,9 +22,8 @@ from hthor.guest.client.agent_loop import run_trial
 from hthor.guest.client.file_recorder import FileRecorder
 from hthor.guest.client.remote_senses import HostGone
 from hthor.guest.confinement import Policy
-from hthor.guest.protocol import wire
+from hthor.guest.protocol import load_websockets, wire
 from hthor.guest.protocol.shared_frames import FrameReader
-from hthor.guest.protocol.websocket_library import load_websockets
 
 if TYPE_CHECKING:
     from websockets.sync.server import Server, ServerConnection

@@ -6,127 +6,50 @@ The filter in `seccomp` is assembled from these tables. Calls that are not liste
 
 import signal
 
+
+def _numbers(text: str) -> dict[str, int]:
+    """Numbers of system calls by their names, from pairs such as ``socket 41, connect 42``."""
+    return {name: int(number) for name, number in (pair.split() for pair in text.split(", "))}
+
+
 DENIED = {
     # the network; a pair of connected streams stays, asyncio needs one: see SOCKETPAIR
-    "socket": 41,
-    "connect": 42,
-    "accept": 43,
-    "bind": 49,
-    "listen": 50,
-    "accept4": 288,
+    **_numbers("socket 41, connect 42, accept 43, bind 49, listen 50, accept4 288"),
     # other processes: starting, leaving the group, signalling, looking into, slowing down
-    "fork": 57,
-    "vfork": 58,
-    "execveat": 322,
-    "setsid": 112,
-    "setpgid": 109,
-    "tkill": 200,
-    "rt_sigqueueinfo": 129,
-    "rt_tgsigqueueinfo": 297,
-    "pidfd_open": 434,
-    "pidfd_getfd": 438,
-    "pidfd_send_signal": 424,
-    "ptrace": 101,
-    "process_vm_readv": 310,
-    "process_vm_writev": 311,
-    "kcmp": 312,
-    "process_madvise": 440,
-    "process_mrelease": 448,
-    "migrate_pages": 256,
-    "move_pages": 279,
-    "setpriority": 141,
-    "sched_setparam": 142,
-    "sched_setscheduler": 144,
-    "sched_setaffinity": 203,
-    "sched_setattr": 314,
-    "ioprio_set": 251,
-    "setrlimit": 160,
-    "timer_create": 222,  # it sends any signal, and all processes of a user share one limit of how many there are
+    # (timer_create sends any signal, and all processes of a user share one limit of how many there are)
+    **_numbers(
+        "fork 57, vfork 58, execveat 322, setsid 112, setpgid 109, tkill 200, rt_sigqueueinfo 129, "
+        "rt_tgsigqueueinfo 297, pidfd_open 434, pidfd_getfd 438, pidfd_send_signal 424, ptrace 101, "
+        "process_vm_readv 310, process_vm_writev 311, kcmp 312, process_madvise 440, process_mrelease 448, "
+        "migrate_pages 256, move_pages 279, setpriority 141, sched_setparam 142, sched_setscheduler 144, "
+        "sched_setaffinity 203, sched_setattr 314, ioprio_set 251, setrlimit 160, timer_create 222"
+    ),
     # memory and messages that outlive a process or escape the limits
-    "shmget": 29,
-    "shmat": 30,
-    "shmctl": 31,
-    "semget": 64,
-    "semop": 65,
-    "semctl": 66,
-    "msgget": 68,
-    "msgsnd": 69,
-    "msgrcv": 70,
-    "msgctl": 71,
-    "semtimedop": 220,
-    "mq_open": 240,
-    "mq_unlink": 241,
-    "memfd_secret": 447,
-    "add_key": 248,
-    "request_key": 249,
-    "keyctl": 250,
+    **_numbers(
+        "shmget 29, shmat 30, shmctl 31, semget 64, semop 65, semctl 66, msgget 68, msgsnd 69, msgrcv 70, "
+        "msgctl 71, semtimedop 220, mq_open 240, mq_unlink 241, memfd_secret 447, add_key 248, request_key 249, "
+        "keyctl 250"
+    ),
     # the file system as a whole, and ways around Landlock
-    "mount": 165,
-    "umount2": 166,
-    "chroot": 161,
-    "pivot_root": 155,
-    "unshare": 272,
-    "setns": 308,
-    "open_tree": 428,
-    "move_mount": 429,
-    "fsopen": 430,
-    "fsconfig": 431,
-    "fsmount": 432,
-    "fspick": 433,
-    "mount_setattr": 442,
-    "quotactl_fd": 443,
-    "open_tree_attr": 467,
-    "name_to_handle_at": 303,
-    "open_by_handle_at": 304,
-    "mknod": 133,
-    "mknodat": 259,
-    "inotify_init": 253,
-    "inotify_init1": 294,
-    "fanotify_init": 300,
-    "quotactl": 179,
-    "swapon": 167,
-    "swapoff": 168,
+    **_numbers(
+        "mount 165, umount2 166, chroot 161, pivot_root 155, unshare 272, setns 308, open_tree 428, move_mount 429, "
+        "fsopen 430, fsconfig 431, fsmount 432, fspick 433, mount_setattr 442, quotactl_fd 443, open_tree_attr 467, "
+        "name_to_handle_at 303, open_by_handle_at 304, mknod 133, mknodat 259, inotify_init 253, inotify_init1 294, "
+        "fanotify_init 300, quotactl 179, swapon 167, swapoff 168"
+    ),
     # not restricted by Landlock: a process could change every file of its user
-    "truncate": 76,
-    "chown": 92,
-    "fchown": 93,
-    "lchown": 94,
-    "fchownat": 260,
-    "setxattr": 188,
-    "lsetxattr": 189,
-    "fsetxattr": 190,
-    "setxattrat": 463,
-    "removexattr": 197,
-    "lremovexattr": 198,
-    "fremovexattr": 199,
-    "removexattrat": 466,
-    "file_setattr": 469,
+    **_numbers(
+        "truncate 76, chown 92, fchown 93, lchown 94, fchownat 260, setxattr 188, lsetxattr 189, fsetxattr 190, "
+        "setxattrat 463, removexattr 197, lremovexattr 198, fremovexattr 199, removexattrat 466, file_setattr 469"
+    ),
     # the kernel and the machine
-    "bpf": 321,
-    "perf_event_open": 298,
-    "userfaultfd": 323,
-    "io_uring_setup": 425,
-    "io_uring_enter": 426,
-    "io_uring_register": 427,
-    "kexec_load": 246,
-    "kexec_file_load": 320,
-    "init_module": 175,
-    "finit_module": 313,
-    "delete_module": 176,
-    "reboot": 169,
-    "sethostname": 170,
-    "setdomainname": 171,
-    "iopl": 172,
-    "ioperm": 173,
-    "modify_ldt": 154,
-    "personality": 135,
-    "syslog": 103,
-    "acct": 163,
-    "settimeofday": 164,
-    "clock_settime": 227,
-    "adjtimex": 159,
-    "clock_adjtime": 305,
-    "vhangup": 153,
+    **_numbers(
+        "bpf 321, perf_event_open 298, userfaultfd 323, io_uring_setup 425, io_uring_enter 426, "
+        "io_uring_register 427, kexec_load 246, kexec_file_load 320, init_module 175, finit_module 313, "
+        "delete_module 176, reboot 169, sethostname 170, setdomainname 171, iopl 172, ioperm 173, modify_ldt 154, "
+        "personality 135, syslog 103, acct 163, settimeofday 164, clock_settime 227, adjtimex 159, "
+        "clock_adjtime 305, vhangup 153"
+    ),
 }
 SUPERVISOR_CALLS = ("fork", "vfork", "pidfd_open", "sched_setaffinity")
 """Calls that the supervisor needs to start and watch processes, which it is not denied."""
@@ -135,20 +58,10 @@ ABSENT = {"clone3": 435, "memfd_create": 319, "mincore": 27, "cachestat": 451}
 which parts of a shared file have been read."""
 UNSUPPORTED = {"fallocate": 285}
 """Reported as unsupported: libraries then write instead, which the limits see as it happens."""
-IGNORED = {
-    "chmod": 90,
-    "fchmod": 91,
-    "fchmodat": 268,
-    "fchmodat2": 452,
-    "utime": 132,
-    "utimes": 235,
-    "futimesat": 261,
-    "utimensat": 280,
-    "flock": 73,
-    "sync": 162,
-    "syncfs": 306,
-    "fadvise64": 221,
-}
+IGNORED = _numbers(
+    "chmod 90, fchmod 91, fchmodat 268, fchmodat2 452, utime 132, utimes 235, futimesat 261, utimensat 280, "
+    "flock 73, sync 162, syncfs 306, fadvise64 221"
+)
 """Reported as done, and not done. Programs call these in good faith, but Landlock cannot restrict them: modes and times
 would stay, a lock on a file that two guests can read would be a channel between them, and others may notice that a file
 was dropped from memory."""

@@ -1,16 +1,27 @@
-"""Messages to and from a guest, each with a deadline. Any failure ends the guest and is a `GuestFault`."""
+"""Messages to and from a guest, each with a deadline.
 
+Any failure ends the guest and is a `GuestFault`, which is explained where isolation caused it.
+"""
+
+import os
+import re
 import time
+from collections.abc import Iterator
+from pathlib import Path
 from typing import Protocol
 
 import msgspec
 
+from hthor.guest.confinement import Policy
 from hthor.guest.protocol import wire
 from hthor.guest.protocol.wire import sanitize_text
 
 _guests_messages = msgspec.msgpack.Decoder(wire.ToHost)
 _MOST_OPENED, _LONGEST = 20_000, 1000
 _supervisors_messages = msgspec.msgpack.Decoder(wire.SupervisorToHost)
+_QUOTED = re.compile(r"'([^'\n]+)'|\"([^\"\n]+)\"|(?<![\w'\"])(/[^\s'\":,;()]+)")
+_VARIABLE = re.compile(r"KeyError: '([A-Za-z_]\w*)'")
+_ENVIRONMENT = ("os.environ", "<frozen os>", "/os.py")
 
 
 class GuestFault(Exception):
@@ -175,3 +186,58 @@ class MessageChannel:
         if self.transport is None:
             raise GuestFault("died", "the agent's process is gone")
         return self.transport
+
+
+def explain_fault(fault: GuestFault, policy: Policy, root: str) -> GuestFault:
+    """The fault, with one more sentence where isolation is the reason."""
+    more = isolation_reason(fault.detail, policy, root) if fault.kind == "raised" else ""
+    if not more:
+        return fault
+    return GuestFault(fault.kind, f"{fault.detail.rstrip()}\n{more}", "", fault.log)
+
+
+def isolation_reason(text: str, policy: Policy, root: str) -> str:
+    """One sentence on how isolation caused a failure; empty where it did not.
+
+    Args:
+        text: the error message, with its traceback if there is one. root: the agent's folder.
+    """
+    said = _said(text)
+    variable = _VARIABLE.match(said)
+    if variable and any(word in text for word in _ENVIRONMENT):
+        return (
+            f"No environment variable of yours reaches an agent, {variable[1]} neither; give it what it needs with "
+            "--agent-args. See docs/isolation.md."
+        )
+    if policy.level == "L1":
+        return ""
+    hidden = next((path for path in _paths(said, root) if path.exists() and not _shown(path, policy)), None)
+    if hidden is None:
+        return ""
+    if root and hidden.is_relative_to(root):
+        return f"'{hidden.name}' is there, but isolation {policy.level} hides runs and .git from every agent."
+    what = "folder" if hidden.is_dir() else "file"
+    return (
+        f"The {what} '{hidden.name}' is there, but isolation {policy.level} hides it, as it lies outside the agent's "
+        "own folder. Let the agent read it with --readable PATH. See docs/isolation.md."
+    )
+
+
+def _said(text: str) -> str:
+    """The exception's own message, which follows its traceback."""
+    lines = text.strip().splitlines()
+    frames = [number for number, line in enumerate(lines) if line.startswith(" ")]
+    return "\n".join(lines[frames[-1] + 1 if frames else 0 :])
+
+
+def _paths(said: str, root: str) -> Iterator[Path]:
+    for found in _QUOTED.finditer(said):
+        text = next(group for group in found.groups() if group)
+        if os.path.isabs(text) or (root and os.sep in text):
+            yield Path(os.path.normpath(os.path.join(root or "/", text)))
+
+
+def _shown(path: Path, policy: Policy) -> bool:
+    """Whether the agent may read it."""
+    real = path.resolve()
+    return any(one.is_relative_to(place) for one in (path, real) for place in (*policy.read, policy.scratch))

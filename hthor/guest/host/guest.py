@@ -7,8 +7,7 @@ from pathlib import Path
 
 from hthor.guest.agent import agent_paths, reference
 from hthor.guest.confinement import AUTO, Isolation, paths
-from hthor.guest.host import failure_explanation
-from hthor.guest.host.channel import GuestFault, MessageChannel
+from hthor.guest.host.channel import GuestFault, MessageChannel, explain_fault
 from hthor.guest.host.guest_pool import GuestPool
 from hthor.guest.host.info import GuestConfig, GuestInfo
 from hthor.guest.host.process import GuestProcess
@@ -203,7 +202,7 @@ class Guest:
     def _explained(self, fault: GuestFault) -> GuestFault:
         """The fault, with an explanation where isolation caused it."""
         policy = self._startup.policy
-        return failure_explanation.explain_fault(fault, policy, self.reference.root) if policy else fault
+        return explain_fault(fault, policy, self.reference.root) if policy else fault
 
     @property
     def _process(self) -> GuestProcess | None:

@@ -10,8 +10,8 @@ from hthor.guest.agent import inputs
 from hthor.guest.agent.agent_paths import AgentPaths
 from hthor.guest.agent.reference import AgentReference
 from hthor.guest.confinement import AUTO, LEVELS, Isolation, IsolationError, Policy, namespaces
-from hthor.guest.host import failure_explanation, info, process, websocket_client
-from hthor.guest.host.channel import GuestFault, MessageChannel
+from hthor.guest.host import info, process, websocket_client
+from hthor.guest.host.channel import GuestFault, MessageChannel, isolation_reason
 from hthor.guest.host.guest_pool import GuestPool, IdleGuest, Key
 from hthor.guest.host.info import GuestConfig, GuestInfo
 from hthor.guest.host.process import GuestProcess
@@ -79,7 +79,7 @@ class GuestStartup:
         if not isinstance(ready, wire.Ready):
             channel.close()
             said = _instead(agent, ready)
-            why = failure_explanation.isolation_reason(said, self.policy, agent.root) if self.policy else ""
+            why = isolation_reason(said, self.policy, agent.root) if self.policy else ""
             raise AgentError(f"{said}\n{why}".rstrip())
         try:
             known = info.make_info(agent, digest, ready, isolation)

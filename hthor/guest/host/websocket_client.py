@@ -18,7 +18,7 @@ from urllib.parse import urlsplit
 from hthor.errors import AgentError
 from hthor.guest.confinement import SERVED, Isolation
 from hthor.guest.host.channel import DeadlinePassed, PeerGone
-from hthor.guest.protocol.websocket_library import load_websockets
+from hthor.guest.protocol import load_websockets
 
 if TYPE_CHECKING:
     from websockets.sync.client import ClientConnection

@@ -14,7 +14,7 @@ import numpy as np
 from hthor import catalog, rules
 from hthor.geometry.plane import distance_to_rectangle, to_house, to_local
 from hthor.houses.checks import house_rules
-from hthor.houses.checks.findings import Finding, error, is_sound, readable_kind, warning
+from hthor.houses.checks.house_rules import Finding, error, is_sound, readable_kind, warning
 from hthor.houses.space import boxes
 from hthor.houses.space.free_space import Bools, FreeSpace
 from hthor.houses.space.visibility import with_all_open

@@ -1,13 +1,18 @@
-"""The rules of a sound house: how large rooms are, how wide doorways, how things stand, with room for their doors."""
+"""What is wrong with a house, in words, and the rules that find it.
+
+How large rooms are, how wide doorways; how things stand, with room for their doors.
+"""
 
 import itertools
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Literal
+
+from msgspec import Struct
 
 from hthor import catalog
 from hthor.geometry.plane import inside, signed_area, turn
 from hthor.houses.checks import polygons
-from hthor.houses.checks.findings import Finding, readable_kind, warning
 from hthor.houses.space import boxes, solids
 from hthor.houses.space.free_space import STEP_M
 from hthor.houses.space.solids import Slab
@@ -37,6 +42,38 @@ GRAZE_M = 0.005
 """How deep a swinging door may cut into something."""
 _STEPS = 12
 """At how many places of its travel a door or drawer is tried."""
+
+
+class Finding(Struct, frozen=True, kw_only=True):
+    """Something wrong with a house: which ``rule``, ``where`` (an id), what the ``problem`` is, in words."""
+
+    severity: Literal["error", "warning"]
+    rule: str
+    where: str
+    problem: str
+
+    def __str__(self) -> str:
+        return f"{self.severity}: {self.where}: {self.problem} ({self.rule})"
+
+
+def error(rule: str, where: str, problem: str) -> Finding:
+    """A finding that makes a house unsound."""
+    return Finding(severity="error", rule=rule, where=where, problem=problem)
+
+
+def warning(rule: str, where: str, problem: str) -> Finding:
+    """A finding that a house may have and still be lived in."""
+    return Finding(severity="warning", rule=rule, where=where, problem=problem)
+
+
+def is_sound(findings: Iterable[Finding]) -> bool:
+    """Whether no finding is an error."""
+    return not any(finding.severity == "error" for finding in findings)
+
+
+def readable_kind(kind: str) -> str:
+    """A kind's name as people write it."""
+    return kind.replace("_", " ")
 
 
 def check_rooms(house: HouseSpec) -> Iterator[Finding]:

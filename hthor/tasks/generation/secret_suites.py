@@ -17,7 +17,7 @@ from msgspec import Struct
 from hthor import jsonio
 from hthor.errors import HthorError, TaskError
 from hthor.houses import generator, loader
-from hthor.houses.checks.findings import Finding
+from hthor.houses.checks.house_rules import Finding
 from hthor.houses.generator import attempt
 from hthor.houses.generator.attempt import AttemptFailed
 from hthor.houses.generator.draws import Dice

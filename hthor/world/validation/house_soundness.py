@@ -8,8 +8,8 @@ from msgspec import Struct
 from hthor.errors import HthorError
 from hthor.houses import generator, loader
 from hthor.houses.checks import house_rules
-from hthor.houses.checks.findings import Finding, error, is_sound
 from hthor.houses.checks.house_checks import check
+from hthor.houses.checks.house_rules import Finding, error, is_sound
 from hthor.types import HouseSpec
 from hthor.world.model import door_geometry
 from hthor.world.validation.physics_checks import drop_findings, penetration_findings

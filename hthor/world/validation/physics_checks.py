@@ -13,7 +13,7 @@ from msgspec import Struct
 
 from hthor import catalog
 from hthor.geometry.plane import to_house
-from hthor.houses.checks.findings import Finding, error, readable_kind
+from hthor.houses.checks.house_rules import Finding, error, readable_kind
 from hthor.houses.space import boxes
 from hthor.types import HouseSpec, Part, Surface, Thing, Vec3
 from hthor.world.model import geoms, walls

@@ -78,8 +78,6 @@ class RoomSpace:
         nx, ny = inward(door, self.room.number)
         return ((door.a[0] + door.b[0]) / 2 + nx * _DOOR_M, (door.a[1] + door.b[1]) / 2 + ny * _DOOR_M)
 
-    # ------------------------------------------------------------------------------------------------------- placing
-
     def place(self, group: PieceGroup, dice: Dice, wish: Any = None) -> bool:
         """Put the group at a random good place, False when there is none.
 
@@ -146,8 +144,6 @@ class RoomSpace:
         self.pieces += pieces
         self.solids = np.vstack([self.solids, [(*p.rect, p.bottom, p.top) for p in pieces]])
 
-    # ------------------------------------------------------------------------------------------------------- candidates
-
     def _origins(self, group: PieceGroup, anchor: str) -> tuple[Floats, NDArray[np.int64]]:
         if anchor == "middle":
             return self._middles(0.2)
@@ -211,8 +207,6 @@ class RoomSpace:
         found = labels[np.clip(rows, 0, labels.shape[0] - 1), np.clip(columns, 0, labels.shape[1] - 1)]
         inside: Bools = within & (found == self.room.number)
         return inside
-
-    # ------------------------------------------------------------------------------------------------------- walking
 
     def _cells(self, rect: Rect, margin: float) -> tuple[slice, slice]:
         cell = self._space.cell

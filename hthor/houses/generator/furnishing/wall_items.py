@@ -102,8 +102,6 @@ class WallDecorator:
         taken = (*(window.pane for window in self.windows), *self._space.doorways)
         return not any(_meet(rect, other) for other in taken)
 
-    # ------------------------------------------------------------------------------------------------------- windows
-
     def glaze(self, dice: Dice) -> None:
         """Windows, some with curtains."""
         kind = self._space.room.kind
@@ -144,8 +142,6 @@ class WallDecorator:
             if on_face and not any(_meet(rect, other) for rect in rects for other in taken):
                 self._space.hang([self._flat("curtain", face, sum(span) / 2, bottom, size) for span in spans])
                 return
-
-    # ------------------------------------------------------------------------------------------------------- the rest
 
     def decorate(self, dice: Dice) -> None:
         """Pictures, towels and light switches."""
