@@ -15,7 +15,7 @@ import numpy as np
 
 from hthor import jsonio
 from hthor.eval.records import trial_record
-from hthor.tasks.suite import Suite, tasks_sha256
+from hthor.tasks.suite import Suite
 from hthor.types import TrialSpec
 
 Spoil = Callable[[bytes, random.Random], bytes]
@@ -124,7 +124,7 @@ def mended_suite(data: bytes, dice: random.Random) -> bytes:
     try:
         held = msgspec.json.decode(spoiled, type=Suite)
         document = json.loads(spoiled)
-        document["sha256"] = tasks_sha256(held.tasks)
+        document["sha256"] = jsonio.sha256(held.tasks)
         return json.dumps(document).encode()
     except (ValueError, TypeError, OverflowError, RecursionError):
         return spoiled
