@@ -15,7 +15,7 @@ import numpy as np
 from msgspec import Struct
 
 from hthor import code_identity, seeds, tasks
-from hthor.calibration.from_logs import estimate_all, load_sessions
+from hthor.calibration.from_logs import estimate_all, trial_features
 from hthor.calibration.from_logs.estimate_all import READING
 from hthor.calibration.from_logs.models import priors
 from hthor.calibration.from_logs.models.priors import to_scale
@@ -90,7 +90,7 @@ def simulate_logs(
 def estimate_dataset(population: Parameters, records: Sequence[TrialRecord]) -> Dataset:
     """The estimates from these records, and the truth."""
     prior = priors.prior_beliefs()
-    estimates = estimate_all.estimate_parameters(load_sessions.sessions_of(records), prior)
+    estimates = estimate_all.estimate_parameters(trial_features.sessions_of(records), prior)
     truth = {name: float(to_scale(getattr(population, name), belief.scale)) for name, belief in prior.items()}
     truth[READING] = float(np.log(population.t_notice + population.t_read))
     return Dataset(

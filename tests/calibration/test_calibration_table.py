@@ -50,20 +50,9 @@ def test_fifty_is_the_only_denominator_that_both_adoption_rates_can_have():
 
 def test_the_ratios_are_those_of_the_published_rates():
     for name, ratio in PAPER.ratio.items():
-        assert ratio == pytest.approx(PAPER.twsr[name] / PAPER.sr[name].share, abs=0.002)
+        assert ratio == pytest.approx(PAPER.published[f"twsr {name}"] / 100.0 / PAPER.sr[name].share, abs=0.002)
     assert PAPER.verbal
     assert not any(said.fitted for said in PAPER.verbal)
-
-
-def test_without_a_condition_nothing_of_it_is_left():
-    less = PAPER.without("oracle")
-    assert set(less.sr) == set(less.ratio) == {"none", "frontier"}
-    assert set(less.adoption) == {"frontier"}
-    assert not any("oracle" in name for name in less.published)
-    assert less.sha256 != PAPER.sha256
-    assert less.design == PAPER.design  # how many trials there were is no result
-    with pytest.raises(UnknownName, match="condition 'oracle'"):
-        less.without("oracle")
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from benchmarks import recovery
 from hthor import seeds, tasks
-from hthor.calibration.from_logs import estimate, estimate_all, load_sessions, run
+from hthor.calibration.from_logs import estimate, estimate_all, run, trial_features
 from hthor.calibration.from_logs.features.messages import Offer, Reading
 from hthor.calibration.from_logs.models import mixed_effects, priors, search_models, timing_models, trust_model
 from hthor.calibration.from_logs.models.mixed_effects import Fit, Term
@@ -269,14 +269,14 @@ def played() -> tuple[Parameters, list[TrialRecord]]:
 
 def test_real_logs_tell_what_people_were_made_of(played: tuple[Parameters, list[TrialRecord]]) -> None:
     population, records = played
-    found = {one.name: one for one in estimate_all.estimate_parameters(load_sessions.sessions_of(records), BELIEFS)}
+    found = {one.name: one for one in estimate_all.estimate_parameters(trial_features.sessions_of(records), BELIEFS)}
     for name, off in (("v_pace", 0.1), ("omega", 0.1), ("t_manip", 0.35)):
         assert found[name].value == pytest.approx(getattr(population, name), rel=off), name
     assert found[estimate_all.READING].value == pytest.approx(population.t_notice + population.t_read, rel=0.35)
     assert found["t_on"].value == pytest.approx(population.t_on, abs=0.15)
     again = {
         one.name: one
-        for one in estimate_all.estimate_parameters(load_sessions.sessions_of(list(reversed(records))), BELIEFS)
+        for one in estimate_all.estimate_parameters(trial_features.sessions_of(list(reversed(records))), BELIEFS)
     }
     assert again == found, "the order of the records must not matter"
 
@@ -289,9 +289,9 @@ def test_logs_are_read_from_folders_and_files_each_trial_once(
     lines = [trial_record.encode(one) for one in records]
     (tmp_path / "run" / "trials.jsonl").write_bytes(b"".join(lines))
     (tmp_path / "some.jsonl").write_bytes(b"".join(lines[:3]))
-    whole = load_sessions.read_sessions([tmp_path / "run"])
+    whole = trial_features.read_sessions([tmp_path / "run"])
     assert (whole.people, whole.sessions, len(whole.trials)) == (6, 6, len(records))
-    assert load_sessions.read_sessions([tmp_path / "some.jsonl", tmp_path / "run"]) == whole
+    assert trial_features.read_sessions([tmp_path / "some.jsonl", tmp_path / "run"]) == whole
 
 
 @pytest.mark.parametrize(
@@ -311,16 +311,16 @@ def test_foreign_and_broken_logs_are_refused(
     path = tmp_path / "trials.jsonl"
     path.write_bytes(damage(lines))  # type: ignore[operator]
     with pytest.raises(RunError) as caught:
-        load_sessions.read_sessions([tmp_path])
+        trial_features.read_sessions([tmp_path])
     assert words in str(caught.value)
     assert str(path) in str(caught.value)
 
 
 def test_a_log_that_is_not_there(tmp_path: Path) -> None:
     with pytest.raises(RunError, match=r"a folder without trials\.jsonl"):
-        load_sessions.read_sessions([tmp_path])
+        trial_features.read_sessions([tmp_path])
     with pytest.raises(RunError, match="is not there"):
-        load_sessions.read_sessions([tmp_path / "nowhere.jsonl"])
+        trial_features.read_sessions([tmp_path / "nowhere.jsonl"])
 
 
 def test_recovery_counts_what_was_found_and_what_was_covered() -> None:

@@ -144,10 +144,10 @@ def test_the_table_tells_covered_from_close() -> None:
     rows = {row.figure: row for row in whole().table}
     assert list(rows) == list(FIGURES)
     for row in rows.values():
-        assert row.covered == (row.band.low <= row.published <= row.band.high)
+        assert row.inside == (row.band.low <= row.published <= row.band.high)
         assert row.close == (abs(row.band.median - row.published) <= row.tolerance + 1e-9)
     far = msgspec.structs.replace(rows["sr none"], published=rows["sr none"].band.high + 0.001, tolerance=0.5)
-    assert not far.covered
+    assert not far.inside
     assert far.close
 
 

@@ -13,10 +13,10 @@ import numpy as np
 from hthor import rules
 from hthor.calibration.from_logs import estimate, trial_features
 from hthor.calibration.from_logs.estimate import Estimate, EstimateCollector, renumber
-from hthor.calibration.from_logs.load_sessions import Sessions
 from hthor.calibration.from_logs.models import search_models, timing_models, trust_model
 from hthor.calibration.from_logs.models.mixed_effects import Array, Fit
 from hthor.calibration.from_logs.models.priors import Belief, Beliefs
+from hthor.calibration.from_logs.trial_features import Sessions
 from hthor.humans.population.parameter_registry import parameter
 
 Tell = Callable[[str], None]

@@ -6,10 +6,10 @@ from pathlib import Path
 from msgspec import Struct
 
 from hthor import jsonio, rules
-from hthor.calibration.from_logs import estimate_all, load_sessions
+from hthor.calibration.from_logs import estimate_all, trial_features
 from hthor.calibration.from_logs.estimate import Estimate
-from hthor.calibration.from_logs.load_sessions import Sessions
 from hthor.calibration.from_logs.models import priors
+from hthor.calibration.from_logs.trial_features import Sessions
 from hthor.calibration.from_logs.update_population import Updated, update_draws
 from hthor.errors import RunError
 from hthor.humans.population import parameter_registry, population_file, resolve
@@ -56,7 +56,7 @@ def estimate_from_logs(
         RunError: when a log cannot be read, or has no journal of the person's movements.
     """
     tell("reading")
-    data = load_sessions.read_sessions(logs)
+    data = trial_features.read_sessions(logs)
     if not any(event.kind == "stick" for one in data.trials for event in one.record.journal):
         raise RunError(
             f"{logs[0]} holds no journal of the person: no stick, no attempts. It was written by an older version of "

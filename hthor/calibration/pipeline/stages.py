@@ -13,7 +13,7 @@ from typing import Protocol, TypeVar
 import numpy as np
 
 from hthor import jsonio
-from hthor.calibration.diagnostics import abc_check, coverage, ranking_robustness
+from hthor.calibration.diagnostics import coverage, ranking_robustness
 from hthor.calibration.diagnostics.coverage import Coverage
 from hthor.calibration.emulator import emulator
 from hthor.calibration.emulator.emulator import Emulator
@@ -209,10 +209,10 @@ class CalibrationStages:
     @cached_property
     def abc_shifts(self) -> tuple[AbcShift, ...]:
         """The fitted parameters by approximate Bayesian computation; empty with too few studies for it."""
-        if self.config.sizes.studies < abc_check.FEWEST:
+        if self.config.sizes.studies < coverage.FEWEST:
             return ()
         points, means, seed, ours = self.studies.points, self.coverage.means, self.config.seed, self.posterior
-        return self._cached("abc", lambda: abc_check.compare_posteriors(ours, points, means, FITTED, seed=seed))
+        return self._cached("abc", lambda: coverage.compare_posteriors(ours, points, means, FITTED, seed=seed))
 
     @cached_property
     def held_out(self) -> tuple[HeldOutCondition, ...]:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import msgspec
 from msgspec import Struct
 
 from hthor import documents, jsonio
@@ -63,7 +62,7 @@ class Targets(Struct, frozen=True, kw_only=True):
         sr: successes. adoption: trials with a confirmed message.
         ratio: TWSR / SR: mean of T*/max(T*, T) over the successes.
         published: the percentages as printed, such as "sr none".
-        left_out: the condition that was taken out for a held-out fit, or nothing.
+        left_out: always empty; a part of the hash that populations refer to.
     """
 
     schema: str
@@ -81,28 +80,6 @@ class Targets(Struct, frozen=True, kw_only=True):
     def sha256(self) -> str:
         """Hash of all of it."""
         return jsonio.sha256(self)
-
-    @property
-    def twsr(self) -> dict[str, float]:
-        """Published TWSR by condition, a fraction."""
-        return {name: self.published[f"twsr {name}"] / 100.0 for name in self.ratio}
-
-    def without(self, condition: str) -> Targets:
-        """The same without anything about one condition, to see how well the others predict it.
-
-        Raises:
-            UnknownName: when there is nothing about it.
-        """
-        if condition not in self.sr:
-            raise UnknownName("condition", condition, self.sr)
-        return msgspec.structs.replace(
-            self,
-            sr={name: count for name, count in self.sr.items() if name != condition},
-            adoption={name: count for name, count in self.adoption.items() if name != condition},
-            ratio={name: value for name, value in self.ratio.items() if name != condition},
-            published={name: value for name, value in self.published.items() if not name.endswith(f" {condition}")},
-            left_out=condition,
-        )
 
 
 def target_names() -> tuple[str, ...]:

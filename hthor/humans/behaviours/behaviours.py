@@ -44,9 +44,9 @@ class Behaviours:
         self.hands = Hands(human)
         self.exploration = Exploration(human, eyes, memory, walker, self.hands)
         self.approach = Approach(human, eyes, memory, walker)
-        self.following = MessageFollowing(human, eyes, memory, walker, self.exploration)
-        self.delivery = Delivery(human, memory, self.approach, self.exploration, subgoals)
-        self.carrying = JointCarrying(human, memory, self.approach, self.exploration, subgoals)
+        self.following = MessageFollowing(self.exploration)
+        self.delivery = Delivery(self.approach, self.exploration, subgoals)
+        self.carrying = JointCarrying(self.approach, self.exploration, subgoals)
         self._patience = _PATIENCE_MANY if subgoals.many else PATIENCE
         self._target_search = OptionChoice(human, memory, walker, "target")
         self.expect(tuple(subgoals.all.values()))

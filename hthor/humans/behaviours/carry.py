@@ -7,8 +7,7 @@ import math
 from functools import partial
 
 from hthor.geometry.plane import to_house
-from hthor.humans.core.trial_context import Behaviour, HumanContext
-from hthor.humans.memory.spatial_memory import SpatialMemory
+from hthor.humans.core.trial_context import Behaviour
 from hthor.humans.memory.subgoals import Subgoal, SubgoalTracker
 from hthor.humans.motor.approach import Approach
 from hthor.humans.search.exploration import Exploration
@@ -36,17 +35,10 @@ _DIRECTIONS = 16
 class JointCarrying:
     """Helps to carry one heavy thing."""
 
-    def __init__(
-        self,
-        human: HumanContext,
-        memory: SpatialMemory,
-        approach: Approach,
-        exploration: Exploration,
-        subgoals: SubgoalTracker,
-    ) -> None:
-        self.human, self.memory, self.walker, self.approach = human, memory, approach.walker, approach
-        self.exploration, self.hands, self.subgoals = exploration, exploration.hands, subgoals
-        self._search = OptionChoice(human, memory, self.walker, "room")
+    def __init__(self, approach: Approach, exploration: Exploration, subgoals: SubgoalTracker) -> None:
+        self.approach, self.exploration, self.subgoals, self.hands = approach, exploration, subgoals, exploration.hands
+        self.human, self.memory, self.walker = approach.human, approach.memory, approach.walker
+        self._search = OptionChoice(self.human, self.memory, self.walker, "room")
 
     def carry(self, subgoal: Subgoal) -> Behaviour:
         """Take hold, and bring the load where it belongs; the participant leads when nobody has moved for a while."""

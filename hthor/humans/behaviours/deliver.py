@@ -4,8 +4,8 @@ from functools import partial
 
 from hthor import catalog
 from hthor.geometry.plane import to_house, to_local
-from hthor.humans.core.trial_context import Behaviour, HumanContext
-from hthor.humans.memory.spatial_memory import KnownPlace, SpatialMemory
+from hthor.humans.core.trial_context import Behaviour
+from hthor.humans.memory.spatial_memory import KnownPlace
 from hthor.humans.memory.subgoals import Subgoal, SubgoalTracker
 from hthor.humans.motor.approach import PATIENCE, Approach
 from hthor.humans.search.exploration import Exploration
@@ -25,17 +25,10 @@ _BESIDE_M = 0.5
 class Delivery:
     """Brings things where they belong."""
 
-    def __init__(
-        self,
-        human: HumanContext,
-        memory: SpatialMemory,
-        approach: Approach,
-        exploration: Exploration,
-        subgoals: SubgoalTracker,
-    ) -> None:
-        self.human, self.memory, self.walker, self.approach = human, memory, approach.walker, approach
-        self.exploration, self.hands, self.subgoals = exploration, exploration.hands, subgoals
-        self.search = OptionChoice(human, memory, self.walker, "destination")
+    def __init__(self, approach: Approach, exploration: Exploration, subgoals: SubgoalTracker) -> None:
+        self.approach, self.exploration, self.subgoals, self.hands = approach, exploration, subgoals, exploration.hands
+        self.human, self.memory, self.walker = approach.human, approach.memory, approach.walker
+        self.search = OptionChoice(self.human, self.memory, self.walker, "destination")
 
     def deliver(self, subgoal: Subgoal, advised: Vec3 | None = None) -> Behaviour:
         """Bring what is held where it belongs, where a robot ``advised`` [m], or to what is found by searching."""

@@ -10,12 +10,10 @@ from functools import partial
 import numpy as np
 
 from hthor.geometry.plane import wrap
-from hthor.humans.core.trial_context import Behaviour, HumanContext
-from hthor.humans.memory.spatial_memory import KnownPlace, SpatialMemory
-from hthor.humans.motor import viewpoints
+from hthor.humans.core.trial_context import Behaviour
+from hthor.humans.memory.spatial_memory import KnownPlace
+from hthor.humans.motor import approach
 from hthor.humans.motor.approach import TRIED_M
-from hthor.humans.motor.locomotion import Walker
-from hthor.humans.perception.perception import Eyes
 from hthor.humans.search.exploration import Exploration
 from hthor.navigation.grid_map import CELL_M, FREE, GridMap
 from hthor.types import Vec2, Vec3
@@ -43,10 +41,9 @@ _SHORT_M = 0.02
 class MessageFollowing:
     """Walks to where the named place can be looked at, not only to where it is near on the map."""
 
-    def __init__(
-        self, human: HumanContext, eyes: Eyes, memory: SpatialMemory, walker: Walker, exploration: Exploration
-    ) -> None:
-        self.human, self.eyes, self.memory, self.walker, self.exploration = human, eyes, memory, walker, exploration
+    def __init__(self, exploration: Exploration) -> None:
+        self.exploration, self.human, self.eyes = exploration, exploration.human, exploration.eyes
+        self.memory, self.walker = exploration.memory, exploration.walker
 
     def follow(self, position: Vec3) -> Behaviour:
         """Go where something is said to be [m], and look there; True when done, with or without success.
@@ -104,7 +101,7 @@ class MessageFollowing:
             return False
         if place is None:
             return grid.at(position[0], position[1]) == FREE
-        return viewpoints.has_free_line(here, place, self.walker)
+        return approach.has_free_line(here, place, self.walker)
 
     def _look(self, position: Vec3) -> Behaviour:
         yield from self.human.look_at(position)
@@ -126,8 +123,8 @@ class MessageFollowing:
         """The nearest spot on foot, within ``most`` metres, from which the place may be looked at from a new side."""
         point = position[:2]
         opens = place is not None and bool(place.state)
-        spots = viewpoints.viewpoints_of_place(place, self.walker, front=True) if place is not None and opens else []
-        spots = viewpoints.within_reach(spots, position, _NEAR_M) or viewpoints.rings(position, _REACH_M)
+        spots = approach.viewpoints_of_place(place, self.walker, front=True) if place is not None and opens else []
+        spots = approach.within_reach(spots, position, _NEAR_M) or approach.rings(position, _REACH_M)
         walls = Walls(self.walker.grid, point, _NEAR_M)
         sides = [math.atan2(old[1] - point[1], old[0] - point[0]) for old in seen]
         new = [

@@ -114,7 +114,7 @@ def _shipped(name: str) -> Population:
 
 
 def _read(path: Path) -> Population:
-    document = _document(path)
+    document = documents.parse(_bytes(path), Document, PopulationError, shown=str(path), schema=SCHEMA, hint=_DAMAGED)
     numbers = path.with_suffix(".npz")
     draws, log_weight = _arrays(numbers, document)
     columns = [spec.name for spec in document.parameters]
@@ -142,14 +142,9 @@ def _read(path: Path) -> Population:
     return Population(**shared, specs=document.parameters, draws=draws, log_weight=log_weight, missing=missing)
 
 
-def _document(path: Path) -> Document:
-    data = _bytes(path, "a population has two files, NAME.npz and NAME.json, side by side")
-    return documents.parse(data, Document, PopulationError, shown=str(path), schema=SCHEMA, hint=_DAMAGED)
-
-
 def _arrays(path: Path, document: Document) -> tuple[Any, Any]:
     """Draws and weights from the NPZ file that the document names by its hash."""
-    data = _bytes(path, "a population has two files, NAME.npz and NAME.json, side by side")
+    data = _bytes(path)
     if (digest := _sha256(data)) != document.arrays.sha256:
         there = document.arrays.sha256[:10]
         raise PopulationError(str(path), "$", f"it hashes to {digest[:10]}, the JSON file says {there}: {_DAMAGED}")
@@ -169,10 +164,11 @@ def _arrays(path: Path, document: Document) -> tuple[Any, Any]:
     return arrays["draws"], arrays["log_weight"]
 
 
-def _bytes(path: Path, hint: str) -> bytes:
+def _bytes(path: Path) -> bytes:
     try:
         return path.read_bytes()
     except OSError as error:
+        hint = "a population has two files, NAME.npz and NAME.json, side by side"
         raise PopulationError(str(path), "$", f"cannot be read: {error.strerror}; {hint}") from None
 
 

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from hthor.humans.core.trial_context import HumanContext
 from hthor.humans.memory.spatial_memory import KnownPlace, SpatialMemory
-from hthor.humans.motor import viewpoints
+from hthor.humans.motor import approach
 from hthor.humans.motor.locomotion import Walker
 from hthor.humans.search import option_description
 from hthor.humans.search.option_description import Option
@@ -142,7 +142,7 @@ class OptionChoice:
         """Where to stand to search a place."""
         tick, known = self._spots.get(place.id, (-_STALE_TICKS, []))
         if self.human.now.tick - tick >= _STALE_TICKS or not known:
-            known = viewpoints.viewpoints_of_place(place, self.walker, front=bool(place.state))
+            known = approach.viewpoints_of_place(place, self.walker, front=bool(place.state))
             self._spots[place.id] = (self.human.now.tick, known)
         return known
 

@@ -98,16 +98,14 @@ def _groups(trials: Table, played: PlayedTrials, targets: Targets, seed: int) ->
 
 def published_study(targets: Targets) -> PublishedStudy:
     """The published study as the report shows it, from the targets."""
-    counts = [
-        (f"{metric} {name}", one) for metric in ("sr", "adoption") for name, one in getattr(targets, metric).items()
-    ]
     return PublishedStudy(
         name=targets.name,
         source=targets.source,
         sha256=targets.sha256,
         counts=tuple(
-            PublishedCount(figure=figure, k=one.k, n=one.n, inferred=one.inferred, note=one.note)
-            for figure, one in counts
+            PublishedCount(figure=f"{metric} {name}", **msgspec.structs.asdict(count))
+            for metric in ("sr", "adoption")
+            for name, count in getattr(targets, metric).items()
         ),
         ratio=dict(targets.ratio),
         verbal=tuple((one.name, one.says) for one in targets.verbal),

@@ -47,7 +47,7 @@ def _gate(name: str, asks: str, found: str, passed: bool | None) -> Gate:
 
 
 def _table(rows: Sequence[FigurePrediction], short: bool) -> tuple[Gate, ...]:
-    out = [phrases.figure(row.figure) for row in rows if not row.covered]
+    out = [phrases.figure(row.figure) for row in rows if not row.inside]
     far = [phrases.figure(row.figure) for row in rows if not row.close]
     total = len(rows)
     return (
@@ -142,8 +142,8 @@ def _figures(found: Findings) -> list[str]:
     sentences = []
     for row in found.table:
         off = 100.0 * (row.band.median - row.published)
-        if not row.covered or not _TAIL <= row.percentile <= 1.0 - _TAIL:
-            where = "outside the 90 % interval" if not row.covered else "in the outer tenth of the predictions"
+        if not row.inside or not _TAIL <= row.percentile <= 1.0 - _TAIL:
+            where = "outside the 90 % interval" if not row.inside else "in the outer tenth of the predictions"
             high = "too high" if off > 0 else "too low"
             sentences.append(
                 f"{phrases.figure(row.figure)} is predicted {high} by {abs(off):.1f} points: "

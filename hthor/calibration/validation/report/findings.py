@@ -7,7 +7,7 @@ from typing import Literal
 
 from msgspec import Struct
 
-from hthor.calibration.evidence import Band, Evidence
+from hthor.calibration.evidence import Band, Evidence, HeldOutFigure
 
 SCHEMA = "hthor.validation/1"
 QUARTILE_S = 7.0
@@ -65,24 +65,16 @@ class PublishedStudy(Struct, frozen=True, kw_only=True):
     design: str = ""
 
 
-class FigurePrediction(Struct, frozen=True, kw_only=True):
+class FigurePrediction(HeldOutFigure, frozen=True, kw_only=True):
     """A published figure against simulated study groups of six people: their median and 90 % interval.
 
     ``mean`` is that of all trials, ``percentile`` the share of groups below the published figure (half of those
     equal to it counted in).
     """
 
-    figure: str
-    published: float
-    band: Band
     mean: float
     percentile: float
     tolerance: float
-
-    @property
-    def covered(self) -> bool:
-        """Whether the interval holds the published figure."""
-        return self.band.low <= self.published <= self.band.high
 
     @property
     def close(self) -> bool:

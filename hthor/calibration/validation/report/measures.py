@@ -81,18 +81,9 @@ def time_spent(run: Table) -> tuple[TimeSpent, ...]:
     for number, condition in enumerate(CONDITIONS):
         seconds = tables.time_spent_s(run)[run.condition == number]
         if seconds.size:
-            least, lower, middle, upper, most = (_r(np.percentile(seconds, part)) for part in (0, 25, 50, 75, 100))
-            found.append(
-                TimeSpent(
-                    condition=condition,
-                    trials=int(seconds.size),
-                    least=least,
-                    lower=lower,
-                    median=middle,
-                    upper=upper,
-                    most=most,
-                )
-            )
+            marks = {"least": 0, "lower": 25, "median": 50, "upper": 75, "most": 100}
+            quantiles = {name: _r(np.percentile(seconds, share)) for name, share in marks.items()}
+            found.append(TimeSpent(condition=condition, trials=int(seconds.size), **quantiles))
     return tuple(found)
 
 

@@ -56,12 +56,12 @@ def figure(name: str) -> str:
 
 def span(band: Band, scale: float = 1.0, digits: int = 1) -> str:
     """An interval: "47.1 … 81.0"."""
-    return f"{_minus(scale * band.low, digits)} … {_minus(scale * band.high, digits)}"
+    return " … ".join(signed(scale * end, digits).lstrip("+") for end in (band.low, band.high))
 
 
 def verdict(found: Findings) -> str:
     """The result of the table of figures."""
-    covered = [row for row in found.table if row.covered]
+    covered = [row for row in found.table if row.inside]
     close = [row for row in found.table if row.close]
     total = len(found.table)
     text = (
@@ -69,7 +69,7 @@ def verdict(found: Findings) -> str:
         f"and {len(close)} of {total} medians are within the tolerance."
     )
     if len(covered) < total:
-        text += f" Outside: {listed(figure(row.figure) for row in found.table if not row.covered)}."
+        text += f" Outside: {listed(figure(row.figure) for row in found.table if not row.inside)}."
     if len(close) < total:
         off = (
             f"{figure(row.figure)} by {signed(100.0 * (row.band.median - row.published))} points"
@@ -274,8 +274,3 @@ def _mean(values: Sequence[float]) -> float:
 
 def _upper(text: str) -> str:
     return text[:1].upper() + text[1:]
-
-
-def _minus(value: float, digits: int) -> str:
-    text = f"{value:.{digits}f}"
-    return (text[1:] if float(text) == 0.0 and text.startswith("-") else text).replace("-", "−")

@@ -63,7 +63,7 @@ def table(rows: Sequence[FigurePrediction]) -> Rows:
             phrases.percent(row.band.median),
             phrases.span(row.band, 100.0),
             phrases.percent(row.mean),
-            mark(row.covered),
+            mark(row.inside),
             phrases.signed(100.0 * (row.band.median - row.published)),
             f"±{100.0 * row.tolerance:.0f}",
             mark(row.close),
