@@ -119,9 +119,8 @@ class CoverageFinding(Struct, frozen=True, kw_only=True):
 class EmulatorFit(Struct, frozen=True, kw_only=True):
     """How well an emulator predicts trials that it was not trained on: one outcome in one condition.
 
-    ``z_sd`` is the standard deviation of its standardised errors on whole simulated studies. ``score`` is its mean log
-    score per held-out trial and ``baseline`` that of always predicting the mean [nats]. ``bins`` are (predicted
-    frequency, observed frequency, trials).
+    ``z_sd`` is the sd of standardised errors on whole simulated studies, ``score`` the mean log score per trial and
+    ``baseline`` that of always predicting the mean [nats]; ``bins`` are (predicted frequency, observed, trials).
     """
 
     outcome: str
@@ -143,8 +142,7 @@ class AbcShift(Struct, frozen=True, kw_only=True):
 class ParameterSwing(Struct, frozen=True, kw_only=True):
     """What a parameter does to a gap between robots when it alone goes from a low to a high quantile of its prior.
 
-    ``low`` and ``high`` are the mean gaps in SR at either end; ``ordered`` is the share of draws, at the worse end, in
-    which the better robot is ahead.
+    ``low`` and ``high`` are mean gaps in SR, ``ordered`` the share of draws in order, at the worse end.
     """
 
     name: str
@@ -192,8 +190,7 @@ class Origin(Struct, frozen=True, kw_only=True):
 class Evidence(Struct, frozen=True, kw_only=True):
     """Everything that a calibration can say of the population that it made. Empty parts were not computed.
 
-    ``emulator_z`` is the standard deviation of the emulator's standardised errors over all eight figures of whole
-    simulated studies.
+    ``emulator_z`` is the sd of the emulator's standardised errors over all eight figures of whole simulated studies.
     """
 
     schema: str = SCHEMA

@@ -15,12 +15,9 @@ from hthor.calibration.evidence import AbcShift
 class AcceptanceBounds(Struct, frozen=True, kw_only=True):
     """Where a figure of merit has to lie. Our choice.
 
-    Attributes:
-        coverage: share of true values inside 90 % intervals, over simulated studies.
-        z_sd: sd of the emulator's standardised errors on whole studies.
-        shift: greatest shift of a fitted parameter's median by ABC, in posterior standard deviations.
-        effective: least effective number of weighted points. studies: least number of simulated studies.
-        covered: share of the published figures that have to lie inside 90 % intervals of simulated studies.
+    ``coverage`` is the share of true values inside 90 % intervals, ``z_sd`` the sd of the emulator's standardised
+    errors on whole studies, ``shift`` the greatest of a fitted median by ABC, in posterior sds; ``effective`` points and
+    simulated ``studies`` are least numbers; ``covered`` is the share of published figures inside 90 % intervals.
     """
 
     coverage: tuple[float, float]

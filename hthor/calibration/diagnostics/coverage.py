@@ -136,9 +136,7 @@ def compare_posteriors(
 ) -> tuple[AbcShift, ...]:
     """How far ABC's median of each of these parameters lies from the posterior's.
 
-    Args:
-        points: (S, P) points of the prior that studies were simulated at.
-        summaries: (S, P) posterior means of those studies, see `coverage.Coverage.means`.
+    ``points`` (S, P) are those of the prior that studies were simulated at, ``summaries`` (S, P) their posterior means.
 
     Raises:
         ValueError: with fewer than `FEWEST` studies.

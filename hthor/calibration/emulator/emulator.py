@@ -35,10 +35,8 @@ MESSAGE_LEVELS_S = (15.0, 30.0, 45.0, 60.0)
 class Rates(Struct, frozen=True, kw_only=True, eq=False):
     """What to expect at N points, float64 arrays (N, 3) by condition; adoption without a robot is 0.
 
-    Attributes:
-        sr: chance of success. ratio: mean of T*/max(T*, T) over successes. ratio_sd: its spread between successes.
-        adoption: chance that a robot's message is accepted.
-        sr_se, ratio_se, adoption_se: how far the ensemble disagrees, sd of a member's prediction.
+    ``ratio`` is the mean of T*/max(T*, T) over successes, ``ratio_sd`` its spread between them, ``adoption`` the chance
+    that a message is accepted; ``_se`` is how far the ensemble disagrees, the sd of a member's prediction.
     """
 
     sr: Array

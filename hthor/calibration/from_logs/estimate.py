@@ -115,10 +115,7 @@ def _words(n: int, needed: int, what: str, se: float, prior_sd: float) -> str:
 
 
 class EstimateCollector:
-    """The trials, the prior belief about each parameter, and the ``estimates`` so far.
-
-    ``spreads`` are logarithms of ``sigma`` with their standard errors, one from each model with random effects.
-    """
+    """Trials, prior beliefs, ``estimates`` so far, and ``spreads``: logarithms of ``sigma`` and their errors."""
 
     def __init__(self, trials: Sequence[TrialFeatures], beliefs: dict[str, Belief]) -> None:
         self.trials, self.beliefs = trials, beliefs

@@ -42,8 +42,7 @@ _MOST_SPREAD = 4.0
 class DesignEffects(Struct, frozen=True, kw_only=True, eq=False):
     """Design effects (3,) by condition of the metrics; 1 is binomial noise, or noise of independent successes.
 
-    ``spread`` multiplies the ensemble's disagreement. ``correlation`` (3, 3) is that of the ratios'
-    errors between conditions.
+    ``spread`` multiplies the ensemble's disagreement; ``correlation`` (3, 3) is of the ratios' errors by condition.
     """
 
     sr: Array
@@ -86,9 +85,7 @@ class _Errors(Struct, frozen=True, eq=False):
 def estimate_effects(rates: Rates, studies: StudyResults) -> DesignEffects:
     """Design effects and spread: the likeliest ones, for normal errors and a weak prior.
 
-    Args:
-        rates: predicted by the emulator at the points of the studies.
-        studies: their results, in the same order; at least ten.
+    ``rates`` are predicted at the points of the ``studies``.
 
     Raises:
         ValueError: with fewer than ten studies.

@@ -43,11 +43,8 @@ class PriorSample(Struct, frozen=True, kw_only=True, eq=False):
 class Posterior(Struct, frozen=True, kw_only=True, eq=False):
     """Populations that fit, and what was learned about each parameter, in the unit cube.
 
-    Attributes:
-        names: the P parameters. points: (D, P) draws, all of the same weight.
-        mean, sd: (P,). contraction: (P,) 1 - variance / prior variance.
-        effective: effective number of the ``proposals`` that were weighted.
-        evidence: log chance [nats] of the results under the prior.
+    ``points`` (D, P) are draws of the same weight; ``mean``, ``sd`` and ``contraction`` (1 - variance / prior variance)
+    are (P,); ``effective`` is the effective number of the ``proposals``, ``evidence`` the log chance [nats] of results.
     """
 
     names: tuple[str, ...]

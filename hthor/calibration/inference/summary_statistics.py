@@ -18,10 +18,8 @@ Array = np.ndarray[Any, Any]
 class StudyResults(Struct, frozen=True, kw_only=True, eq=False):
     """Results of S studies, float64 arrays (S, 3) by study and condition.
 
-    Attributes:
-        successes, trials: counts of the success rate; 0 trials where a study tells nothing of a condition.
-        adopted, asked: counts of adoption; 0 asked likewise.
-        ratio: TWSR / SR, the mean of T*/max(T*, T) over the successes; NaN where there is none.
+    ``successes`` of ``trials`` met the goal, ``adopted`` of ``asked`` accepted a message; 0 trials where a study tells
+    nothing. ``ratio`` is TWSR / SR, the mean of T*/max(T*, T) over the successes; NaN where there is none.
     """
 
     successes: Array

@@ -7,7 +7,6 @@ from hthor import rules
 from hthor.calibration.evidence import (
     BAND90,
     FIGURES,
-    Band,
     CoverageFinding,
     EmulatorFit,
     Evidence,
@@ -70,15 +69,11 @@ def _predictive(stages: CalibrationStages) -> tuple[PredictedFigure, ...]:
     return tuple(
         PredictedFigure(
             figure=name,
-            **{source: _quantiles(figures[name]) for source, figures in stages.predictions.items()},
+            **{source: band(np.nanquantile(figures[name], BAND90)) for source, figures in stages.predictions.items()},
             design_effect=factors.get(name),
         )
         for name in FIGURES
     )
-
-
-def _quantiles(draws: Array) -> Band:
-    return band(np.nanquantile(draws, BAND90))
 
 
 def _parameters(stages: CalibrationStages, population: Population) -> tuple[ParameterFinding, ...]:

@@ -6,7 +6,7 @@ A product is stored with the hash of everything that it was made from; when that
 import pickle
 from collections.abc import Callable
 from contextlib import AbstractContextManager
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Protocol, TypeVar
 
@@ -171,13 +171,8 @@ class CalibrationStages:
 
     def _posterior(self, name: str, fitted: Emulator, effects: DesignEffects) -> Posterior:
         published, seed, sizes = self.published, self.config.seed, self.config.sizes
-
-        def sample() -> Posterior:
-            return posterior.sample_posterior(
-                fitted, published, effects, seed=seed, draws=sizes.draws, proposals=sizes.proposals
-            )
-
-        return self._cached(name, sample)
+        make = partial(posterior.sample_posterior, draws=sizes.draws, proposals=sizes.proposals, seed=seed)
+        return self._cached(name, lambda: make(fitted, published, effects))
 
     # ---------------------------------------------------------------------------------------------------------- checks
 

@@ -31,13 +31,10 @@ OutcomeRow = tuple[int, ...]
 
 
 class SessionSpec(Struct, frozen=True, kw_only=True):
-    """A session to be run.
+    """A session to be run, by the person ``participant`` of the study with this seed, of the population at a ``point``.
 
-    Attributes:
-        key: its name, a hash of everything that decides its course.
-        seed: of the study whose participant number ``participant`` the person is.
-        point: of the prior's unit cube: the population that the person comes from.
-        condition: 0 none, 1 frontier, 2 oracle. tasks: numbers in the suite, in the order of the trials.
+    ``key`` is a hash of all that decides its course; ``condition`` is 0 none, 1 frontier, 2 oracle; ``tasks`` are
+    numbers in the suite, in the order of the trials.
     """
 
     key: str

@@ -45,7 +45,7 @@ class VerbalFinding(Struct, frozen=True, kw_only=True):
 class Design(Struct, frozen=True, kw_only=True):
     """How the study was made: ``people`` in each condition, with ``tasks`` each.
 
-    ``valid`` trials of a condition count in its success rate, ``counted`` ones in its adoption rate.
+    Of its trials ``valid`` count in the success rate of a condition, ``counted`` in its adoption rate.
     """
 
     people: int

@@ -61,8 +61,7 @@ class AdviceTracker:
     def is_relevant(self, message: Message) -> bool:
         """Whether a message is about anything in the task, even if it is known already.
 
-        What is said about the object in hand is out of date. A place without a name matters only while something is
-        missing, which `interpret` judges.
+        What is said of the object in hand is out of date; `interpret` judges places without a name.
         """
         name, holding = message.object, self.human.now.holding
         if not name:

@@ -27,10 +27,9 @@ _LEFT_CHANCE = 0.5
 
 
 class HumanContext:
-    """One participant in one trial.
+    """One participant in one trial; ``now`` is the latest observation, replaced before each decision.
 
     Attributes:
-        now: the latest observation; replaced before each decision.
         policy: decides in the participant's place; None for the model's own way of deciding.
         journal: what a headset's recorder would hold of this trial.
         listener: called with beliefs and choices (`hthor.types.Event`); None when nobody asks for them.

@@ -69,13 +69,10 @@ def never() -> bool:
 
 
 class Walker:
-    """Legs and a mental map.
+    """Legs and a mental map. The stick gives the pace directly, one short move a tick; larger turns are made standing.
 
-    The stick gives the pace directly, one short move a tick; larger turns are made standing.
-
-    Attributes:
-        haste: scales the pace, below 1 while reading or following a map.
-        looking: whether something is searched for; then people stop now and then to look aside.
+    ``haste`` scales the pace, below 1 while reading or following a map; ``looking``: something is searched for, so that
+    people stop now and then to look aside.
     """
 
     margin = MARGIN_M

@@ -18,13 +18,10 @@ _USUAL_M = 0.1
 
 
 def detection_rate(traits: Parameters, angle: float, ecc: float, share: float = 1.0, beside: int = 0) -> float:
-    """Rate [1/s] at which a small thing in view is noticed.
+    """Rate [1/s] at which a small thing in view is noticed, of which a ``share`` of 0 to 1 is in view.
 
-    Args:
-        angle: its size over its distance [rad], above 0.
-        ecc: how far [rad] it is off the direction of the head.
-        share: how much of it is in view, 0 to 1.
-        beside: how many other small things appear close to it.
+    ``angle`` [rad] is its size over its distance, above 0, ``ecc`` [rad] how far it is off the direction of the head,
+    ``beside`` how many other small things appear close to it.
     """
     small, aside = traits.a50 / angle, ecc / traits.ecc_sd
     return traits.lam0 * share / (1.0 + small * small) * math.exp(-0.5 * aside * aside - traits.clutter * beside)

@@ -29,11 +29,9 @@ _NEAR_M = 1.0
 
 
 class Eyes:
-    """Turns detections into knowledge.
+    """Turns detections into knowledge; ``current`` is the object of the current subgoal, which is not forgotten.
 
-    Attributes:
-        current: the object of the current subgoal, which is not forgotten.
-        attention: what is being searched: a place, a point [m], or nothing in particular.
+    ``attention`` is what is being searched: a place, a point [m], or nothing in particular.
     """
 
     def __init__(self, human: HumanContext, objects: ObjectMemory, memory: SpatialMemory) -> None:
@@ -92,17 +90,14 @@ class Eyes:
     def _notices(self, known: KnownObject, seen: Detection, head: Head, seconds: float) -> bool:
         if max(seen.size) > _LARGE_M:
             return self._gather(known.id, self._rate_of_large(seen) * seconds, known.lost)
-        (far, ecc), (share, beside) = head.to(seen.position), self._sighting(seen.id)
+        (far, ecc), sighting = head.to(seen.position), self.human.now.senses.sighting(seen.id)
+        share, beside = sighting.share, sighting.beside
         angle, attended = apparent_size(seen.size) / far, self._attended(seen)
         self._exposures.add(known.id, Glimpse(seconds, angle, ecc, share, beside, attended))
         faster = self.traits.focus if attended else 1.0
         return self._gather(
             known.id, faster * detection_rate(self.traits, angle, ecc, share, beside) * seconds, known.lost
         )
-
-    def _sighting(self, id: str) -> tuple[float, int]:
-        sighting = self.human.now.senses.sighting(id)
-        return sighting.share, sighting.beside
 
     def _furniture(self, seen: Detection, head: Head, seconds: float) -> None:
         memory, place, tick = self.memory, self.memory.places.get(seen.id), self.at

@@ -19,12 +19,9 @@ QUANTILES = (0.05, 0.5, 0.95)
 
 
 class ParameterDescription(Struct, frozen=True, kw_only=True):
-    """One free parameter.
+    """One free parameter: ``mean`` over the draws after the kind's changes, quantiles at `QUANTILES`.
 
-    Attributes:
-        mean: over the population's draws, after the kind's changes; ``quantiles``, ``prior_quantiles`` at `QUANTILES`.
-        person_sd: standard deviation between participants on the ``scale``, for the mean draw.
-        says: whether the data determine it.
+    ``person_sd`` is the spread between participants on the ``scale``; ``says``: whether the data determine it.
     """
 
     name: str

@@ -24,16 +24,14 @@ own: our choice, without data."""
 
 
 class Parameter(Struct, frozen=True, kw_only=True):
-    """One parameter.
+    """One parameter, by its name in `hthor.humans.population.parameters`.
 
     Attributes:
-        name: as in `hthor.humans.population.parameters`.
-        prior: None for a number that is fixed at its default.
+        prior: None for a number that is fixed at its default; ``source`` is of the prior.
         effect: spread between participants in units of ``sigma``; 0 for none.
         scale: whether the effect is added to the logarithm, the logit or the number itself.
         fitted: whether calibration on the published results moves it; others are drawn from their priors.
         grade: what could identify it.
-        source: of its prior.
     """
 
     name: str

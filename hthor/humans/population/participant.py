@@ -62,10 +62,9 @@ def add_random_effects(population: Parameters, root: int, effects: Iterable[Rand
 
 
 def with_practice(traits: Parameters, index: int) -> Parameters:
-    """The same participant in trial number ``index``, from 0: faster with practice.
+    """The same participant in trial number ``index``, from 0: pace, handling and dwelling get quicker with practice.
 
-    The stick, the controllers and the search are new to people, so pace, handling and dwelling get quicker; turning and
-    reading are not, and stay.
+    The stick, the controllers and the search are new to people; turning and reading are not, and stay.
     """
     lift = 1.0 + traits.learn * (1.0 - math.exp(-index / traits.n_learn))
     return msgspec.structs.replace(

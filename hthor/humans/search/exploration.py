@@ -66,8 +66,7 @@ class Exploration:
     def make_for(self, point: Vec3, known: Callable[[], bool], search: OptionChoice) -> Behaviour:
         """Go near a point [m] until what is there is ``known`` by sight.
 
-        As long as it is not, it must be in another room: go through the doorway, or back to the room, whose entrance is
-        nearest to it; and so on for a while.
+        As long as it is not, it is in another room: go by the doorway or entrance nearest to it, again and again.
         """
         until = self.human.now.tick + round(_ROAM_S / self.human.tick_s)
         tried: list[str] = []

@@ -26,15 +26,10 @@ _FRESH_TICKS = 50
 
 
 class OptionChoice:
-    """Lists the options of one search, weighs them and chooses.
+    """Lists the options of one search, for the "target", a "destination" or "room", weighs them and chooses.
 
-    Attributes:
-        belief: in each kind of furniture, adding up to 1; empty when the thing wanted would have been seen.
-        knowledge, uniform: the two parts that ``belief`` is mixed of, common knowledge and ignorance. Where they are
-            set, choices are recorded in the journal.
-
-    Args:
-        name: what is searched for: "target", "destination" or "room".
+    ``belief`` is in each kind of furniture, adding up to 1; empty when the thing wanted would have been seen. It is
+    mixed of ``knowledge`` and ``uniform`` ignorance; where they are set, choices are recorded in the journal.
     """
 
     def __init__(self, human: HumanContext, memory: SpatialMemory, walker: Walker, name: str) -> None:
@@ -112,11 +107,9 @@ class OptionChoice:
         return options
 
     def place_beliefs(self, more: bool, belief: Mapping[str, float] | None = None) -> dict[str, float]:
-        """Belief that the object is at each known place, before it was searched.
+        """Belief that the object is at each known place before any search, by kinds of furniture (`belief` by default).
 
-        Args:
-            more: whether there may be further places of each kind behind doorways.
-            belief: in each kind of furniture, by default `belief`.
+        ``more``: there may be further places of each kind behind doorways.
         """
         by_kind = self.belief if belief is None else belief
         places = self.memory.places.values()

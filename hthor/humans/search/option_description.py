@@ -27,8 +27,7 @@ _HERE_M = 1.0
 class Option(Struct, frozen=True, kw_only=True):
     """Search ``place``, or go through ``doorway``; ``value`` is what it promises for its time.
 
-    ``spot`` [m] is where to go, ``metres`` the way there, ``seconds`` what all takes, ``exposure`` how well the place
-    was searched already.
+    ``metres`` is the way to ``spot`` [m], ``seconds`` what all takes, ``exposure`` how well the place was searched.
     """
 
     name: str
@@ -54,11 +53,7 @@ def describe(
     knowledge: Sequence[float],
     uniform: Sequence[float],
 ) -> Situation:
-    """Choice ``number`` of the search called ``name``, as a policy sees it.
-
-    Args:
-        knowledge, uniform: probability of each option by common knowledge alone, and by ignorance.
-    """
+    """Choice ``number`` of the search called ``name``, as a policy sees it; chances by knowledge and by ignorance."""
     return Situation(
         instruction=human.task.instruction,
         aim="target" if name == "target" else "destination",

@@ -144,9 +144,9 @@ def _start(path: Array, turned: Array, turns: tuple[float, ...]) -> float:
 
 
 def _stops(record: TrialRecord, on: Array, yaw: Array, turned: Array, rate: float) -> tuple[float, ...]:
-    """Durations without walking or turning, where the walk went on in the direction in which it had stopped [s].
+    """Durations without walking, turning or handling, where the walk then went on in the same direction [s].
 
-    Manipulation is excluded. Time spent turning is subtracted, at the ``rate`` of the trial's turns [rad/s].
+    Time spent turning is subtracted, at the ``rate`` of the trial's turns [rad/s].
     """
     busy = [event.tick for event in record.journal if event.kind == "attempt"]
     edges, found = np.flatnonzero(np.diff(on.astype(int))), []

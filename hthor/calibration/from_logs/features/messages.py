@@ -59,10 +59,7 @@ def message_readings(record: TrialRecord) -> tuple[Reading, ...]:
 
 
 def message_noticings(record: TrialRecord) -> tuple[tuple[float, bool], ...]:
-    """For each message that came while the person walked: seconds until they slowed down, and whether they did.
-
-    When the person stopped first, noticing is censored at that moment.
-    """
+    """For each message during a walk: seconds until the person slowed down, or first stopped, and which."""
     stick = locomotion.stick_deflection(record)
     found: list[tuple[float, bool]] = []
     if stick is None:

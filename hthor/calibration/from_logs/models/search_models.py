@@ -56,8 +56,7 @@ def fit_choices(choices: Sequence[Choice], person: Array, beliefs: Mapping[str, 
         utility = np.where(there, utility, -np.inf)
         top = utility.max(axis=1)
         total = top + np.log(np.exp(utility - top[:, None]).sum(axis=1))
-        picked: Array = utility[rows, chosen] - total
-        return picked
+        return utility[rows, chosen] - total
 
     return fit_ability(likelihood, CHOICE_TERMS, person, beliefs)
 
@@ -87,7 +86,6 @@ def fit_detection(exposures: Sequence[Exposure], person: Array, beliefs: Mapping
         amount = known / near * np.exp(values["lam0"] + effects[owner] - max(values["clutter"], 0.0) * beside)
         final = amount[last]
         before = np.bincount(owner, amount, len(exposures)) - final
-        found: Array = np.where(noticed, np.log(np.maximum(-np.expm1(-final), _LEAST)), -final) - before
-        return found
+        return np.where(noticed, np.log(np.maximum(-np.expm1(-final), _LEAST)), -final) - before
 
     return fit_ability(likelihood, DETECTION_TERMS, person, beliefs)

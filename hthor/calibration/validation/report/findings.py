@@ -108,9 +108,7 @@ class TimeDifference(Struct, frozen=True, kw_only=True):
 
 
 class MessageReach(Struct, frozen=True, kw_only=True):
-    """How adoption arises in one condition: share of trials in which a message was shown to the person, and share
-    of those in which one was accepted (None when none was shown).
-    """
+    """How adoption arises: share of trials with a message shown, and of those with one accepted, None without any."""
 
     condition: str
     shown: float

@@ -164,8 +164,7 @@ def score_model(
 ) -> ModelScore:
     """A model's figures, and how well it predicts each condition's published counts and ratio.
 
-    Success and adoption are beta-binomial around the model's mean, with the overdispersion of its own study groups; the
-    ratio TWSR / SR is normal around the groups' mean.
+    Counts are beta-binomial around the model's mean, with the overdispersion of its study groups; ratios are normal.
     """
     average = mean_figures(run, t_star)
     return ModelScore(

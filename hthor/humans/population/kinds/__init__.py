@@ -36,12 +36,7 @@ class ParameterEdit(Struct, frozen=True, kw_only=True, forbid_unknown_fields=Tru
 
 
 class PopulationKind(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A kind of people.
-
-    Attributes:
-        base: the population to change; empty for the default one.
-        reason: why such people are worth testing robots with.
-    """
+    """A kind of people, changed from a population (``base``, or the default), and the reason to test robots with it."""
 
     schema: str = SCHEMA
     name: str
