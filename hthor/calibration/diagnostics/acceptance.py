@@ -16,7 +16,7 @@ class AcceptanceBounds(Struct, frozen=True, kw_only=True):
     """Where a figure of merit has to lie. Our choice.
 
     ``coverage`` is the share of true values inside 90 % intervals, ``z_sd`` the sd of the emulator's standardised
-    errors on whole studies, ``shift`` the greatest of a fitted median by ABC, in posterior sds; ``effective`` points and
+    errors on whole studies, ``shift`` the greatest of a fitted median by ABC, in our sds; ``effective`` points and
     simulated ``studies`` are least numbers; ``covered`` is the share of published figures inside 90 % intervals.
     """
 

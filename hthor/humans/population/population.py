@@ -212,7 +212,7 @@ class Population(Struct, frozen=True, kw_only=True, eq=False, dict=True):
     def draw_traits(
         self, seed: int, index: int, change: Callable[[Parameters], Parameters] | None = None
     ) -> Parameters:
-        """Parameters of participant ``index`` of this study: a draw, after the ``change`` if any, plus random effects."""
+        """Parameters of participant ``index`` of this study: a draw, after any ``change``, plus random effects."""
         mean = self.parameters(self.pick(seed, index))
         return participant.add_random_effects(
             change(mean) if change else mean, participant.participant_root(seed, index), self.specs
