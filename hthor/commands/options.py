@@ -32,6 +32,11 @@ Trial = Annotated[
         metavar="TRIAL", help="The trial: its key or the start of it, a task id, or a number counted from 0."
     ),
 ]
+RobotFiles = Annotated[
+    list[str] | None, typer.Option(help="The file of your own robot, if the run used one.", show_default=False)
+]
+KindFile = Annotated[str, typer.Option(help="The file of your own task kind, if the run used one.", show_default=False)]
+HumansFile = Annotated[str, typer.Option(help="The file of the people, if the run used one.", show_default=False)]
 Json = Annotated[bool, typer.Option("--json", help="Write JSON to standard output and messages to standard error.")]
 
 Camera = Annotated[

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hthor.commands.options import AgentArgs, Readable, Run, Trial
+from hthor.commands.options import AgentArgs, HumansFile, KindFile, Readable, RobotFiles, Run, Trial
 from hthor.console import output
 
 if TYPE_CHECKING:
+    from hthor.eval.replay.session_history import RunFiles
     from hthor.guest import AgentInputs
 
 
@@ -31,13 +31,13 @@ def replay(
     ] = False,
     agent: Annotated[
         list[str] | None,
-        typer.Option(help="With --mind: the file of an agent that is not built in.", show_default=False),
+        typer.Option(help="The file of an agent that is not built in.", show_default=False),
     ] = None,
     agent_args: AgentArgs = None,
     readable: Readable = None,
-    humans: Annotated[
-        str, typer.Option(help="With --mind: the file of the people, if the run used one.", show_default=False)
-    ] = "",
+    robot: RobotFiles = None,
+    kind: KindFile = "",
+    humans: HumansFile = "",
     json: Annotated[
         bool,
         typer.Option(
@@ -45,11 +45,16 @@ def replay(
         ),
     ] = False,
 ) -> None:
-    """Draw one trial from above: paths, messages and their outcomes."""
+    """Draw one trial from above: paths, messages and their outcomes.
+
+    Only --mind needs the files of your own agents, robots, task kinds and people.
+    """
     if mind:
+        from hthor.eval.replay.session_history import RunFiles
         from hthor.guest.agent import inputs
 
-        _replay_mind(run, trial, out, agent or (), humans, inputs.parse_inputs(agent_args or (), readable or ()), json)
+        files = RunFiles(agents=tuple(agent or ()), robots=tuple(robot or ()), kind=kind, humans=humans)
+        _replay_mind(run, trial, out, files, inputs.parse_inputs(agent_args or (), readable or ()), json)
         return
     from hthor.eval.records import find
     from hthor.eval.records.run_folder import RunFolder
@@ -61,21 +66,16 @@ def replay(
     output.put_files([path], json, key=record.key, task=record.spec.task.id)
 
 
-def _replay_mind(
-    run: Path, trial: str, out: Path | None, agents: Sequence[str], humans: str, given: AgentInputs, json: bool
-) -> None:
+def _replay_mind(run: Path, trial: str, out: Path | None, files: RunFiles, given: AgentInputs, json: bool) -> None:
     """Play a session again up to one trial, and draw or print the trace of the human model."""
     from hthor.eval.records import find
     from hthor.eval.records.run_folder import RunFolder
     from hthor.eval.replay import human_trace
-    from hthor.eval.replay.session_history import RunFiles
     from hthor.report.drawing import human_trace_figure, lettering, render_trial
 
     record = find.find_trial(RunFolder(run), trial)
     house = render_trial.load_house(run, record)
-    stream = human_trace.trace_human(
-        RunFolder(run), record, RunFiles(agents=tuple(agents), humans=humans), inputs=given
-    )
+    stream = human_trace.trace_human(RunFolder(run), record, files, inputs=given)
     if not stream.same:
         output.say(
             "the replayed trial differs from the log, so something here is not reproducible. What follows is the "

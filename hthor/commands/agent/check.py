@@ -7,7 +7,18 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from hthor.commands.options import AgentArgs, Camera, CameraSize, Json, Readable, Run, Trial
+from hthor.commands.options import (
+    AgentArgs,
+    Camera,
+    CameraSize,
+    HumansFile,
+    Json,
+    KindFile,
+    Readable,
+    RobotFiles,
+    Run,
+    Trial,
+)
 from hthor.console import output
 
 if TYPE_CHECKING:
@@ -35,13 +46,9 @@ def run(
     ] = None,
     agent_args: AgentArgs = None,
     readable: Readable = None,
-    robot: Annotated[
-        list[str] | None, typer.Option(help="The file of your own robot, if the run used one.", show_default=False)
-    ] = None,
-    kind: Annotated[
-        str, typer.Option(help="The file of your own task kind, if the run used one.", show_default=False)
-    ] = "",
-    humans: Annotated[str, typer.Option(help="The file of the people, if the run used one.", show_default=False)] = "",
+    robot: RobotFiles = None,
+    kind: KindFile = "",
+    humans: HumansFile = "",
     isolation: Isolation = "auto",
     json: Json = False,
 ) -> None:
