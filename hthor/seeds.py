@@ -1,6 +1,6 @@
 """Random draws by name: a draw depends on what it is for, never on how many draws came before; there is no state.
 
-Two robots therefore meet the same person on the same day: a message that changes the person's path does not change
+Two robots therefore meet the same person with the same luck: a message that changes the person's path does not change
 the outcome of any other draw.
 """
 
