@@ -113,7 +113,7 @@ class HostPipe:
         return message
 
     def send(self, message: wire.ToHost | wire.SupervisorToHost) -> None:
-        data = memoryview(wire.add_length(wire.encode(message)))
+        data = memoryview(wire.frame(message))
         while data:
             data = data[os.write(self._write, data) :]
 

@@ -208,6 +208,11 @@ def encode(message: object) -> bytes:
     return _encoder.encode(message)
 
 
+def frame(message: ToGuest | ToHost | SupervisorToHost) -> bytes:
+    """One message as bytes for a pipe."""
+    return add_length(encode(message))
+
+
 def add_length(body: bytes) -> bytes:
     """An encoded message with its length in front."""
     return len(body).to_bytes(4, "little") + body
