@@ -130,7 +130,7 @@ def build_pieces(kind: Kind, size: Vec3 | None, variant: int) -> tuple[Piece, ..
 
 
 def _boxed(pieces: list[Piece], size: Vec3) -> list[Piece]:
-    """Pieces that miss their bounding box by a little, moved and stretched into it."""
+    """Pieces that miss their bounding box, moved and stretched into it."""
     w, d, h = size
     lo, hi = (-w / 2, -d / 2, 0.0), (w / 2, d / 2, h)
     low, high = shaping.bounds(pieces)

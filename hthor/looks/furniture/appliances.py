@@ -8,7 +8,6 @@ from hthor.looks.draft import Draft
 from hthor.looks.furniture import fronts, plain
 from hthor.looks.meshes import shaping, solids, sweeps
 from hthor.looks.meshes.mesh import Piece
-from hthor.looks.objects.tableware import filled
 from hthor.types import Part
 
 
@@ -145,4 +144,4 @@ def range_hood(draft: Draft) -> list[Piece]:
     keys = [solids.cylinder(((k - 1.5) * 0.05, y - 0.001, 0.5 * low), 0.008, 0.004, "y", 10) for k in range(4)]
     found = [materials.piece(shape, steel) for shape in shapes]
     found += [materials.piece(key, materials.paint(c.BLACK, 0.4)) for key in keys]
-    return filled(found, draft)
+    return found

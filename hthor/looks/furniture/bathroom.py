@@ -10,7 +10,6 @@ from hthor.looks.draft import Draft
 from hthor.looks.furniture import plain
 from hthor.looks.meshes import shaping, solids, sweeps
 from hthor.looks.meshes.mesh import Mesh, Piece
-from hthor.looks.objects.tableware import filled
 
 
 def _oval(rows: list[tuple[float, float, float, float]], sides: int = 28) -> Mesh:
@@ -148,7 +147,7 @@ def shower_head(draft: Draft) -> list[Piece]:
         shaping.moved(solids.lathe(head, 24), 0.0, d / 2 - r),
         solids.cylinder((0.0, 0.006 - d / 2, 0.92 * h), 0.08 * h, 0.012, "y", 16),
     ]
-    return filled([materials.piece(shape, materials.chrome()) for shape in shapes], draft)
+    return [materials.piece(shape, materials.chrome()) for shape in shapes]
 
 
 def towel_holder(draft: Draft) -> list[Piece]:
@@ -160,7 +159,7 @@ def towel_holder(draft: Draft) -> list[Piece]:
             solids.cylinder((s * (w / 2 - h / 2), 0.006 - d / 2, 0.5 * h), h / 2, 0.012, "y", 16),
             sweeps.tube([(s * 0.455 * w, -d / 2, 0.5 * h), (s * 0.455 * w, 0.4 * d, 0.5 * h)], 0.010, 8),
         ]
-    return filled([materials.piece(shape, materials.chrome()) for shape in shapes], draft)
+    return [materials.piece(shape, materials.chrome()) for shape in shapes]
 
 
 def towel(draft: Draft) -> list[Piece]:
@@ -187,7 +186,7 @@ def towel(draft: Draft) -> list[Piece]:
         "terry",
     )
     band = shaping.surface(stripe, uv[::-1, 11:13])
-    return filled([*(materials.piece(shape, coat) for shape in sheets), materials.piece(band, pale)], draft)
+    return [*(materials.piece(shape, coat) for shape in sheets), materials.piece(band, pale)]
 
 
 def toilet_paper(draft: Draft) -> list[Piece]:
@@ -195,13 +194,10 @@ def toilet_paper(draft: Draft) -> list[Piece]:
     r, h = min(draft.size[:2]) / 2, draft.size[2]
     paper = [(0.40 * r, 0.02 * h), (0.94 * r, 0.0), (r, 0.03 * h), (r, 0.97 * h), (0.94 * r, h), (0.40 * r, 0.98 * h)]
     core = [(0.40 * r, 0.99 * h), (0.36 * r, 0.99 * h), (0.36 * r, 0.01 * h)]
-    return filled(
-        [
-            materials.piece(solids.lathe(paper, 24), materials.cloth(draft.color(0), "felt")),
-            materials.piece(solids.lathe(core, 16), materials.tinted("cardboard", c.CARDBOARD)),
-        ],
-        draft,
-    )
+    return [
+        materials.piece(solids.lathe(paper, 24), materials.cloth(draft.color(0), "felt")),
+        materials.piece(solids.lathe(core, 16), materials.tinted("cardboard", c.CARDBOARD)),
+    ]
 
 
 def soap(draft: Draft) -> list[Piece]:
@@ -210,4 +206,4 @@ def soap(draft: Draft) -> list[Piece]:
     shape = solids.box((-w / 2, -d / 2, 0.0), (w / 2, d / 2, h), 0.42 * h, 3)
     mark = sweeps.ring((0.0, 0.0, 0.985 * h), 0.22 * w, 0.03 * h, "z", 18, 5)
     coat = materials.paint(draft.color(0), 0.4)
-    return filled([materials.piece(shape, coat), materials.piece(shaping.stretched(mark, 1.2, 0.8, 1.0), coat)], draft)
+    return [materials.piece(shape, coat), materials.piece(shaping.stretched(mark, 1.2, 0.8, 1.0), coat)]

@@ -59,21 +59,13 @@ def coffee_machine(draft: Draft) -> list[Piece]:
     x, y = w / 2, d / 2
     body, steel = materials.paint(draft.color(0), 0.4), materials.metal(c.STEEL)
     r, at = 0.30 * min(w, d), y - 0.30 * d
-    jug = [
-        (0.0, 0.115 * h),
-        (0.9 * r, 0.115 * h),
-        (r, 0.16 * h),
-        (r, 0.36 * h),
-        (0.72 * r, 0.50 * h),
-        (0.66 * r, 0.54 * h),
-        (0.70 * r, 0.56 * h),
-    ]
-    brew = [(0.0, 0.12 * h), (0.86 * r, 0.12 * h), (0.95 * r, 0.16 * h), (0.95 * r, 0.33 * h), (0.0, 0.33 * h)]
-    lid = [(0.0, 0.55 * h), (0.72 * r, 0.55 * h), (0.70 * r, 0.58 * h), (0.2 * r, 0.60 * h), (0.0, 0.60 * h)]
+    jug = [(0.0, 0.115), (0.9, 0.115), (1.0, 0.16), (1.0, 0.36), (0.72, 0.50), (0.66, 0.54), (0.70, 0.56)]
+    brew = [(0.0, 0.12), (0.86, 0.12), (0.95, 0.16), (0.95, 0.33), (0.0, 0.33)]
+    lid = [(0.0, 0.55), (0.72, 0.55), (0.70, 0.58), (0.2, 0.60), (0.0, 0.60)]
     ear = sweeps.bend(
         (0.66 * r, at, 0.52 * h), (1.45 * r, at, 0.48 * h), (1.40 * r, at, 0.26 * h), (0.96 * r, at, 0.20 * h), steps=4
     )
-    placed = [(shaping.moved(solids.lathe(p, 24), 0.0, at),
+    placed = [(shaping.moved(solids.lathe(p, 24, (r, h)), 0.0, at),
         m) for p, m in ((brew, materials.paint((0.16, 0.09, 0.05, 1.0), 0.5)), (lid, body),
         (jug, materials.glass((0.85, 0.92, 0.94, 0.18))))]  # fmt: skip
     lamp = solids.cylinder((0.28 * w, y - 0.002, 0.86 * h), 0.010, 0.006, "y", 10)

@@ -6,7 +6,6 @@ from hthor.looks.draft import Draft
 from hthor.looks.furniture import fronts
 from hthor.looks.meshes import solids, sweeps
 from hthor.looks.meshes.mesh import Mesh, Piece
-from hthor.looks.objects.tableware import filled
 
 Rect = tuple[float, float, float, float]
 
@@ -99,4 +98,4 @@ def faucet(draft: Draft) -> list[Piece]:
         sweeps.tube(path, 0.22 * w, 10),
         sweeps.tube([(0.0, y + 0.3 * d, 0.6 * h), (0.0, y + 0.42 * d, h)], 0.12 * w, 8),
     ]
-    return filled([materials.piece(shape, materials.chrome()) for shape in shapes], draft)
+    return [materials.piece(shape, materials.chrome()) for shape in shapes]

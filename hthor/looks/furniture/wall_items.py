@@ -9,7 +9,6 @@ from hthor.looks import materials
 from hthor.looks.draft import Draft
 from hthor.looks.meshes import shaping, solids, sweeps
 from hthor.looks.meshes.mesh import Material, Mesh, Piece
-from hthor.looks.objects.tableware import filled
 
 _ART = ("landscape_1", "landscape_2", "abstract_1", "landscape_3", "still_life", "landscape_4", "abstract_2")
 _RUGS = ("rug_red", "rug_blue", "rug_green")
@@ -65,25 +64,16 @@ def clock(draft: Draft) -> list[Piece]:
     """A round dial in a rim."""
     w, d, h = draft.size
     r = min(w, h) / 2
-    rim = [
-        (0.0, -d / 2),
-        (r, -d / 2),
-        (r, 0.30 * d),
-        (0.97 * r, d / 2),
-        (0.90 * r, d / 2),
-        (0.87 * r, 0.2 * d),
-        (0.0, 0.2 * d),
-    ]
+    rim = [(0.0, -0.5), (1.0, -0.5), (1.0, 0.30), (0.97, 0.5), (0.90, 0.5), (0.87, 0.2), (0.0, 0.2)]
     angle = np.linspace(0.0, 2 * np.pi, 33)
     disc = np.stack([np.stack([np.zeros(33)] * 2, -1), np.stack([np.cos(angle), np.sin(angle)], -1)], 1)
     points = np.stack([disc[..., 0] * 0.88 * r, np.full(disc.shape[:2], 0.2 * d + 0.0008), disc[..., 1] * 0.88 * r], -1)
     uv = np.stack([0.5 - 0.5 * disc[..., 0], 0.5 - 0.5 * disc[..., 1]], -1)
     face = shaping.surface(points, uv)
-    pieces = [
-        materials.piece(solids.along(solids.lathe(rim, 32), "y"), materials.paint(draft.color(0), 0.5)),
+    return [
+        materials.piece(solids.along(solids.lathe(rim, 32, (r, d)), "y"), materials.paint(draft.color(0), 0.5)),
         materials.piece(face, materials.picture("dial")),
     ]
-    return filled(pieces, draft)
 
 
 def curtain(draft: Draft) -> list[Piece]:
@@ -106,7 +96,7 @@ def curtain(draft: Draft) -> list[Piece]:
         if s < 0:
             points, uv = points[::-1], uv[::-1]
         found.append(materials.piece(sweeps.sheet(points.copy(), uv.copy(), 0.003), coat))
-    return filled(found, draft)
+    return found
 
 
 def rug(draft: Draft) -> list[Piece]:
@@ -151,6 +141,4 @@ def light_switch(draft: Draft) -> list[Piece]:
     rocker = shaping.turned(
         solids.box((-0.24 * w, -0.3 * d, -0.26 * h), (0.24 * w, 0.3 * d, 0.26 * h), 0.002), "x", 0.06
     )
-    return filled(
-        [materials.piece(plate, white), materials.piece(shaping.moved(rocker, 0.0, 0.16 * d, 0.5 * h), white)], draft
-    )
+    return [materials.piece(plate, white), materials.piece(shaping.moved(rocker, 0.0, 0.16 * d, 0.5 * h), white)]

@@ -75,15 +75,15 @@ def soft(lo: Vec3, hi: Vec3, radius: float, puff: float = 0.0, steps: int = 2, c
     return shaping.moved(shaping.mesh(points, body.faces, body.uv, shaping.smooth(points, body.faces)), *middle)
 
 
-def lathe(profile: Sequence[Vec2], sides: int = 20, *, whole: bool = False, turns: float = 1.0) -> Mesh:
-    """A solid of revolution about z from ``profile``, (radius, height) [m] from the bottom up along its outside.
+def lathe(profile: Sequence[Vec2], sides: int = 20, unit: Vec2 = (1.0, 1.0), *, whole: bool = False) -> Mesh:
+    """A solid of revolution about z from ``profile``, (radius, height) in ``unit`` [m], upwards along its outside.
 
-    Creases of more than 40 degrees stay sharp. ``whole`` lays the texture once around and
-    once from end to end instead of in metres.
+    Creases of more than 40 degrees stay sharp. ``whole`` lays the texture once around and once from end to end instead
+    of in metres.
     """
-    angle = np.linspace(0.0, 2.0 * math.pi * turns, sides + 1)
-    rim = 2.0 * math.pi * max(r for r, _ in profile)
-    rows = np.array(profile, float)
+    angle = np.linspace(0.0, 2.0 * math.pi, sides + 1)
+    rows = np.array(profile, float) * unit
+    rim = 2.0 * math.pi * float(rows[:, 0].max())
     length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(rows, axis=0), axis=1))])
     scale = (1.0, 1.0 / length[-1]) if whole else (rim, 1.0)
     strips = [_strip(rows, length, first, last, angle, scale) for first, last in _runs(rows)]

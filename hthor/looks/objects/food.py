@@ -19,17 +19,12 @@ def _skin(texture: str, specular: float) -> Material:
     return Material(texture=texture, specular=specular, shininess=specular)
 
 
-def _filled(pieces: list[Piece], draft: Draft) -> list[Piece]:
-    w, d, h = draft.size
-    return shaping.fitted(pieces, (-w / 2, -d / 2, 0.0), (w / 2, d / 2, h))
-
-
 def _upright(shape: Mesh) -> Mesh:
     """A skin's first row belongs to the top."""
     return shape._replace(uv=np.stack([shape.uv[:, 0], 1.0 - shape.uv[:, 1]], -1))
 
 
-def apple(draft: Draft) -> list[Piece]:
+def apple(_: Draft) -> list[Piece]:
     """Broad shoulders around a dimple with a stem and a leaf, narrower below, five faint ribs."""
 
     def radius(lon: Any, lat: Any) -> Any:
@@ -45,14 +40,11 @@ def apple(draft: Draft) -> list[Piece]:
     )
     blade = _blade(0.55, 0.20, 0.10)
     leaf = shaping.moved(shaping.turned(shaping.turned(blade, "y", -0.12), "z", 0.7), 0.03, 0.0, 0.86)
-    return _filled(
-        [
-            materials.piece(body, _skin("apple", 0.5)),
-            materials.piece(stem, materials.paint(_STEM, 0.0)),
-            materials.piece(leaf, Material(texture="leaf", specular=0.2)),
-        ],
-        draft,
-    )
+    return [
+        materials.piece(body, _skin("apple", 0.5)),
+        materials.piece(stem, materials.paint(_STEM, 0.0)),
+        materials.piece(leaf, Material(texture="leaf", specular=0.2)),
+    ]
 
 
 def _blade(length: float, width: float, sag: float) -> Mesh:
@@ -66,7 +58,7 @@ def _blade(length: float, width: float, sag: float) -> Mesh:
     return sweeps.sheet(np.stack([x, y, z], -1), uv, 0.004 * length)
 
 
-def tomato(draft: Draft) -> list[Piece]:
+def tomato(_: Draft) -> list[Piece]:
     """A flattened ball with soft lobes, and a star of sepals around a stub."""
 
     def radius(lon: Any, lat: Any) -> Any:
@@ -80,16 +72,13 @@ def tomato(draft: Draft) -> list[Piece]:
         calyx.append(
             shaping.moved(shaping.turned(leaf, "z", k * math.pi / 3 + 0.2 * math.sin(2.0 * k)), 0.0, 0.0, 0.71)
         )
-    return _filled(
-        [
-            materials.piece(body, _skin("tomato", 0.7)),
-            *(materials.piece(shape, materials.paint(_CALYX, 0.05)) for shape in calyx),
-        ],
-        draft,
-    )
+    return [
+        materials.piece(body, _skin("tomato", 0.7)),
+        *(materials.piece(shape, materials.paint(_CALYX, 0.05)) for shape in calyx),
+    ]
 
 
-def lettuce(draft: Draft) -> list[Piece]:
+def lettuce(_: Draft) -> list[Piece]:
     """A head of leaves: a lumpy heart in three rings of ruffled leaves that wrap it."""
 
     def radius(lon: Any, lat: Any) -> Any:
@@ -105,7 +94,7 @@ def lettuce(draft: Draft) -> list[Piece]:
             leaves.append(shaping.turned(_wrap(reach, flare, height, 5 * ring + k), "z", way))
     coat = Material(texture="lettuce", specular=0.12, shininess=0.2)
     pale = Material(rgba=(1.0, 1.0, 0.88, 1.0), texture="lettuce", specular=0.12, shininess=0.2)
-    return _filled([materials.piece(heart, pale), *(materials.piece(leaf, coat) for leaf in leaves)], draft)
+    return [materials.piece(heart, pale), *(materials.piece(leaf, coat) for leaf in leaves)]
 
 
 def _wrap(reach: float, flare: float, height: float, seed: int) -> Mesh:
@@ -135,18 +124,18 @@ def bread(draft: Draft) -> list[Piece]:
     points[:, -1] = points[:, 0]
     uv = np.stack([aa / 6.3 * 0.28, tt * d / 2], -1)
     shape = shaping.surface(points.swapaxes(0, 1)[::-1], uv.swapaxes(0, 1)[::-1])
-    return _filled([materials.piece(shape, _skin("bread", 0.08))], draft)
+    return [materials.piece(shape, _skin("bread", 0.08))]
 
 
-def egg(draft: Draft) -> list[Piece]:
+def egg(_: Draft) -> list[Piece]:
     """An egg on its broad end."""
     angle = np.linspace(0.0, math.pi, 15)
     profile = [(math.sin(a) * (1.0 + 0.16 * math.cos(a)), -math.cos(a)) for a in angle]
     profile[0], profile[-1] = (0.0, -1.0), (0.0, 1.0)
-    return _filled([materials.piece(solids.lathe(profile, 20, whole=True), _skin("egg", 0.2))], draft)
+    return [materials.piece(solids.lathe(profile, 20, whole=True), _skin("egg", 0.2))]
 
 
-def potato(draft: Draft) -> list[Piece]:
+def potato(_: Draft) -> list[Piece]:
     """An uneven tuber."""
 
     def radius(lon: Any, lat: Any) -> Any:
@@ -154,4 +143,4 @@ def potato(draft: Draft) -> list[Piece]:
             1.0 + 0.09 * np.sin(2 * lon + 1) * np.cos(lat) + 0.06 * np.sin(3 * lat + lon) + 0.04 * np.sin(5 * lon - lat)
         )
 
-    return _filled([materials.piece(solids.blob(radius, 20, 14), _skin("potato", 0.05))], draft)
+    return [materials.piece(solids.blob(radius, 20, 14), _skin("potato", 0.05))]

@@ -9,7 +9,6 @@ from hthor.looks import materials
 from hthor.looks.draft import Draft
 from hthor.looks.meshes import shaping, solids, sweeps
 from hthor.looks.meshes.mesh import Material, Mesh, Piece
-from hthor.looks.objects.tableware import filled
 
 _COVERS = {
     c.RUST: "cover_1",
@@ -87,14 +86,11 @@ def tissue_box(draft: Draft) -> list[Piece]:
         -1,
     )
     tissue = sweeps.sheet(points, np.stack([u, v], -1) * 0.1, 0.001)
-    return filled(
-        [
-            materials.piece(box, materials.tinted("dots", draft.color(0))),
-            materials.piece(shaping.stretched(slot, 1.5, 0.8, 1.0), materials.paint(c.IRON, 0.0)),
-            materials.piece(tissue, materials.paint(c.WHITE, 0.02)),
-        ],
-        draft,
-    )
+    return [
+        materials.piece(box, materials.tinted("dots", draft.color(0))),
+        materials.piece(shaping.stretched(slot, 1.5, 0.8, 1.0), materials.paint(c.IRON, 0.0)),
+        materials.piece(tissue, materials.paint(c.WHITE, 0.02)),
+    ]
 
 
 def paper_roll(draft: Draft) -> list[Piece]:
@@ -102,8 +98,8 @@ def paper_roll(draft: Draft) -> list[Piece]:
     r, h = min(draft.size[:2]) / 2, draft.size[2]
     paper = [(0.30 * r, 0.0), (0.97 * r, 0.0), (r, 0.01 * h), (r, 0.99 * h), (0.97 * r, h), (0.30 * r, h)]
     core = [(0.30 * r, h), (0.26 * r, h), (0.26 * r, 0.0)]
-    return filled([materials.piece(solids.lathe(paper, 24), materials.cloth(draft.color(0), "quilt")),
-        materials.piece(solids.lathe(core, 14), materials.tinted("cardboard", c.CARDBOARD))], draft)  # fmt: skip
+    return [materials.piece(solids.lathe(paper, 24), materials.cloth(draft.color(0), "quilt")),
+        materials.piece(solids.lathe(core, 14), materials.tinted("cardboard", c.CARDBOARD))]  # fmt: skip
 
 
 def cloth(draft: Draft) -> list[Piece]:

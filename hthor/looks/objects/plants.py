@@ -9,7 +9,6 @@ from hthor.looks import materials
 from hthor.looks.draft import Draft
 from hthor.looks.meshes import shaping, solids, sweeps
 from hthor.looks.meshes.mesh import Material, Mesh, Piece
-from hthor.looks.objects.tableware import filled
 
 _ROOT = 20
 _STEM = (0.30, 0.36, 0.18, 1.0)
@@ -36,15 +35,12 @@ def house_plant(draft: Draft) -> list[Piece]:
     soil = [(0.91 * pot_r, 0.90 * pot_h), (0.0, 0.92 * pot_h)]
     blades, stems = (_broad, _swords, _palm)[draft.variant % 3](r, pot_h, h)
     green = Material(texture="leaf", specular=0.25, shininess=0.3)
-    return filled(
-        [
-            materials.piece(solids.lathe([*outer, *lip], 28), materials.guess(draft.color(0))),
-            materials.piece(solids.lathe(soil, 20), Material(texture="soil", specular=0.0)),
-            *(materials.piece(shape, materials.paint(_STEM, 0.05)) for shape in stems),
-            *(materials.piece(shape, green) for shape in blades),
-        ],
-        draft,
-    )
+    return [
+        materials.piece(solids.lathe([*outer, *lip], 28), materials.guess(draft.color(0))),
+        materials.piece(solids.lathe(soil, 20), Material(texture="soil", specular=0.0)),
+        *(materials.piece(shape, materials.paint(_STEM, 0.05)) for shape in stems),
+        *(materials.piece(shape, green) for shape in blades),
+    ]
 
 
 def _broad(r: float, low: float, high: float) -> tuple[list[Mesh], list[Mesh]]:

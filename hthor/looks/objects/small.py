@@ -9,7 +9,7 @@ from hthor.looks import materials
 from hthor.looks.draft import Draft
 from hthor.looks.meshes import shaping, solids, sweeps
 from hthor.looks.meshes.mesh import Piece
-from hthor.looks.objects.tableware import filled, hollow
+from hthor.looks.objects.tableware import hollow
 
 
 def alarm_clock(draft: Draft) -> list[Piece]:
@@ -36,14 +36,14 @@ def alarm_clock(draft: Draft) -> list[Piece]:
             materials.piece(sweeps.tube([(s * 0.5 * r, 0.0, z - 0.8 * r), (s * 0.72 * r, 0.0, 0.0)], 0.006, 8), steel)
         )
     found.append(materials.piece(sweeps.tube([(0.0, 0.0, z + r), (0.0, 0.0, z + 1.28 * r)], 0.005, 8), steel))
-    return filled(found, draft)
+    return found
 
 
 def bin_(draft: Draft) -> list[Piece]:
     """An open waste bin with a rim."""
     r, h = min(draft.size[:2]) / 2, draft.size[2]
     outer = [(0.0, 0.0), (0.74 * r, 0.0), (0.77 * r, 0.02 * h), (0.95 * r, 0.93 * h), (r, 0.935 * h), (r, 0.985 * h)]
-    return filled([materials.piece(hollow(outer, 0.05 * r, 0.03 * h, 28), materials.paint(draft.color(0), 0.3))], draft)
+    return [materials.piece(hollow(outer, 0.05 * r, 0.03 * h, 28), materials.paint(draft.color(0), 0.3))]
 
 
 def hamper(draft: Draft) -> list[Piece]:
@@ -55,57 +55,34 @@ def hamper(draft: Draft) -> list[Piece]:
     liner = solids.box((-x, -y, 0.82 * h), (x, y, 0.945 * h), 0.03, 2)
     lid = solids.soft((0.004 - x, 0.004 - y, 0.93 * h), (x - 0.004, y - 0.004, h), 0.02, 0.0, 2, 1)
     knob = sweeps.ring((0.0, y - 0.006, 0.9 * h), 0.02, 0.004, "y", 14, 5)
-    return filled(
-        [
-            materials.piece(body, wicker),
-            materials.piece(liner, materials.cloth(draft.color(0), "linen")),
-            materials.piece(lid, wicker),
-            materials.piece(shaping.moved(knob, 0.0, 0.0, -0.2 * h), materials.leather(c.WALNUT)),
-        ],
-        draft,
-    )
+    return [
+        materials.piece(body, wicker),
+        materials.piece(liner, materials.cloth(draft.color(0), "linen")),
+        materials.piece(lid, wicker),
+        materials.piece(shaping.moved(knob, 0.0, 0.0, -0.2 * h), materials.leather(c.WALNUT)),
+    ]
 
 
 def boots(draft: Draft) -> list[Piece]:
     """A pair of ankle boots side by side."""
     w, d, h = draft.size
     coat, sole = materials.leather(draft.color(0)), materials.paint(c.BLACK, 0.1)
+    leg = [(0.0, 0.2), (0.9, 0.2), (0.84, 0.6), (0.92, 0.97), (0.86, 1.0), (0.76, 1.0), (0.72, 0.7), (0.0, 0.6)]
     found = []
     for s in (-1.0, 1.0):
         at, half = s * 0.26 * w, 0.21 * w
         foot = solids.soft((at - half, -d / 2 + 0.01, 0.005), (at + half, d / 2, 0.36 * h), 0.045, 0.0, 2, 1)
-        shaft = shaping.moved(
-            shaping.stretched(
-                solids.lathe(
-                    [
-                        (0.0, 0.2 * h),
-                        (0.9, 0.2 * h),
-                        (0.84, 0.6 * h),
-                        (0.92, 0.97 * h),
-                        (0.86, h),
-                        (0.76, h),
-                        (0.72, 0.7 * h),
-                        (0.0, 0.6 * h),
-                    ],
-                    18,
-                ),
-                half,
-                0.24 * d,
-                1.0,
-            ),
-            at,
-            -0.22 * d,
-        )
-        found += [materials.piece(foot, coat), materials.piece(shaft, coat)]
+        shaft = shaping.stretched(solids.lathe(leg, 18, (1.0, h)), half, 0.24 * d, 1.0)
+        found += [materials.piece(foot, coat), materials.piece(shaping.moved(shaft, at, -0.22 * d), coat)]
         found.append(
             materials.piece(
                 solids.box((at - 0.92 * half, -d / 2, 0.0), (at + 0.92 * half, d / 2 - 0.01, 0.03), 0.012), sole
             )
         )
-    return filled(found, draft)
+    return found
 
 
-def keys(draft: Draft) -> list[Piece]:
+def keys(_: Draft) -> list[Piece]:
     """Two keys on a ring."""
     found = [materials.piece(sweeps.ring((-0.35, 0.0, 0.09), 0.13, 0.016, "z", 20, 6), materials.chrome())]
     for turn, tint in ((0.28, c.STEEL), (-0.30, c.MUSTARD)):
@@ -117,7 +94,7 @@ def keys(draft: Draft) -> list[Piece]:
         ]
         shape = shaping.moved(shaping.turned(shaping.merged(bow, stem, *bits), "z", turn), -0.18, 0.3 * turn)
         found.append(materials.piece(shape, materials.metal(tint)))
-    return filled(found, draft)
+    return found
 
 
 def watch(draft: Draft) -> list[Piece]:
@@ -139,29 +116,19 @@ def watch(draft: Draft) -> list[Piece]:
     strap = shaping.moved(shaping.merged(*band), z=h / 2)
     case = solids.cylinder((0.0, 0.0, h - 0.0035), d / 2, 0.007, "z", 22)
     face = sweeps.lying((0.0, 0.0, h + 0.0003), 0.66 * d, 0.66 * d)
-    return filled([materials.piece(strap, materials.leather(draft.color(0))),
-        materials.piece(case, materials.chrome()), materials.piece(face, materials.picture("dial_dark"))],
-        draft)  # fmt: skip
+    return [materials.piece(strap, materials.leather(draft.color(0))),
+        materials.piece(case, materials.chrome()), materials.piece(face, materials.picture("dial_dark"))]  # fmt: skip
 
 
 def pen(draft: Draft) -> list[Piece]:
     """A ball pen along y."""
     w, d, _ = draft.size
     r = w / 2
-    body = [
-        (0.0, -d / 2),
-        (0.16 * r, -0.49 * d),
-        (0.7 * r, -0.42 * d),
-        (0.8 * r, -0.36 * d),
-        (0.8 * r, 0.42 * d),
-        (0.3 * r, 0.43 * d),
-        (0.3 * r, d / 2),
-        (0.0, d / 2),
-    ]
+    body = [(0.0, -0.5), (0.16, -0.49), (0.7, -0.42), (0.8, -0.36), (0.8, 0.42), (0.3, 0.43), (0.3, 0.5), (0.0, 0.5)]
     clip = solids.box((-0.25 * r, 0.18 * d, 0.8 * r), (0.25 * r, 0.42 * d, r), 0.0, 0)
     tip = solids.box((-r, 0.0, -r), (r, 0.012, 0.8 * r), 0.4 * r)
-    return filled([materials.piece(solids.along(solids.lathe(body, 10), "y"), materials.paint(draft.color(0), 0.5)),
-        materials.piece(clip, materials.chrome()), materials.piece(tip, materials.chrome())], draft)  # fmt: skip
+    return [materials.piece(solids.along(solids.lathe(body, 10, (r, d)), "y"), materials.paint(draft.color(0), 0.5)),
+        materials.piece(clip, materials.chrome()), materials.piece(tip, materials.chrome())]  # fmt: skip
 
 
 def disc(draft: Draft) -> list[Piece]:

@@ -13,12 +13,6 @@ from hthor.looks.meshes.mesh import Material, Mesh, Piece
 from hthor.types import Vec2
 
 
-def filled(pieces: list[Piece], draft: Draft) -> list[Piece]:
-    """Pieces of any size, stretched into the thing's bounding box."""
-    w, d, h = draft.size
-    return shaping.fitted(pieces, (-w / 2, -d / 2, 0.0), (w / 2, d / 2, h))
-
-
 def hollow(outer: Sequence[Vec2], wall: float, floor: float, sides: int = 24) -> Mesh:
     """A vessel with an ``outer`` profile from the middle of its foot up to its rim, ``wall`` [m] thick."""
     rim, high = outer[-1]
@@ -40,14 +34,14 @@ def mug(draft: Draft) -> list[Piece]:
         path = sweeps.bend((x + 0.96 * r, 0.0, 0.80 * h), (w / 2 - 0.012, 0.0, 0.72 * h),
             (w / 2 - 0.007, 0.0, 0.45 * h), (x + 0.96 * r, 0.0, 0.20 * h), steps=5)  # fmt: skip
         found.append(materials.piece(shaping.stretched(sweeps.tube(path, 0.0065, 8), 1.0, 1.25, 1.0), glaze))
-    return filled(found, draft)
+    return found
 
 
 def cup(draft: Draft) -> list[Piece]:
     """A tumbler."""
     r, h = min(draft.size[:2]) / 2, draft.size[2]
     outer = [(0.0, 0.0), (0.66 * r, 0.0), (0.72 * r, 0.03 * h), (0.90 * r, 0.5 * h), (r, 0.97 * h)]
-    return filled([materials.piece(hollow(outer, 0.08 * r, 0.08 * h), materials.ceramic(draft.color(0)))], draft)
+    return [materials.piece(hollow(outer, 0.08 * r, 0.08 * h), materials.ceramic(draft.color(0)))]
 
 
 def bowl(draft: Draft) -> list[Piece]:
@@ -56,28 +50,22 @@ def bowl(draft: Draft) -> list[Piece]:
     outer = [(0.0, 0.0), (0.42 * r, 0.0), (0.45 * r, 0.06 * h), (0.60 * r, 0.14 * h), (0.80 * r, 0.40 * h),
         (0.92 * r, 0.68 * h), (r, 0.97 * h)]  # fmt: skip
     inside = [(0.99 * r, 0.985 * h), (0.90 * r, 0.68 * h), (0.76 * r, 0.40 * h), (0.55 * r, 0.19 * h), (0.0, 0.12 * h)]
-    return filled(
-        [
-            materials.piece(hollow(outer, 0.05 * r, 0.10 * h), materials.ceramic(draft.color(0))),
-            materials.piece(solids.lathe(inside, 24), materials.ceramic(c.CREAM)),
-        ],
-        draft,
-    )
+    return [
+        materials.piece(hollow(outer, 0.05 * r, 0.10 * h), materials.ceramic(draft.color(0))),
+        materials.piece(solids.lathe(inside, 24), materials.ceramic(c.CREAM)),
+    ]
 
 
 def plate(draft: Draft) -> list[Piece]:
     """A shallow well in a broad rim with a colored line."""
     r, h = min(draft.size[:2]) / 2, draft.size[2]
-    profile = [(0.0, 0.0), (0.56 * r, 0.0), (0.60 * r, 0.10 * h), (0.80 * r, 0.50 * h), (r, 0.94 * h), (0.99 * r, h),
-        (0.82 * r, 0.86 * h), (0.66 * r, 0.82 * h), (0.0, 0.82 * h)]  # fmt: skip
+    profile = [(0.0, 0.0), (0.56, 0.0), (0.60, 0.10), (0.80, 0.50), (1.0, 0.94), (0.99, 1.0), (0.82, 0.86),
+        (0.66, 0.82), (0.0, 0.82)]  # fmt: skip
     line = [(0.95 * r, 0.985 * h), (0.90 * r, 0.955 * h)]
-    return filled(
-        [
-            materials.piece(solids.lathe(profile, 32), materials.ceramic(draft.color(0))),
-            materials.piece(shaping.moved(solids.lathe(line, 32), z=0.0004), materials.ceramic(c.TEAL)),
-        ],
-        draft,
-    )
+    return [
+        materials.piece(solids.lathe(profile, 32, (r, h)), materials.ceramic(draft.color(0))),
+        materials.piece(shaping.moved(solids.lathe(line, 32), z=0.0004), materials.ceramic(c.TEAL)),
+    ]
 
 
 def pot(draft: Draft) -> list[Piece]:
@@ -92,13 +80,10 @@ def pot(draft: Draft) -> list[Piece]:
         path = [(s * 0.97 * r, -0.3 * r, 0.56 * h), (s * w / 2 * 0.98, -0.24 * r, 0.58 * h),
             (s * w / 2 * 0.98, 0.24 * r, 0.58 * h), (s * 0.97 * r, 0.3 * r, 0.56 * h)]  # fmt: skip
         ears.append(sweeps.tube(path, 0.008, 8))
-    return filled(
-        [
-            *(materials.piece(solids.lathe(profile, 28), steel) for profile in (body, lid)),
-            *(materials.piece(shape, dark) for shape in (solids.lathe(knob, 14), *ears)),
-        ],
-        draft,
-    )
+    return [
+        *(materials.piece(solids.lathe(profile, 28), steel) for profile in (body, lid)),
+        *(materials.piece(shape, dark) for shape in (solids.lathe(knob, 14), *ears)),
+    ]
 
 
 def pan(draft: Draft) -> list[Piece]:
@@ -112,20 +97,17 @@ def pan(draft: Draft) -> list[Piece]:
         (0.0, at + 0.94 * r, 0.62 * h), (0.0, at + 1.2 * r, 0.86 * h), (0.0, d / 2 - 0.01, 0.90 * h), steps=4
     )
     handle = shaping.stretched(sweeps.tube(path, [0.008] * 4 + [0.010] * 5, 8), 1.3, 1.0, 1.0)
-    return filled(
-        [
-            materials.piece(body, materials.metal(draft.color(0))),
-            materials.piece(handle, materials.paint(c.BLACK, 0.3)),
-        ],
-        draft,
-    )
+    return [
+        materials.piece(body, materials.metal(draft.color(0))),
+        materials.piece(handle, materials.paint(c.BLACK, 0.3)),
+    ]
 
 
 def kettle(draft: Draft) -> list[Piece]:
     """A bellied kettle with a spout to the front and a handle over it."""
     r, h = 0.40 * min(draft.size[:2]), draft.size[2]
-    belly = [(0.0, 0.0), (0.92 * r, 0.0), (r, 0.06 * h), (0.98 * r, 0.25 * h), (0.80 * r, 0.50 * h),
-        (0.55 * r, 0.64 * h), (0.50 * r, 0.67 * h), (0.2 * r, 0.71 * h), (0.0, 0.72 * h)]  # fmt: skip
+    belly = [(0.0, 0.0), (0.92, 0.0), (1.0, 0.06), (0.98, 0.25), (0.80, 0.50), (0.55, 0.64), (0.50, 0.67),
+        (0.2, 0.71), (0.0, 0.72)]  # fmt: skip
     knob = solids.ball((0.0, 0.0, 0.745 * h), (0.14 * r, 0.14 * r, 0.04 * h), 12)
     spout = sweeps.tube(
         [(0.0, 0.6 * r, 0.34 * h), (0.0, 1.05 * r, 0.46 * h), (0.0, 1.4 * r, 0.64 * h)],
@@ -135,62 +117,42 @@ def kettle(draft: Draft) -> list[Piece]:
     over = sweeps.bend((0.0, -0.62 * r, 0.56 * h), (0.0, -0.60 * r, 0.90 * h), (0.0, 0.0, 0.97 * h),
         (0.0, 0.6 * r, 0.90 * h), (0.0, 0.62 * r, 0.56 * h), steps=4)  # fmt: skip
     steel, dark = materials.chrome(draft.color(0)), materials.paint(c.BLACK, 0.4)
-    return filled(
-        [
-            *(materials.piece(shape, steel) for shape in (solids.lathe(belly, 28), spout)),
-            *(materials.piece(shape, dark) for shape in (sweeps.tube(over, 0.009, 8), knob)),
-        ],
-        draft,
-    )
+    return [
+        *(materials.piece(shape, steel) for shape in (solids.lathe(belly, 28, (r, h)), spout)),
+        *(materials.piece(shape, dark) for shape in (sweeps.tube(over, 0.009, 8), knob)),
+    ]
 
 
 def bottle(draft: Draft) -> list[Piece]:
     """A wine bottle's shape with a label and a cap."""
     r, h = min(draft.size[:2]) / 2, draft.size[2]
-    body = [(0.0, 0.01 * h), (0.5 * r, 0.0), (0.93 * r, 0.0), (r, 0.02 * h), (r, 0.56 * h), (0.94 * r, 0.62 * h),
-        (0.62 * r, 0.71 * h), (0.38 * r, 0.77 * h), (0.33 * r, 0.90 * h), (0.38 * r, 0.91 * h),
-        (0.0, 0.91 * h)]  # fmt: skip
-    cap = [(0.0, 0.90 * h), (0.41 * r, 0.90 * h), (0.41 * r, 0.985 * h), (0.36 * r, h), (0.0, h)]
-    label = [(1.006 * r, 0.16 * h), (1.006 * r, 0.46 * h)]
+    body = [(0.0, 0.01), (0.5, 0.0), (0.93, 0.0), (1.0, 0.02), (1.0, 0.56), (0.94, 0.62), (0.62, 0.71), (0.38, 0.77),
+        (0.33, 0.90), (0.38, 0.91), (0.0, 0.91)]  # fmt: skip
+    cap = [(0.0, 0.90), (0.41, 0.90), (0.41, 0.985), (0.36, 1.0), (0.0, 1.0)]
+    label = [(1.006, 0.16), (1.006, 0.46)]
     tint = draft.color(0)
-    return filled(
-        [
-            materials.piece(solids.lathe(body, 24), Material(rgba=tint, specular=0.9, shininess=0.9)),
-            materials.piece(solids.lathe(label, 24), materials.paint(c.PAPER, 0.1)),
-            materials.piece(solids.lathe(cap, 16), materials.paint(draft.color(1), 0.4)),
-        ],
-        draft,
-    )
+    return [
+        materials.piece(solids.lathe(body, 24, (r, h)), Material(rgba=tint, specular=0.9, shininess=0.9)),
+        materials.piece(solids.lathe(label, 24, (r, h)), materials.paint(c.PAPER, 0.1)),
+        materials.piece(solids.lathe(cap, 16, (r, h)), materials.paint(draft.color(1), 0.4)),
+    ]
 
 
 def dispenser(draft: Draft) -> list[Piece]:
     """A soap bottle with a pump."""
     w, d, h = draft.size
     r = min(w, d) / 2
-    body = [
-        (0.0, 0.0),
-        (0.94 * r, 0.0),
-        (r, 0.03 * h),
-        (r, 0.58 * h),
-        (0.88 * r, 0.66 * h),
-        (0.42 * r, 0.70 * h),
-        (0.0, 0.70 * h),
-    ]
-    pump = [(0.40 * r, 0.69 * h), (0.40 * r, 0.77 * h), (0.16 * r, 0.78 * h), (0.16 * r, 0.93 * h),
-        (0.36 * r, 0.94 * h), (0.36 * r, h), (0.0, h)]  # fmt: skip
+    body = [(0.0, 0.0), (0.94, 0.0), (1.0, 0.03), (1.0, 0.58), (0.88, 0.66), (0.42, 0.70), (0.0, 0.70)]
+    pump = [(0.40, 0.69), (0.40, 0.77), (0.16, 0.78), (0.16, 0.93), (0.36, 0.94), (0.36, 1.0), (0.0, 1.0)]
+    label = [(1.006, 0.15), (1.006, 0.48)]
     nozzle = sweeps.tube([(0.0, 0.0, 0.965 * h), (0.0, 0.8 * r, 0.965 * h), (0.0, 0.92 * r, 0.92 * h)], 0.11 * r, 8)
     white = materials.paint(draft.color(1), 0.5)
-    return filled(
-        [
-            materials.piece(solids.lathe(body, 24), Material(rgba=draft.color(0), specular=0.6, shininess=0.7)),
-            materials.piece(solids.lathe(pump, 14), white),
-            materials.piece(nozzle, white),
-            materials.piece(
-                solids.lathe([(1.006 * r, 0.15 * h), (1.006 * r, 0.48 * h)], 24), materials.paint(c.PAPER, 0.2)
-            ),
-        ],
-        draft,
-    )
+    return [
+        materials.piece(solids.lathe(body, 24, (r, h)), Material(rgba=draft.color(0), specular=0.6, shininess=0.7)),
+        materials.piece(solids.lathe(pump, 14, (r, h)), white),
+        materials.piece(nozzle, white),
+        materials.piece(solids.lathe(label, 24, (r, h)), materials.paint(c.PAPER, 0.2)),
+    ]
 
 
 def shaker(draft: Draft) -> list[Piece]:
@@ -198,13 +160,10 @@ def shaker(draft: Draft) -> list[Piece]:
     r, h = min(draft.size[:2]) / 2, draft.size[2]
     body = [(0.0, 0.0), (0.95 * r, 0.0), (r, 0.04 * h), (0.88 * r, 0.40 * h), (0.80 * r, 0.68 * h), (0.0, 0.68 * h)]
     top = [(0.84 * r, 0.67 * h), (0.84 * r, 0.80 * h), (0.70 * r, 0.92 * h), (0.36 * r, 0.985 * h), (0.0, h)]
-    return filled(
-        [
-            materials.piece(solids.lathe(body, 18), materials.ceramic(draft.color(0))),
-            materials.piece(solids.lathe(top, 18), materials.chrome()),
-        ],
-        draft,
-    )
+    return [
+        materials.piece(solids.lathe(body, 18), materials.ceramic(draft.color(0))),
+        materials.piece(solids.lathe(top, 18), materials.chrome()),
+    ]
 
 
 def vase(draft: Draft) -> list[Piece]:
@@ -217,7 +176,7 @@ def vase(draft: Draft) -> list[Piece]:
             (r * (0.56 + 0.44 * math.sin(math.pi * min(t * 1.12, 1.0)) ** 0.9 - 0.08 * t), h * (0.02 + 0.86 * t))
         )
     outer += [(0.42 * r, 0.93 * h), (0.56 * r, 0.985 * h)]
-    return filled([materials.piece(hollow(outer, 0.08 * r, 0.10 * h, 28), materials.ceramic(draft.color(0)))], draft)
+    return [materials.piece(hollow(outer, 0.08 * r, 0.10 * h, 28), materials.ceramic(draft.color(0)))]
 
 
 def cutlery(draft: Draft) -> list[Piece]:
@@ -251,7 +210,7 @@ def cutlery(draft: Draft) -> list[Piece]:
         0.002,
         0.006,
     )
-    return filled([materials.piece(shape, materials.chrome()) for shape in (stem, palm, *tines)], draft)
+    return [materials.piece(shape, materials.chrome()) for shape in (stem, palm, *tines)]
 
 
 def spoon(draft: Draft) -> list[Piece]:
@@ -259,6 +218,4 @@ def spoon(draft: Draft) -> list[Piece]:
     w, d, h = draft.size
     bowl = solids.ball((0.0, 0.5 * d - 0.42 * w * 1.4, 0.4 * h), (w / 2, 0.7 * w, 0.4 * h), 16)
     path = np.array([(0.0, -d / 2, 0.4 * h), (0.0, 0.0, 0.5 * h), (0.0, 0.5 * d - w, 0.5 * h)])
-    return filled(
-        [materials.piece(shape, materials.wood(draft.color(0))) for shape in (bowl, sweeps.tube(path, 0.006, 8))], draft
-    )
+    return [materials.piece(shape, materials.wood(draft.color(0))) for shape in (bowl, sweeps.tube(path, 0.006, 8))]

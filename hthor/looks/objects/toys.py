@@ -9,13 +9,12 @@ from hthor.looks import materials
 from hthor.looks.draft import Draft
 from hthor.looks.meshes import shaping, solids, sweeps
 from hthor.looks.meshes.mesh import Material, Piece
-from hthor.looks.objects.tableware import filled
 
 
-def basketball(draft: Draft) -> list[Piece]:
+def basketball(_: Draft) -> list[Piece]:
     """A ball with seams."""
     shape = solids.ball((0.0, 0.0, 0.0), (1.0, 1.0, 1.0), 28, whole=True)
-    return filled([materials.piece(shape, Material(texture="basketball", specular=0.15, shininess=0.2))], draft)
+    return [materials.piece(shape, Material(texture="basketball", specular=0.15, shininess=0.2))]
 
 
 def teddy_bear(draft: Draft) -> list[Piece]:
@@ -32,50 +31,32 @@ def teddy_bear(draft: Draft) -> list[Piece]:
     for s in (-1.0, 1.0):
         found.append(materials.piece(solids.ball((s * 0.075, 0.185, 0.79), (0.021, 0.016, 0.021), 8), dark))
         found.append(materials.piece(solids.ball((s * 0.20, 0.485, 0.11), (0.06, 0.02, 0.065), 10), pale))
-    return filled(found, draft)
+    return found
 
 
 def statue(draft: Draft) -> list[Piece]:
     """A bust on a plinth."""
     stone = materials.tinted("marble", draft.color(0), 0.4, 0.5)
-    plinth = [
-        (0.0, 0.0),
-        (0.42, 0.0),
-        (0.42, 0.05),
-        (0.34, 0.08),
-        (0.26, 0.12),
-        (0.24, 0.20),
-        (0.30, 0.23),
-        (0.0, 0.25),
-    ]
-    chest = [
-        (0.0, 0.24),
-        (0.20, 0.25),
-        (0.28, 0.33),
-        (0.40, 0.44),
-        (0.43, 0.50),
-        (0.36, 0.55),
-        (0.18, 0.60),
-        (0.13, 0.72),
-    ]
+    plinth = [(0.0, 0.0), (0.42, 0.0), (0.42, 0.05), (0.34, 0.08), (0.26, 0.12), (0.24, 0.2), (0.3, 0.23), (0.0, 0.25)]
+    chest = [(0.0, 0.24), (0.2, 0.25), (0.28, 0.33), (0.4, 0.44), (0.43, 0.5), (0.36, 0.55), (0.18, 0.6), (0.13, 0.72)]
     head = solids.ball((0.0, 0.03, 0.82), (0.17, 0.20, 0.21), 18)
     nose = solids.ball((0.0, 0.22, 0.80), (0.03, 0.05, 0.05), 8)
     hair = solids.ball((0.0, -0.02, 0.87), (0.19, 0.19, 0.18), 14)
     shapes = [solids.lathe(plinth, 24), shaping.stretched(solids.lathe(chest, 24), 1.0, 0.72, 1.0), head, nose, hair]
-    return filled([materials.piece(shape, stone) for shape in shapes], draft)
+    return [materials.piece(shape, stone) for shape in shapes]
 
 
 def bat(draft: Draft) -> list[Piece]:
     """A wooden baseball bat with a taped grip."""
     w, d, _ = draft.size
     r = w / 2
-    body = [(0.0, -0.5 * d), (0.62 * r, -0.5 * d), (0.66 * r, -0.488 * d), (0.36 * r, -0.47 * d),
-        (0.38 * r, -0.15 * d), (0.72 * r, 0.12 * d), (r, 0.32 * d), (r, 0.47 * d), (0.8 * r, 0.5 * d),
-        (0.0, 0.5 * d)]  # fmt: skip
-    tape = [(0.40 * r, -0.46 * d), (0.42 * r, -0.20 * d)]
-    pieces = [materials.piece(solids.along(solids.lathe(body, 16), "y"), materials.wood(draft.color(0))),
-        materials.piece(solids.along(solids.lathe(tape, 16), "y"), materials.leather(c.IRON))]  # fmt: skip
-    return filled(pieces, draft)
+    body = [(0.0, -0.5), (0.62, -0.5), (0.66, -0.488), (0.36, -0.47), (0.38, -0.15), (0.72, 0.12), (1.0, 0.32),
+        (1.0, 0.47), (0.8, 0.5), (0.0, 0.5)]  # fmt: skip
+    tape = [(0.40, -0.46), (0.42, -0.20)]
+    return [
+        materials.piece(solids.along(solids.lathe(body, 16, (r, d)), "y"), materials.wood(draft.color(0))),
+        materials.piece(solids.along(solids.lathe(tape, 16, (r, d)), "y"), materials.leather(c.IRON)),
+    ]
 
 
 def racket(draft: Draft) -> list[Piece]:
@@ -96,14 +77,11 @@ def racket(draft: Draft) -> list[Piece]:
     ]
     grip = sweeps.tube([(0.0, at - 1.45 * b, r), (0.0, -d / 2, r)], 0.98 * r, 10)
     frame = materials.paint(c.RED, 0.6)
-    return filled(
-        [
-            *(materials.piece(shape, frame) for shape in (rim, *throat)),
-            materials.piece(grip, materials.leather(draft.colors()[-1])),
-            *(materials.piece(shape, materials.paint(c.PAPER, 0.1)) for shape in strings),
-        ],
-        draft,
-    )
+    return [
+        *(materials.piece(shape, frame) for shape in (rim, *throat)),
+        materials.piece(grip, materials.leather(draft.colors()[-1])),
+        *(materials.piece(shape, materials.paint(c.PAPER, 0.1)) for shape in strings),
+    ]
 
 
 def dumbbell(draft: Draft) -> list[Piece]:
@@ -111,38 +89,18 @@ def dumbbell(draft: Draft) -> list[Piece]:
     w, d, _ = draft.size
     r, z = w / 2, w / 2
     found = [materials.piece(solids.cylinder((0.0, 0.0, z), 0.2 * r, 0.6 * d, "y", 14), materials.chrome())]
+    head = [(0.0, -0.15), (0.8, -0.15), (1.0, -0.10), (1.0, 0.10), (0.8, 0.15), (0.0, 0.15)]
     for s in (-1.0, 1.0):
-        head = solids.along(
-            solids.lathe(
-                [
-                    (0.0, -0.15 * d),
-                    (0.8 * r, -0.15 * d),
-                    (r, -0.10 * d),
-                    (r, 0.10 * d),
-                    (0.8 * r, 0.15 * d),
-                    (0.0, 0.15 * d),
-                ],
-                6,
-            ),
-            "y",
-        )
-        found.append(materials.piece(shaping.moved(head, 0.0, s * 0.35 * d, z), materials.paint(draft.color(0), 0.3)))
-    return filled(found, draft)
+        disc = solids.along(solids.lathe(head, 6, (r, d)), "y")
+        found.append(materials.piece(shaping.moved(disc, 0.0, s * 0.35 * d, z), materials.paint(draft.color(0), 0.3)))
+    return found
 
 
 def watering_can(draft: Draft) -> list[Piece]:
     """A can with a long spout to the front and a bow over it."""
     w, d, h = draft.size
     r, at = 0.46 * w, 0.46 * w - d / 2
-    body = [
-        (0.0, 0.0),
-        (0.96 * r, 0.0),
-        (r, 0.03 * h),
-        (0.9 * r, 0.62 * h),
-        (0.80 * r, 0.66 * h),
-        (0.30 * r, 0.68 * h),
-        (0.0, 0.66 * h),
-    ]
+    body = [(0.0, 0.0), (0.96, 0.0), (1.0, 0.03), (0.9, 0.62), (0.80, 0.66), (0.30, 0.68), (0.0, 0.66)]
     spout = sweeps.tube(
         [(0.0, at + 0.7 * r, 0.18 * h), (0.0, at + 1.5 * r, 0.42 * h), (0.0, d / 2 - 0.03, 0.84 * h)],
         [0.03, 0.018, 0.012],
@@ -166,7 +124,7 @@ def watering_can(draft: Draft) -> list[Piece]:
         8,
     )
     coat = materials.paint(draft.color(0), 0.5)
-    return filled(
-        [materials.piece(shape, coat) for shape in (shaping.moved(solids.lathe(body, 24), 0.0, at), spout, rose, bow)],
-        draft,
-    )
+    return [
+        materials.piece(shape, coat)
+        for shape in (shaping.moved(solids.lathe(body, 24, (r, h)), 0.0, at), spout, rose, bow)
+    ]

@@ -5,7 +5,6 @@ from hthor.looks import materials
 from hthor.looks.draft import Draft
 from hthor.looks.meshes import solids, sweeps
 from hthor.looks.meshes.mesh import Mesh, Piece
-from hthor.looks.objects.tableware import filled
 
 _RIM = 0.7
 """How high the lid begins, as a share of the height."""
@@ -19,16 +18,13 @@ def trunk(draft: Draft) -> list[Piece]:
     lid = solids.box((-x - 0.006, -y - 0.006, (_RIM + 0.008) * h), (x + 0.006, y + 0.006, 0.965 * h), 0.03, 2)
     wood, brass = materials.wood(c.OAK), materials.metal((0.80, 0.62, 0.30, 1.0))
     leather, canvas = materials.leather(draft.colors()[-1]), materials.cloth(draft.color(0), "canvas")
-    return filled(
-        [
-            materials.piece(body, canvas),
-            materials.piece(lid, canvas),
-            *(materials.piece(one, wood) for one in _battens(draft, x, y)),
-            *(materials.piece(one, brass) for one in (*_corners(h, x, y, low), *_lock(h, y))),
-            *(materials.piece(one, leather) for one in (*_straps(draft, y), *_handles(draft, x))),
-        ],
-        draft,
-    )
+    return [
+        materials.piece(body, canvas),
+        materials.piece(lid, canvas),
+        *(materials.piece(one, wood) for one in _battens(draft, x, y)),
+        *(materials.piece(one, brass) for one in (*_corners(h, x, y, low), *_lock(h, y))),
+        *(materials.piece(one, leather) for one in (*_straps(draft, y), *_handles(draft, x))),
+    ]
 
 
 def _battens(draft: Draft, x: float, y: float) -> list[Mesh]:
