@@ -45,7 +45,3 @@ class Draft(NamedTuple):
         """Its color of that number, or its last one when it has fewer."""
         every = self.colors()
         return every[min(index, len(every) - 1)]
-
-    def top(self) -> float:
-        """The height [m] of its uppermost surface, or of the whole thing."""
-        return max((surface.centre[2] for surface in self.surfaces), default=self.size[2])

@@ -9,24 +9,8 @@ from hthor.looks import finishes, textures
 from hthor.looks.meshes.mesh import Material, Mesh, Piece
 from hthor.types import Rgba, Vec3
 
-_WOODS = (
-    "OAK",
-    "WALNUT",
-    "BIRCH",
-    "PINE",
-    "ASH",
-    "CHERRY",
-    "BEECH",
-    "TEAK",
-    "MAHOGANY",
-    "MAPLE",
-    "EBONY",
-    "WENGE",
-    "WOOD",
-)
-_METALS = ("STEEL", "IRON", "CHROME", "BRASS", "COPPER", "ALUMINIUM", "GOLD", "SILVER")
-_STONES = ("STONE", "GRANITE", "MARBLE", "SLATE", "CONCRETE", "QUARTZ")
-_OTHERS = {"CARDBOARD": "cardboard", "LINEN": "linen", "WICKER": "wicker", "CORK": "cork", "TERRACOTTA": "concrete"}
+_WOODS, _METALS, _STONES = ("OAK", "WALNUT", "BIRCH"), ("STEEL", "IRON"), ("STONE",)
+_OTHERS = {"CARDBOARD": "cardboard", "LINEN": "linen", "TERRACOTTA": "concrete"}
 
 
 def tinted(texture: str, rgba: Rgba, specular: float = 0.1, shininess: float = 0.2) -> Material:

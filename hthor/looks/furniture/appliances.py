@@ -18,15 +18,8 @@ def stove(draft: Draft) -> list[Piece]:
     found.append(materials.piece(sweeps.lying((0.0, 0.0, h + 0.0008), 0.97 * w, 0.96 * d), materials.picture("hob")))
     moving = [part for part in draft.parts if part.moves]
     top = max((fronts.corners(part)[1][2] for part in moving), default=0.8 * h)
-    face = max(
-        (
-            fronts.corners(part)[1][1]
-            for part in draft.parts
-            if not part.moves and part.half[2] < 0.2 * h and part.centre[2] > top
-        ),
-        default=d / 2,
-    )
-    face = min(face, d / 2 - 0.012)
+    above = (part for part in draft.parts if not part.moves and part.half[2] < 0.2 * h and part.centre[2] > top)
+    face = min(max((fronts.corners(part)[1][1] for part in above), default=d / 2), d / 2 - 0.012)
     for k in range(4):
         at = (k - 1.5) * 0.2 * w
         knob = solids.cylinder((at, face + 0.006, (top + h) / 2 - 0.008), 0.017, 0.018, "y", 14)
@@ -68,26 +61,19 @@ def _machine(draft: Draft) -> list[Piece]:
 
 def _windowed(draft: Draft, part: Part) -> list[Piece]:
     (x0, y0, z0), (x1, y1, z1) = fronts.corners(part)
-    room = draft.size[1] / 2 - y1
-    face, proud = (y1, 0.004) if room > 0.006 else (y1 - 0.016, 0.004)
+    room, proud = draft.size[1] / 2 - y1, 0.004
+    face = y1 if room > 0.006 else y1 - 0.016
     e = 0.14 * min(x1 - x0, z1 - z0)
     frame = solids.box((x0, y0, z0), (x1, face, z1), 0.006)
     pane = solids.box((x0 + e, face - 0.004, z0 + e), (x1 - e, face + 0.5 * proud, z1 - e), 0.002)
     body = materials.metal(c.STEEL) if draft.color(0) != c.WHITE else materials.paint(c.WHITE, 0.5)
-    found = [
-        materials.piece(frame, body if draft.name != "safe" else materials.paint(part.rgba, 0.3), part.moves),
-        materials.piece(
-            pane, materials.paint(c.BLACK, 0.8) if draft.name != "safe" else materials.paint(c.GREY, 0.3), part.moves
-        ),
-    ]
+    glass = materials.paint(c.BLACK, 0.8)
+    if draft.name == "safe":
+        body, glass = materials.paint(part.rgba, 0.3), materials.paint(c.GREY, 0.3)
+    found = [materials.piece(frame, body, part.moves), materials.piece(pane, glass, part.moves)]
     if room <= 0.006:
-        found.append(
-            materials.piece(
-                fronts.grip(x1 - 0.35 * e, face, y1, z0 + 0.2 * (z1 - z0), z1 - 0.2 * (z1 - z0)),
-                materials.chrome(),
-                part.moves,
-            )
-        )
+        handle = fronts.grip(x1 - 0.35 * e, face, y1, z0 + 0.2 * (z1 - z0), z1 - 0.2 * (z1 - z0))
+        found.append(materials.piece(handle, materials.chrome(), part.moves))
     return found
 
 

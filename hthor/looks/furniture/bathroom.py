@@ -52,9 +52,8 @@ def bathtub(draft: Draft) -> list[Piece]:
     x, y, rest = w / 2, d / 2, draft.surfaces[0]
     floor, half, long = rest.centre[2], rest.half[0], rest.half[1]
     white = materials.ceramic(draft.color(0))
-    outer = _rounded(x, y, 0.03, h - 0.012), _rounded(x, y, 0.03, h)
-    rows = [(_rounded(x - 0.012, y - 0.012, 0.03, 0.0)), _rounded(x - 0.012, y - 0.012, 0.03, h - 0.05),
-        _rounded(x, y, 0.03, h - 0.045), outer[0], _rounded(x - 0.006, y - 0.006, 0.03, h),
+    rows = [_rounded(x - 0.012, y - 0.012, 0.03, 0.0), _rounded(x - 0.012, y - 0.012, 0.03, h - 0.05),
+        _rounded(x, y, 0.03, h - 0.045), _rounded(x, y, 0.03, h - 0.012), _rounded(x - 0.006, y - 0.006, 0.03, h),
         _rounded(half + 0.01, long + 0.01, 0.10, h), _rounded(half, long, 0.10, h - 0.012),
         _rounded(half, long, 0.10, floor + 0.08), _rounded(half * 0.985, long * 0.99, 0.09, floor + 0.02),
         _rounded(half * 0.955, long * 0.975, 0.07, floor), _rounded(0.0, 0.0, 0.0, floor)]  # fmt: skip
@@ -74,17 +73,11 @@ def bathtub(draft: Draft) -> list[Piece]:
 
 def _rounded(x: float, y: float, radius: float, z: float, steps: int = 5) -> np.ndarray:
     """A level rectangle with round corners, counter-clockwise, closed."""
-    points = []
+    points, inner_x, inner_y = [], (x - radius) * (x > radius), (y - radius) * (y > radius)
     for quarter, (sx, sy) in enumerate(((1, 1), (-1, 1), (-1, -1), (1, -1))):
         for k in range(steps):
             a = math.pi / 2 * (quarter + k / (steps - 1))
-            points.append(
-                (
-                    sx * (x - radius) * (x > radius) + radius * math.cos(a),
-                    sy * (y - radius) * (y > radius) + radius * math.sin(a),
-                    z,
-                )
-            )
+            points.append((sx * inner_x + radius * math.cos(a), sy * inner_y + radius * math.sin(a), z))
     return np.array([*points, points[0]])
 
 
@@ -105,14 +98,8 @@ def shower(draft: Draft) -> list[Piece]:
             rail = solids.box((px - max(a, 0.008), py - max(b, 0.008), pz + s * e - (0.02 if s > 0 else 0.0)),
                 (px + max(a, 0.008), py + max(b, 0.008), pz + s * e + (0.0 if s > 0 else 0.02)), 0.002)  # fmt: skip
             found.append(materials.piece(rail, steel))
-            if a < b:
-                post = solids.box(
-                    (px - 0.009, py + s * b - 0.009, pz - e), (px + 0.009, py + s * b + 0.009, pz + e), 0.002
-                )
-            else:
-                post = solids.box(
-                    (px + s * a - 0.009, py - 0.009, pz - e), (px + s * a + 0.009, py + 0.009, pz + e), 0.002
-                )
+            at_x, at_y = (px, py + s * b) if a < b else (px + s * a, py)
+            post = solids.box((at_x - 0.009, at_y - 0.009, pz - e), (at_x + 0.009, at_y + 0.009, pz + e), 0.002)
             found.append(materials.piece(post, steel))
     at = 0.035 - y
     path = sweeps.bend(
@@ -126,8 +113,7 @@ def shower(draft: Draft) -> list[Piece]:
     ]
     found += [materials.piece(shape, steel) for shape in fittings]
     glass = [plain.piece(part, materials.glass()) for part in panes]
-    w2, d2, _ = draft.size
-    return [*shaping.fitted(found, (-w2 / 2, -d2 / 2, 0.0), (w2 / 2, d2 / 2, h)), *glass]
+    return [*shaping.fitted(found, (-x, -y, 0.0), (x, y, h)), *glass]
 
 
 def shower_head(draft: Draft) -> list[Piece]:
@@ -176,15 +162,8 @@ def towel(draft: Draft) -> list[Piece]:
     coat = materials.cloth(draft.color(0), "terry")
     sheets = [sweeps.sheet(front[::-1].copy(), uv[::-1], 0.006), sweeps.sheet(back, uv, 0.006)]
     stripe = front[::-1, 11:13] + (0.0, 0.0012, 0.0)
-    pale = materials.cloth(
-        (
-            min(1.0, draft.color(0)[0] + 0.25),
-            min(1.0, draft.color(0)[1] + 0.25),
-            min(1.0, draft.color(0)[2] + 0.25),
-            1.0,
-        ),
-        "terry",
-    )
+    r, g, b = (min(1.0, channel + 0.25) for channel in draft.color(0)[:3])
+    pale = materials.cloth((r, g, b, 1.0), "terry")
     band = shaping.surface(stripe, uv[::-1, 11:13])
     return [*(materials.piece(shape, coat) for shape in sheets), materials.piece(band, pale)]
 

@@ -32,14 +32,7 @@ def door_leaf(width: float, height: float, rgba: Rgba = TRIM, panels: int = 2) -
     x, y, stile = width / 2, LEAF_M / 2, min(0.11, 0.16 * width)
     coat = materials.wood(rgba) if materials.wooden(rgba) else materials.paint(rgba, 0.3)
     rail = (height - stile * (panels + 2)) / panels
-    bars = [
-        solids.box(
-            (s * x, -y, 0.0) if s < 0 else (x - stile, -y, 0.0),
-            (stile - x, y, height) if s < 0 else (x, y, height),
-            0.003,
-        )
-        for s in (-1, 1)
-    ]
+    bars = [solids.box((a, -y, 0.0), (b, y, height), 0.003) for a, b in ((-x, stile - x), (x - stile, x))]
     z = 0.0
     for index in range(panels + 1):
         tall = 2 * stile if index == 0 else stile
@@ -56,8 +49,8 @@ def door_leaf(width: float, height: float, rgba: Rgba = TRIM, panels: int = 2) -
 def _levers(x: float, z: float) -> list[Piece]:
     y, shapes = LEAF_M / 2, []
     for side in (-1, 1):
-        shapes.append(solids.box((x - 0.018, min(side * y, side * (y + 0.006)), z - 0.08),
-            (x + 0.018, max(side * y, side * (y + 0.006)), z + 0.08), 0.002))  # fmt: skip
+        near, far = sorted((side * y, side * (y + 0.006)))
+        shapes.append(solids.box((x - 0.018, near, z - 0.08), (x + 0.018, far, z + 0.08), 0.002))
         path = sweeps.bend(
             (x, side * y, z + 0.02), (x, side * (y + 0.05), z + 0.02), (x - 0.11, side * (y + 0.05), z + 0.02)
         )

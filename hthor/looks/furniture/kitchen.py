@@ -27,11 +27,8 @@ def fridge(draft: Draft) -> list[Piece]:
     found.append(materials.piece(inner, materials.paint(c.WHITE, 0.3), name))
     side = -1.0 if draft.joints and draft.joints[0].anchor[0] > 0.0 else 1.0
     for low, high in ((split - 0.30 * (split - z0), split - 0.05), (split + 0.05, split + 0.42 * (z1 - split))):
-        found.append(
-            materials.piece(
-                fronts.grip(side * 0.42 * draft.size[0], y1, draft.size[1] / 2, low, high), materials.chrome(), name
-            )
-        )
+        handle = fronts.grip(side * 0.42 * draft.size[0], y1, draft.size[1] / 2, low, high)
+        found.append(materials.piece(handle, materials.chrome(), name))
     return found
 
 
@@ -87,17 +84,17 @@ def toaster(draft: Draft) -> list[Piece]:
     w, d, h = draft.size
     x, y, edge = w / 2, d / 2, 0.94
     dark, steel = materials.paint(c.BLACK, 0.3), materials.chrome(draft.color(0))
-    found = [
-        materials.piece(solids.box((-edge * x, -y, 0.012), (edge * x, y, 0.96 * h), 0.035, 3), steel),
-        materials.piece(solids.box((-0.96 * x, 0.02 - y, 0.0), (0.96 * x, y - 0.02, 0.02), 0.004), dark),
-        materials.piece(
-            solids.box((edge * x - 0.006, -0.010, 0.3 * h), (edge * x + 0.002, 0.010, 0.8 * h), 0.001), dark
-        ),
-        materials.piece(solids.box((edge * x, -0.022, 0.66 * h), (x, 0.022, 0.74 * h), 0.005), dark),
-        materials.piece(solids.box((-x, -0.02, 0.5 * h), (-0.92 * x, 0.02, 0.6 * h), 0.005), dark),
+    shell = solids.box((-edge * x, -y, 0.012), (edge * x, y, 0.96 * h), 0.035, 3)
+    fittings = [
+        solids.box((-0.96 * x, 0.02 - y, 0.0), (0.96 * x, y - 0.02, 0.02), 0.004),
+        solids.box((edge * x - 0.006, -0.010, 0.3 * h), (edge * x + 0.002, 0.010, 0.8 * h), 0.001),
+        solids.box((edge * x, -0.022, 0.66 * h), (x, 0.022, 0.74 * h), 0.005),
+        solids.box((-x, -0.02, 0.5 * h), (-0.92 * x, 0.02, 0.6 * h), 0.005),
     ]
     for at in (-0.22, 0.22):
-        slot = solids.box((-0.72 * x, at * d - 0.014, 0.955 * h), (0.72 * x, at * d + 0.014, 0.963 * h), 0.002)
-        found.append(materials.piece(slot, dark))
+        fittings.append(
+            solids.box((-0.72 * x, at * d - 0.014, 0.955 * h), (0.72 * x, at * d + 0.014, 0.963 * h), 0.002)
+        )
     toast = solids.box((-0.60 * x, -0.22 * d - 0.009, 0.9 * h), (0.60 * x, -0.22 * d + 0.009, h), 0.008)
-    return [*found, materials.piece(toast, materials.tinted("bread", (0.72, 0.46, 0.22, 1.0)))]
+    crumb = materials.tinted("bread", (0.72, 0.46, 0.22, 1.0))
+    return [materials.piece(shell, steel), *(materials.piece(s, dark) for s in fittings), materials.piece(toast, crumb)]

@@ -6,6 +6,8 @@ from hthor.looks.draft import Draft
 from hthor.looks.meshes import shaping, solids, sweeps
 from hthor.looks.meshes.mesh import Material, Mesh, Piece
 
+_BULB = materials.glow((1.0, 0.95, 0.8, 1.0), 1.0)
+
 
 def _shade(low_r: float, top_r: float, low: float, high: float) -> Mesh:
     """An open cone, seen from inside too."""
@@ -25,10 +27,7 @@ def table_lamp(draft: Draft) -> list[Piece]:
         materials.piece(solids.lathe(belly, 24, (r, h)), materials.ceramic(c.TEAL)),
         materials.piece(solids.cylinder((0.0, 0.0, 0.52 * h), 0.008, 0.14 * h, "z", 8), materials.metal(c.STEEL)),
         materials.piece(_shade(r, 0.66 * r, low, h), shade),
-        materials.piece(
-            solids.ball((0.0, 0.0, 0.66 * h), (0.22 * r, 0.22 * r, 0.07 * h), 12),
-            materials.glow((1.0, 0.95, 0.8, 1.0), 1.0),
-        ),
+        materials.piece(solids.ball((0.0, 0.0, 0.66 * h), (0.22 * r, 0.22 * r, 0.07 * h), 12), _BULB),
     ]
 
 
@@ -44,10 +43,7 @@ def floor_lamp(draft: Draft) -> list[Piece]:
         materials.piece(solids.lathe(foot, 28, (r, 1.0)), iron),
         materials.piece(pole, iron),
         materials.piece(_shade(r, 0.80 * r, low, h), shade),
-        materials.piece(
-            solids.ball((0.0, 0.0, 0.88 * h), (0.2 * r, 0.2 * r, 0.03 * h), 12),
-            materials.glow((1.0, 0.95, 0.8, 1.0), 1.0),
-        ),
+        materials.piece(solids.ball((0.0, 0.0, 0.88 * h), (0.2 * r, 0.2 * r, 0.03 * h), 12), _BULB),
     ]
 
 
@@ -67,13 +63,8 @@ def vacuum_cleaner(draft: Draft) -> list[Piece]:
     w, d, h = draft.size
     x, y = w / 2, d / 2
     coat, dark = materials.paint(draft.colors()[-1], 0.5), materials.paint(c.IRON, 0.4)
-    path = sweeps.bend(
-        (0.0, -0.12 * d, 0.48 * h),
-        (0.0, -0.30 * d, 0.80 * h),
-        (0.0, -0.42 * d, 0.97 * h),
-        (0.0, -0.22 * d, 0.99 * h),
-        steps=4,
-    )
+    knots = ((-0.12, 0.48), (-0.30, 0.80), (-0.42, 0.97), (-0.22, 0.99))
+    path = sweeps.bend(*((0.0, back * d, up * h) for back, up in knots), steps=4)
     bin_ = [(0.0, 0.0), (0.26 * w, 0.0), (0.27 * w, 0.02), (0.27 * w, 0.24 * h), (0.22 * w, 0.27 * h), (0.0, 0.27 * h)]
     body = shaping.turned(solids.box((-0.24 * w, -0.16 * d, 0.0), (0.24 * w, 0.10 * d, 0.42 * h), 0.03, 2), "x", 0.10)
     return [

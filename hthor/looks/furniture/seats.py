@@ -59,23 +59,13 @@ def chair(draft: Draft) -> list[Piece]:
         )
         frame.append(sweeps.tube([(s * (x - r), r - y, 0.0), (s * (x - 1.3 * r), r - y + lean, top - 0.02),
             (s * (x - 1.3 * r), r - y, h - 0.5 * r)], [0.7 * r, r, 0.85 * r], 10))  # fmt: skip
-        frame.append(
-            solids.box(
-                (s * (x - 1.4 * r) - 0.008, 3 * r - y, 0.72 * top), (s * (x - 1.4 * r) + 0.008, y - 3 * r, 0.77 * top)
-            )
-        )
+        at = s * (x - 1.4 * r)
+        frame.append(solids.box((at - 0.008, 3 * r - y, 0.72 * top), (at + 0.008, y - 3 * r, 0.77 * top)))
     rise = h - top
     for share, tall in ((0.93, 0.14), (0.28, 0.08)):
-        z = top + share * rise
-        deep = -y + r + lean * (1.0 - share)
-        half = 0.5 * tall * rise
-        frame.append(
-            solids.box(
-                (1.3 * r - x, deep - 0.011, min(z - half, h - 2 * half)),
-                (x - 1.3 * r, deep + 0.011, min(z + half, h)),
-                0.005,
-            )
-        )
+        z, deep, half = top + share * rise, -y + r + lean * (1.0 - share), 0.5 * tall * rise
+        low, high = min(z - half, h - 2 * half), min(z + half, h)
+        frame.append(solids.box((1.3 * r - x, deep - 0.011, low), (x - 1.3 * r, deep + 0.011, high), 0.005))
     for k in range(4):
         at = (w - 2.6 * r) * ((k + 1) / 5.0 - 0.5)
         low, high = top + 0.25 * rise, top + 0.90 * rise

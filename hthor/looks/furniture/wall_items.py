@@ -110,13 +110,8 @@ def rug(draft: Draft) -> list[Piece]:
     for k in range(max(6, round(b / 0.05))):
         y = -b / 2 + b * (k + 0.5) / max(6, round(b / 0.05))
         tufts += [
-            solids.box(
-                (s * a / 2 if s < 0 else a / 2 - fringe, y - 0.012, 0.0),
-                (fringe - a / 2 if s < 0 else a / 2, y + 0.012, 0.5 * h),
-                0.0,
-                0,
-            )
-            for s in (-1, 1)
+            solids.box((west, y - 0.012, 0.0), (east, y + 0.012, 0.5 * h), 0.0, 0)
+            for west, east in ((-a / 2, fringe - a / 2), (a / 2 - fringe, a / 2))
         ]
     tint = draft.color(0)
     named = {c.RUST: "rug_red", c.TERRACOTTA: "rug_red", c.RED: "rug_red", c.BLUE: "rug_blue", c.SKY: "rug_blue",

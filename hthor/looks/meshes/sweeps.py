@@ -75,7 +75,7 @@ def sheet(points: Any, uv: Any, thickness: float = 0.001) -> Mesh:
     return shaping.merged(front, shaping.surface(behind.swapaxes(0, 1), np.asarray(uv).swapaxes(0, 1)))
 
 
-def extruded(outline: Sequence[Vec2], low: float, high: float, bevel: float = 0.0) -> Mesh:
+def extruded(outline: Sequence[Vec2] | Any, low: float, high: float, bevel: float = 0.0) -> Mesh:
     """An upright prism over a counter-clockwise, star-shaped ``outline`` [m], its edges cut by ``bevel`` [m]."""
     flat = np.array(outline, float)
     middle = flat.mean(0)

@@ -10,15 +10,8 @@ from hthor.looks.draft import Draft
 from hthor.looks.meshes import shaping, solids, sweeps
 from hthor.looks.meshes.mesh import Material, Mesh, Piece
 
-_COVERS = {
-    c.RUST: "cover_1",
-    c.BLUE: "cover_2",
-    c.LEAF: "cover_3",
-    c.SAGE: "cover_3",
-    c.TEAL: "cover_2",
-    c.MUSTARD: "cover_4",
-    c.CREAM: "cover_4",
-}
+_COVERS = {c.BLUE: 2, c.TEAL: 2, c.LEAF: 3, c.SAGE: 3, c.MUSTARD: 4, c.CREAM: 4}
+"""Which cover a book of that color has; the others have the first."""
 
 
 def book(draft: Draft) -> list[Piece]:
@@ -36,11 +29,10 @@ def book(draft: Draft) -> list[Piece]:
     )
     leaves = solids.box((-x + 0.004, -y + 0.004, t - 0.0005), (x - 0.006, y - 0.004, h - t + 0.0005), 0.0, 0)
     front = sweeps.lying((-0.001, 0.0, h + 0.0003), w - 0.012, d - 0.002)
-    name = _COVERS.get(draft.color(0), "cover_1")
     return [
         *(materials.piece(shape, cloth) for shape in (*boards, back)),
         materials.piece(leaves, Material(texture="pages", specular=0.0)),
-        materials.piece(front, materials.picture(name)),
+        materials.piece(front, materials.picture(f"cover_{_COVERS.get(draft.color(0), 1)}")),
     ]
 
 
@@ -77,15 +69,9 @@ def tissue_box(draft: Draft) -> list[Piece]:
     box = solids.box((-w / 2, -d / 2, 0.0), (w / 2, d / 2, top), 0.003)
     slot = solids.cylinder((0.0, 0.0, top), 0.3 * min(w, d), 0.001, "z", 20)
     u, v = np.meshgrid(np.linspace(-1.0, 1.0, 9), np.linspace(0.0, 1.0, 5), indexing="ij")
-    points = np.stack(
-        [
-            0.22 * w * u * (0.35 + 0.65 * v),
-            0.10 * d * np.sin(3.5 * u + 2.0 * v) * v,
-            top - 0.004 + (h - top) * v * (1.0 - 0.2 * u**2),
-        ],
-        -1,
-    )
-    tissue = sweeps.sheet(points, np.stack([u, v], -1) * 0.1, 0.001)
+    x, y = 0.22 * w * u * (0.35 + 0.65 * v), 0.10 * d * np.sin(3.5 * u + 2.0 * v) * v
+    z = top - 0.004 + (h - top) * v * (1.0 - 0.2 * u**2)
+    tissue = sweeps.sheet(np.stack([x, y, z], -1), np.stack([u, v], -1) * 0.1, 0.001)
     return [
         materials.piece(box, materials.tinted("dots", draft.color(0))),
         materials.piece(shaping.stretched(slot, 1.5, 0.8, 1.0), materials.paint(c.IRON, 0.0)),
@@ -107,12 +93,8 @@ def cloth(draft: Draft) -> list[Piece]:
     w, d, h = draft.size
     layers: list[Mesh] = []
     for k in range(3):
-        e = 0.006 * (k % 2)
-        layers.append(
-            solids.soft(
-                (e - w / 2, e - d / 2, k * h / 3), (w / 2 - e, d / 2 - e, (k + 1) * h / 3), 0.45 * h / 3, 0.0, 2, 1
-            )
-        )
+        x, y, low, high = w / 2 - 0.006 * (k % 2), d / 2 - 0.006 * (k % 2), k * h / 3, (k + 1) * h / 3
+        layers.append(solids.soft((-x, -y, low), (x, y, high), 0.45 * h / 3, 0.0, 2, 1))
     return [materials.piece(shape, materials.cloth(draft.color(0), "plaid")) for shape in layers]
 
 

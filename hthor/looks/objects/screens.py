@@ -35,12 +35,8 @@ def television(draft: Draft) -> list[Piece]:
     low, y = 0.075 * h, 0.08 * d
     feet: list[Mesh] = []
     for s in (-1.0, 1.0):
-        at = s * 0.33 * w
-        path = [
-            (at + s * 0.02, d / 2 - 0.006, 0.006),
-            (at, y - 0.02, low + 0.01),
-            (at + s * 0.02, -d / 2 + 0.006, 0.006),
-        ]
+        at, foot = s * 0.33 * w, d / 2 - 0.006
+        path = [(at + s * 0.02, foot, 0.006), (at, y - 0.02, low + 0.01), (at + s * 0.02, -foot, 0.006)]
         feet.append(sweeps.tube(path, 0.006, 6))
     return [
         *_screen(w, low, h, -0.10 * d, max(y, 0.02), "show", body),
@@ -78,18 +74,14 @@ def laptop(draft: Draft) -> list[Piece]:
     lid = solids.box((-w / 2, -0.007, 0.0), (w / 2, 0.0, high), 0.003)
     face = sweeps.panel((0.0, 0.0006, high / 2), 0.97 * w, 0.94 * high)
     show = sweeps.panel((0.0, 0.0012, high / 2 + 0.004), 0.93 * w, 0.86 * high)
-    return shaping.fitted(
-        [
-            materials.piece(base, shell),
-            materials.piece(hung(lid), shell),
-            materials.piece(pad, materials.metal(c.GREY)),
-            materials.piece(keys, materials.picture("keyboard")),
-            materials.piece(hung(face), dark),
-            materials.piece(hung(show), materials.picture("desktop_2", _LIT)),
-        ],
-        (-w / 2, -d / 2, 0.0),
-        (w / 2, d / 2, h),
-    )
+    return [
+        materials.piece(base, shell),
+        materials.piece(hung(lid), shell),
+        materials.piece(pad, materials.metal(c.GREY)),
+        materials.piece(keys, materials.picture("keyboard")),
+        materials.piece(hung(face), dark),
+        materials.piece(hung(show), materials.picture("desktop_2", _LIT)),
+    ]
 
 
 def phone(draft: Draft) -> list[Piece]:
@@ -117,16 +109,9 @@ def remote_control(draft: Draft) -> list[Piece]:
         materials.piece(solids.cylinder((0.0, 0.14 * d, low), 0.12 * w, 0.003, "z", 12), materials.paint(c.STEEL, 0.4)),
         materials.piece(solids.box((0.12 * w, 0.395 * d, low - 0.001), (0.36 * w, 0.445 * d, h), 0.001), keys),
     ]
-    pad = []
-    for row in range(5):
-        for column in range(3):
-            x, y = (column - 1) * 0.29 * w, -0.04 * d - row * 0.085 * d
-            pad.append(
-                solids.box(
-                    (x - 0.10 * w, y - 0.024 * d, low - 0.001),
-                    (x + 0.10 * w, y + 0.024 * d, low + 0.55 * (h - low)),
-                    0.0,
-                    0,
-                )
-            )
-    return [*found, *(materials.piece(shape, keys) for shape in pad)]
+    high = low + 0.55 * (h - low)
+    for y in (-0.04 * d - row * 0.085 * d for row in range(5)):
+        for x in (column * 0.29 * w for column in (-1, 0, 1)):
+            key = solids.box((x - 0.10 * w, y - 0.024 * d, low - 0.001), (x + 0.10 * w, y + 0.024 * d, high), 0.0, 0)
+            found.append(materials.piece(key, keys))
+    return found

@@ -186,31 +186,10 @@ def cutlery(draft: Draft) -> list[Piece]:
         sweeps.tube([(x * w * 0.36, 0.30 * d, 0.006), (x * w * 0.40, 0.5 * d, 0.010)], 0.0016, 5)
         for x in (-1, -0.33, 0.33, 1)
     ]
-    stem = sweeps.extruded(
-        [
-            (-0.16 * w, -d / 2),
-            (0.16 * w, -d / 2),
-            (0.10 * w, 0.1 * d),
-            (0.14 * w, 0.18 * d),
-            (-0.14 * w, 0.18 * d),
-            (-0.10 * w, 0.1 * d),
-        ],
-        0.002,
-        0.006,
-    )
-    palm = sweeps.extruded(
-        [
-            (-0.14 * w, 0.16 * d),
-            (0.14 * w, 0.16 * d),
-            (0.5 * w, 0.24 * d),
-            (0.5 * w, 0.31 * d),
-            (-0.5 * w, 0.31 * d),
-            (-0.5 * w, 0.24 * d),
-        ],
-        0.002,
-        0.006,
-    )
-    return [materials.piece(shape, materials.chrome()) for shape in (stem, palm, *tines)]
+    stem = [(-0.16, -0.5), (0.16, -0.5), (0.10, 0.1), (0.14, 0.18), (-0.14, 0.18), (-0.10, 0.1)]
+    palm = [(-0.14, 0.16), (0.14, 0.16), (0.5, 0.24), (0.5, 0.31), (-0.5, 0.31), (-0.5, 0.24)]
+    plates = [sweeps.extruded(np.array(outline) * (w, d), 0.002, 0.006) for outline in (stem, palm)]
+    return [materials.piece(shape, materials.chrome()) for shape in (*plates, *tines)]
 
 
 def spoon(draft: Draft) -> list[Piece]:

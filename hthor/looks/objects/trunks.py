@@ -44,15 +44,10 @@ def _corners(h: float, x: float, y: float, low: float) -> list[Mesh]:
     """Caps on the corners of body and lid."""
     a, t = 0.035, 0.011
     spans = ((low - 0.01, low + 2 * a), ((_RIM + 0.01) * h, (_RIM + 0.13) * h), (0.88 * h, 0.972 * h))
+    sides = [(sorted((s * (x + t), s * (x - a))), sorted((v * (y + t), v * (y - a)))) for s in (-1, 1) for v in (-1, 1)]
     return [
-        solids.box(
-            (min(s * (x + t), s * (x - a)), min(v * (y + t), v * (y - a)), bottom),
-            (max(s * (x + t), s * (x - a)), max(v * (y + t), v * (y - a)), top),
-            0.0,
-            0,
-        )
-        for s in (-1.0, 1.0)
-        for v in (-1.0, 1.0)
+        solids.box((west, south, bottom), (east, north, top), 0.0, 0)
+        for (west, east), (south, north) in sides
         for bottom, top in spans
     ]
 

@@ -1,4 +1,4 @@
-"""Soft surfaces: weaves, knit, terry, carpet, leather, stripes, rugs, wicker."""
+"""Soft surfaces: weaves, terry, carpet, leather, stripes, rugs, wicker."""
 
 from functools import partial
 from typing import Any
@@ -18,14 +18,6 @@ def _weave(threads: int, depth: float, seed: int) -> Any:
     value = np.where(over, warp * (0.75 + 0.25 * weft), weft * (0.75 + 0.25 * warp))
     slub = 0.5 * field(_SIZE, (1, 14), seed) + 0.5 * field(_SIZE, (14, 1), seed + 1)
     return grey(1.0 - depth * (1.0 - value) - 0.16 * slub - 0.06 * fractal(_SIZE, 40, seed + 2, 3))
-
-
-def _knit() -> Any:
-    """Rows of small Vs."""
-    y, x = places(_SIZE)
-    wale = x * 24 % 1.0
-    stitch = (y * 24 + np.abs(wale - 0.5) * 1.4) % 1.0
-    return grey(0.72 + 0.28 * np.sin(np.pi * stitch) ** 0.6 * np.sin(np.pi * wale * 2 % np.pi) ** 0.3)
 
 
 def _carpet() -> Any:
@@ -125,11 +117,9 @@ TEXTURES: Book = {
     "weave": (partial(_weave, 40, 0.34, 101), 0.24),
     "linen": (partial(_weave, 64, 0.22, 104), 0.30),
     "canvas": (partial(_weave, 24, 0.42, 107), 0.24),
-    "knit": (_knit, 0.20),
     "carpet": (_carpet, 0.60),
     "terry": (_terry, 0.25),
     "leather": (_leather, 0.35),
-    "stripes": (partial(_stripes, 4, 0.62), 0.40),
     "stripes_fine": (partial(_stripes, 12, 0.78), 0.36),
     "plaid": (_plaid, 0.60),
     "dots": (_dots, 0.40),

@@ -1,4 +1,4 @@
-"""Skins of what grows and of what lies outdoors: fruit, bread, leaves, soil, grass, sky.
+"""Skins of what grows, fruit, bread, leaves, soil, and of what is made plainly: cardboard, metal, balls.
 
 Skins of food go once around a thing: rows run from its top (first) to its bottom, columns around it.
 """
@@ -59,10 +59,6 @@ def _egg() -> Any:
     return mix(0.5 * fractal(size, 14, 213, 2) + 0.5 * field(size, 0.7, 214), (0.88, 0.74, 0.60), (0.96, 0.86, 0.74))
 
 
-def _cheese_top(size: tuple[int, int] = (128, 128)) -> Any:
-    return mix(fractal(size, 16, 215, 3), (0.93, 0.78, 0.36), (0.98, 0.86, 0.50))
-
-
 def _leaf(rows: int) -> Any:
     """A leaf's blade: its rib runs along the middle of the columns, side veins slant from it."""
     size = (128, 128)
@@ -77,27 +73,6 @@ def _leaf(rows: int) -> Any:
 def _soil() -> Any:
     size = (128, 128)
     return mix(fractal(size, 6, 219, 4), (0.16, 0.11, 0.07), (0.38, 0.28, 0.20))
-
-
-def _bark() -> Any:
-    ridge = np.abs(field((256, 128), (26, 2.4), 221) - 0.5) * 3.0
-    return mix(ridge + 0.2 * field((256, 128), 1, 222), (0.24, 0.17, 0.12), (0.56, 0.44, 0.33))
-
-
-def _grass() -> Any:
-    size = (256, 256)
-    blade = 0.5 * field(size, (2.2, 0.7), 223) + 0.5 * field(size, (0.7, 2.2), 224)
-    meadow = fractal(size, 34, 225, 4)
-    return np.clip(mix(meadow, (0.25, 0.42, 0.16), (0.44, 0.56, 0.25)) * (0.72 + 0.5 * blade)[..., None], 0.0, 1.0)
-
-
-def _sky() -> Any:
-    """From the zenith (first row) to the horizon, with fair-weather clouds."""
-    size = (256, 512)
-    y, _ = places(size)
-    picture = mix(y**0.8, (0.34, 0.58, 0.86), (0.80, 0.89, 0.95))
-    cloud = np.clip((fractal(size, 44, 227, 5) - 0.52) * 4.0, 0.0, 1.0) * np.clip(3.0 * y * (1.05 - y), 0.0, 1.0)
-    return picture * (1.0 - 0.85 * cloud[..., None]) + 0.85 * cloud[..., None]
 
 
 def _cork() -> Any:
@@ -128,13 +103,6 @@ def _basketball() -> Any:
     return np.where(seam[..., None], 0.06, picture)
 
 
-def _candy(first: tuple[float, float, float], second: tuple[float, float, float]) -> Any:
-    """Rings of two colors, from top to bottom: a ceramic glaze that was dipped."""
-    y, _ = places((128, 128))
-    edge = 0.40 + 0.03 * (field((128, 128), (40, 9), 237) - 0.5)
-    return mix(np.clip((y - edge) * 60, 0.0, 1.0), first, second) * (0.96 + 0.04 * field((128, 128), 1, 238))[..., None]
-
-
 TEXTURES: Book = {
     "apple": (_apple, 0.0),
     "tomato": (_tomato, 0.0),
@@ -142,15 +110,10 @@ TEXTURES: Book = {
     "bread": (_bread, 0.30),
     "potato": (_potato, 0.0),
     "egg": (_egg, 0.0),
-    "cheese": (_cheese_top, 0.20),
     "leaf": (partial(_leaf, 7), 0.0),
     "soil": (_soil, 0.15),
-    "bark": (_bark, 0.25),
-    "grass": (_grass, 1.5),
-    "sky": (_sky, 0.0),
     "cork": (_cork, 0.15),
     "brushed": (_brushed, 0.30),
     "cardboard": (_cardboard, 0.30),
     "basketball": (_basketball, 0.0),
-    "dipped": (partial(_candy, (0.95, 0.94, 0.90), (1.0, 1.0, 1.0)), 0.0),
 }
