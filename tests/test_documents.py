@@ -29,7 +29,7 @@ from hthor.guest import Isolation
 from hthor.houses import schema as house_file
 from hthor.humans.models import _logged_trials
 from hthor.humans.population import kinds, population_file, resolve
-from hthor.leaderboard import canonical_form, schema
+from hthor.leaderboard import board_check, schema
 from hthor.leaderboard.entries import files as board_files
 from hthor.leaderboard.entries.files import BoardError
 from hthor.leaderboard.submission import submission
@@ -111,7 +111,7 @@ def test_every_reader_refuses_damage_with_its_own_error(reader: str, damage: str
 def test_damaged_entries_and_submissions_are_problems(damage: str, tmp_path: Path):
     path = tmp_path / "entry.json"
     path.write_bytes(DAMAGES[damage])
-    assert [one.file for one in canonical_form.form_problems(path)] == [str(path)]
+    assert [one.file for one in board_check.form_problems(path)] == [str(path)]
     handed = tmp_path / "mine"
     handed.mkdir()
     (handed / "agent.py").write_text("class Agent: ...\n")
@@ -210,7 +210,7 @@ def test_the_schema_is_kept_without_a_library_for_schemas(
     path.write_bytes(jsonio.pretty(changed))
     valid = jsonschema.Draft202012Validator(schema.document_schema("Entry")).is_valid(changed)
     assert valid <= (
-        not [one for one in canonical_form.form_problems(path) if one.field not in ("id", canonical_form.SPELLING)]
+        not [one for one in board_check.form_problems(path) if one.field not in ("id", board_check.SPELLING)]
     )
     if not valid:
-        assert list(canonical_form.form_problems(path))
+        assert list(board_check.form_problems(path))

@@ -133,7 +133,7 @@ def show(
     import cv2
 
     from hthor import houses, jsonio
-    from hthor.report.drawing import house_labels
+    from hthor.report.drawing import floor_plan
     from hthor.world import World
 
     spec = houses.load(house)
@@ -141,7 +141,7 @@ def show(
     if path.suffix.lower() != ".png":
         raise typer.BadParameter(f"'{path}' does not end in .png", param_hint="--out")
     world = World(spec)
-    picture = house_labels.with_labels(world.top_view(scale), spec, world.top_view_bounds, named=not plain)
+    picture = floor_plan.with_labels(world.top_view(scale), spec, world.top_view_bounds, named=not plain)
     jsonio.write(path, cv2.imencode(".png", picture[:, :, ::-1])[1].tobytes())
     output.put_files([path], json, house=spec.id)
 

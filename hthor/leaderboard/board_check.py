@@ -1,18 +1,18 @@
-"""Checks a board's entries against their form and the rules of `invariants`, and lists everything that is wrong."""
+"""Checks a board's entries against their form, schema and spelling, and the rules of `invariants`."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from msgspec import UNSET, Struct
 
-from hthor import tasks
+from hthor import jsonio, tasks
 from hthor.errors import HthorError
 from hthor.eval.metrics.metric import mean_limit
 from hthor.guest.agent import manifest
-from hthor.leaderboard import canonical_form
+from hthor.leaderboard import schema
 from hthor.leaderboard.entries import files, invariants, trial_outcomes
 from hthor.leaderboard.entries.entry import Entry
-from hthor.leaderboard.entries.files import Problem
+from hthor.leaderboard.entries.files import BoardError, Problem
 from hthor.leaderboard.entries.trial_outcomes import Outcomes, Unreadable
 from hthor.leaderboard.ranking import admission, listing
 from hthor.leaderboard.ranking.admission import Admission
@@ -40,9 +40,9 @@ def check_board(board: Path, paths: Sequence[Path] = (), *, submissions: Path | 
     others = [path for path in files.entry_paths(board) if path.resolve() not in {one.resolve() for one in wanted}]
     held, trusted = [], []
     for path in wanted:
-        wrong = list(canonical_form.form_problems(path))
+        wrong = list(form_problems(path))
         found += wrong
-        held += [] if any(one.field != canonical_form.SPELLING for one in wrong) else list(_read(path, found))
+        held += [] if any(one.field != SPELLING for one in wrong) else list(_read(path, found))
     for path in others:  # checked when they are asked for; what cannot be read cannot be a control
         trusted += list(_read(path, []))
     sizes = {one: made.tasks for one, made in files.read_commitments(board).items()}
@@ -131,3 +131,46 @@ def _submitted(entry: Entry, folder: Path) -> invariants.Problems:
         yield "submission", f"is '{entry.submission}', but there is no {folder}"
     elif found := manifest.differences(entry.files, submission.list_files(folder)):
         yield "files", f"is not what lies in {folder}: {'; '.join(found)}"
+
+
+SPELLING = "$ (canonical form)"
+"""The field that is named when only the spelling is wrong."""
+
+
+def form_problems(path: Path) -> Iterator[Problem]:
+    """What is wrong with the form of an entry's file."""
+    try:
+        entry = files.read_form(path)
+    except BoardError as error:
+        field, _, problem = str(error).removeprefix(f"{path}: ").partition(": ")
+        yield Problem(file=str(path), field=field, problem=problem)
+        return
+    wrong = list(_strictly(path, entry))
+    yield from wrong
+    if wrong:
+        return
+    if entry.id != path.stem:
+        yield Problem(file=str(path), field="id", problem=f"is '{entry.id}', but must be the file's, '{path.stem}'")
+    if jsonio.pretty(entry) != path.read_bytes():
+        how = "sorted keys, two spaces, a newline at the end; 'hthor leaderboard validate --fix' writes that"
+        yield Problem(file=str(path), field=SPELLING, problem=f"is not {how}")
+
+
+def fix_forms(paths: Sequence[Path]) -> list[Path]:
+    """Rewrite valid files that are not in canonical form; return their paths."""
+    fixed = []
+    for path in paths:
+        try:
+            entry = files.read_form(path)
+        except BoardError:
+            continue
+        if not list(_strictly(path, entry)) and jsonio.pretty(entry) != path.read_bytes():
+            files.write_document(path, entry)
+            fixed.append(path)
+    return fixed
+
+
+def _strictly(path: Path, entry: Entry) -> Iterator[Problem]:
+    """What the schema requires beyond the types of the fields."""
+    for field, problem in schema.schema_problems(path.read_bytes(), entry):
+        yield Problem(file=str(path), field=field, problem=problem)

@@ -30,7 +30,7 @@ from hthor.errors import HthorError, RunError
 from hthor.eval.config import run_config
 from hthor.eval.records.run_folder import RunFolder
 from hthor.guest.agent import manifest
-from hthor.leaderboard import board_check, canonical_form, enter, publish, rescore
+from hthor.leaderboard import board_check, enter, publish
 from hthor.leaderboard.entries import column_packing, entry_metrics, files, overrides, trial_outcomes
 from hthor.leaderboard.page import page
 from hthor.leaderboard.ranking import admission, listing
@@ -116,7 +116,7 @@ def test_what_is_refused_leaves_the_board_as_it_was(runs: Path, tmp_path: Path):
 
 
 def test_a_board_that_is_not_there_is_not_in_order(whole: Path, tmp_path: Path):
-    for look in (board_check.check_board, publish.build_board, rescore.rescore):
+    for look in (board_check.check_board, publish.build_board, publish.rescore):
         with pytest.raises(files.BoardError, match="not a folder"):
             look(tmp_path / "board")
     with pytest.raises(files.BoardError, match="is no file"):
@@ -128,7 +128,7 @@ def test_a_column_that_cannot_be_read_is_named_with_its_file(board: Path):
     held = json.loads(path.read_bytes())
     held["trials"]["time"] += "AAAA"
     path.write_text(json.dumps(held))
-    for look in (rescore.rescore, publish.build_board):
+    for look in (publish.rescore, publish.build_board):
         with pytest.raises(files.BoardError, match=rf"{path.name}: trials\.time: "):
             look(board)
     assert "trials.time" in [one.field for one in board_check.check_board(board)]
@@ -208,8 +208,8 @@ def test_all_problems_are_listed(board: Path):
 def test_another_spelling_is_refused_and_can_be_fixed(board: Path, whole: Path):
     path = entry_of(board, "helper")
     path.write_text(json.dumps(json.loads(path.read_bytes())))
-    assert [one.field for one in board_check.check_board(board)] == [canonical_form.SPELLING]
-    assert canonical_form.fix_forms(files.entry_paths(board)) == [path]
+    assert [one.field for one in board_check.check_board(board)] == [board_check.SPELLING]
+    assert board_check.fix_forms(files.entry_paths(board)) == [path]
     assert contents(board) == contents(whole)
     (board / "leaderboard.json").write_bytes(b"{}")
     assert [one.file for one in publish.differences(board)] == [str(board / "leaderboard.json")]
@@ -234,9 +234,9 @@ def test_numbers_of_older_statistics_are_worked_out_anew(board: Path, whole: Pat
             path, msgspec.structs.replace(entry, metrics=msgspec.structs.replace(entry.metrics, sr=sr))
         )
     assert board_check.check_board(board) != []
-    assert rescore.rescore(board) == files.entry_paths(board)
+    assert publish.rescore(board) == files.entry_paths(board)
     assert contents(board) == contents(whole)
-    assert rescore.rescore(board) == []
+    assert publish.rescore(board) == []
 
 
 @pytest.mark.parametrize("tier", ["V1", "V2"])

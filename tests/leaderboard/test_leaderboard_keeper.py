@@ -22,7 +22,7 @@ from hthor.leaderboard.entries import column_packing, entry_metrics, files, tria
 from hthor.leaderboard.entries.entry import Entry
 from hthor.leaderboard.entries.files import BoardError
 from hthor.leaderboard.entries.verification import KeeperRecords, Verification
-from hthor.leaderboard.ranking import admission, duplicates, listing
+from hthor.leaderboard.ranking import admission, listing
 from hthor.leaderboard.ranking.board import Row
 from hthor.leaderboard.verify import detection_power, fresh_tasks, performance_drop, replay, verdict, verify
 
@@ -116,16 +116,14 @@ def test_what_one_agent_is(whole: Path):
     late = msgspec.structs.replace(held[helper.id], time=held[helper.id].time + 500)
     other = best_named(helper, "other", 1)
     apart = msgspec.structs.replace(clumsy, run=best_named(clumsy, "clumsy", 2).run)
-    assert len(duplicates.group_duplicates([helper, other], [held[helper.id]] * 2)) == 1, "the same outcomes"
-    assert len(duplicates.group_duplicates([helper, other], [held[helper.id], late])) == 2
+    assert len(listing.group_duplicates([helper, other], [held[helper.id]] * 2)) == 1, "the same outcomes"
+    assert len(listing.group_duplicates([helper, other], [held[helper.id], late])) == 2
     named = msgspec.structs.replace(other, agent=helper.agent)
-    assert len(duplicates.group_duplicates([helper, named], [held[helper.id], late])) == 1, (
-        "a version, by name and team"
-    )
+    assert len(listing.group_duplicates([helper, named], [held[helper.id], late])) == 1, "a version, by name and team"
     same = msgspec.structs.replace(other, run=helper.run)
-    assert len(duplicates.group_duplicates([helper, same], [held[helper.id], late])) == 1, "the same code"
-    assert duplicates.similarity(held[helper.id], held[helper.id]) == 1.0
-    assert len(duplicates.group_duplicates([helper, apart], [held[helper.id], late])) == 2
+    assert len(listing.group_duplicates([helper, same], [held[helper.id], late])) == 1, "the same code"
+    assert listing.similarity(held[helper.id], held[helper.id]) == 1.0
+    assert len(listing.group_duplicates([helper, apart], [held[helper.id], late])) == 2
 
 
 # ------------------------------------------------------------------------------------------------- the keeper's files

@@ -16,7 +16,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hthor.eval.statistics.intervals import NOTHING, Estimate
-from hthor.leaderboard import canonical_form
+from hthor.leaderboard import board_check
 from hthor.leaderboard.entries import files
 from hthor.leaderboard.entries.entry import Agent, Entry, Group, Harness
 from hthor.leaderboard.entries.verification import Fresh, KeeperRecords
@@ -159,4 +159,4 @@ def test_the_schema_takes_no_such_values(whole: Path, tmp_path: Path, field: str
     entry: Entry = files.read_entry(next(path for path in files.entry_paths(whole) if path.name.startswith("helper")))
     path = tmp_path / f"{entry.id}.json"
     files.write_document(path, msgspec.structs.replace(entry, **{field: value}))
-    assert [one.field.partition(".")[0] for one in canonical_form.form_problems(path)] == [field]
+    assert [one.field.partition(".")[0] for one in board_check.form_problems(path)] == [field]

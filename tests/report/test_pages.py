@@ -21,7 +21,7 @@ from hthor.cli import app as cli
 from hthor.errors import HthorError, RunError, UnknownName
 from hthor.eval.records import trial_record
 from hthor.guest import Isolation
-from hthor.report.analysis import build, fault_summary, load_runs
+from hthor.report.analysis import build, load_runs, trial_selection
 from hthor.report.analysis.document import Findings, Published, Share
 from hthor.report.drawing import render_trial
 from hthor.report.html import matplotlib_svg
@@ -169,7 +169,7 @@ def test_what_is_left_of_an_agent_is_shown_with_the_command_that_plays_it_again(
     folders: list[Path], tmp_path: Path
 ) -> None:
     mine = shutil.copytree(folders[2], tmp_path / "clumsy")
-    first = fault_summary.fault_summary(load_runs.load_runs([mine])[0])[0]
+    first = trial_selection.fault_summary(load_runs.load_runs([mine])[0])[0]
     assert (first.detail.splitlines()[-1], first.output, first.again) == ("ValueError: no", "", "")
     told = {
         "seat": "robot",
@@ -185,7 +185,7 @@ def test_what_is_left_of_an_agent_is_shown_with_the_command_that_plays_it_again(
     for said in ("KeyError: &lt;i&gt;", "last &amp; least", again, first.replay):
         assert said in text
     jsonio.write(mine / "faults" / f"{first.key}.json", b"torn")
-    assert fault_summary.fault_summary(load_runs.load_runs([mine])[0])[0] == first
+    assert trial_selection.fault_summary(load_runs.load_runs([mine])[0])[0] == first
 
 
 def test_what_held_the_agents_and_where_they_were_played_is_told(folders: list[Path], tmp_path: Path) -> None:

@@ -17,7 +17,7 @@ from benchmarks import pictures
 from hthor import houses, tasks
 from hthor.episode import EpisodeLog, Fault
 from hthor.eval.records import trial_record
-from hthor.report.drawing import floor_plan, house_labels, lettering, trial_figure, trial_trace, trial_video
+from hthor.report.drawing import floor_plan, lettering, trial_figure, trial_trace, trial_video
 from hthor.report.html import matplotlib_svg
 from hthor.report.page.figures import trial_map
 from hthor.types import AgentRef, Event, RobotSeat, TrialSpec
@@ -217,8 +217,8 @@ film.onloadeddata = () => { told.textContent = "shows " + film.videoWidth + " x 
 def test_a_house_is_shown_with_its_rooms_and_a_scale() -> None:
     house = houses.load(TASK.house)
     bare = np.full((300, 320, 3), 128, np.uint8)
-    named = house_labels.with_labels(bare, house, (0.0, 0.0, 10.7, 10.0))
-    plain = house_labels.with_labels(bare, house, (0.0, 0.0, 10.7, 10.0), named=False)
+    named = floor_plan.with_labels(bare, house, (0.0, 0.0, 10.7, 10.0))
+    plain = floor_plan.with_labels(bare, house, (0.0, 0.0, 10.7, 10.0), named=False)
     assert named.shape == plain.shape == (334, 320, 3)
     assert (plain[:300] == bare).all()
     assert (named[:300] != bare).any()

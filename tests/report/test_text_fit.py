@@ -30,7 +30,7 @@ from hthor.report.drawing import lettering, render_trial, text_fit, trial_figure
 from hthor.report.html import elements, matplotlib_svg
 from hthor.report.page import figure_index, key_moments, write_report
 from hthor.report.page.figure_index import MapScene
-from hthor.report.page.figures import case_study, run_styles, trust
+from hthor.report.page.figures import case_study, run_styles, session
 from hthor.types import RobotSeat, TrialSpec
 
 LONG = "a_policy_whose_name_has_sixty_characters_as_some_people_like"
@@ -101,7 +101,7 @@ def test_every_figure_of_a_report_has_its_words_whole(found: Findings, folders: 
 
 def test_names_of_curves_lie_right_of_all_marks_and_apart(found: Findings) -> None:
     """Each began where its own curve ended, and the marks of the others hid its first letters."""
-    made = trust.figure(found.trust, found.arms)
+    made = session.trust_figure(found.trust, found.arms)
     assert cut(made) == []
     (ax,) = made.axes
     named = {run_styles.axis_label(name) for name in NAMES}

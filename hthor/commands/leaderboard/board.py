@@ -96,11 +96,11 @@ def validate(
     json: Json = False,
 ) -> None:
     """Check that entries follow the schema, are in canonical form, and that every number follows from their trials."""
-    from hthor.leaderboard import board_check, canonical_form
+    from hthor.leaderboard import board_check
     from hthor.leaderboard.entries import files
 
     wanted = paths or files.entry_paths(board)
-    for path in canonical_form.fix_forms(wanted) if fix else ():
+    for path in board_check.fix_forms(wanted) if fix else ():
         sys.stderr.write(f"{path}: written in canonical form\n")
     found = board_check.check_board(board, paths or (), submissions=submissions)
     _tell(found, json, f"{len(wanted)} entr{'y' if len(wanted) == 1 else 'ies'} in order")
@@ -125,9 +125,8 @@ def build(
 def rescore(board: Board = BOARD, json: Json = False) -> None:
     """Recompute the numbers of entries from their trials, after a change of hthor's statistics; nothing is played."""
     from hthor.leaderboard import publish
-    from hthor.leaderboard import rescore as rescoring
 
-    changed = rescoring.rescore(board)
+    changed = publish.rescore(board)
     publish.build_board(board)
     _put_entries(changed, json)
     if not json:

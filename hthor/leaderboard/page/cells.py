@@ -1,4 +1,7 @@
-"""The cells of the page's tables."""
+"""The tables of the page: cells with numbers and their intervals, in words and as small drawings; heads that sort."""
+
+import math
+from collections.abc import Iterable, Sequence
 
 from msgspec import Struct
 
@@ -7,10 +10,11 @@ from hthor.eval.results.paired_difference import Difference
 from hthor.eval.statistics.intervals import Estimate
 from hthor.leaderboard.entries.verification import MIN_DETECTION, Replayed
 from hthor.leaderboard.ranking.board import Row, Section, Standing
-from hthor.report.html.markup import Markup, Piece, join, link, tag
+from hthor.report.html import markup
+from hthor.report.html.markup import NOTHING, Markup, Piece, join, link, tag
 from hthor.report.terminal.result_tables import format_detectable
 
-NOTHING = "–"
+DASH = "–"
 _TIERS = {"V1": "byte for byte", "V2": "by outcomes", "V3": "statistically"}
 _LAST = 1e9
 
@@ -25,7 +29,7 @@ class Cell(Struct, frozen=True):
 def rank(one: Row, metric: str = "sr") -> Cell:
     """The rank, the ranks that are not excluded and the tier of verification; or why there is no rank."""
     if one.ranks is None:
-        return Cell(_soft("ref." if one.reference else NOTHING, "" if one.reference else one.unranked), _LAST)
+        return Cell(_soft("ref." if one.reference else DASH, "" if one.reference else one.unranked), _LAST)
     found: Standing = getattr(one.ranks, metric)
     low, high = found.interval
     checked = f" · {one.verification.trials.tier}" if one.verification else ""
@@ -51,7 +55,7 @@ def agent(one: Row) -> Cell:
 def share(one: Estimate) -> Cell:
     """A percentage with its interval."""
     if one.mean is None:
-        return Cell(NOTHING, -1.0)
+        return Cell(DASH, -1.0)
     low, high = (f"{100 * end:.1f}" for end in one.ci95 or (one.mean, one.mean))
     return Cell(join([f"{100 * one.mean:.1f}", _interval(f"{low}–{high}", one, SHARE)]), one.mean)
 
@@ -59,7 +63,7 @@ def share(one: Estimate) -> Cell:
 def amount(one: Estimate, digits: int = 1) -> Cell:
     """A number with its interval."""
     if one.mean is None:
-        return Cell(NOTHING, -1.0)
+        return Cell(DASH, -1.0)
     low, high = (f"{end:.{digits}f}" for end in one.ci95 or (one.mean, one.mean))
     return Cell(join([f"{one.mean:.{digits}f}", _interval(f"{low}–{high}", one, NUMBER)]), one.mean)
 
@@ -67,7 +71,7 @@ def amount(one: Estimate, digits: int = 1) -> Cell:
 def gain(one: Difference | None, unit: Unit = SHARE) -> Cell:
     """The difference to no robot, with its interval."""
     if one is None:
-        return Cell(NOTHING, -_LAST)
+        return Cell(DASH, -_LAST)
     low, high = (f"{unit.scale * end:+z.1f}" for end in one.ci95 or (one.difference, one.difference))
     ends = _minus(f"{low} to {high}")
     return Cell(join([_minus(f"{unit.scale * one.difference:+z.1f}"), _interval(ends, one, unit)]), one.difference)
@@ -147,3 +151,114 @@ def _interval(ends: str, one: Estimate | Difference, unit: Unit) -> Markup:
 
 def _minus(text: str) -> str:
     return text.replace("-", "−")
+
+
+_WIDE, _HIGH, _EDGE = 150.0, 16.0, 6.0
+
+
+class Scale(Struct, frozen=True, kw_only=True):
+    """From where to where a column's marks go, in percent."""
+
+    low: int
+    high: int
+
+    def at(self, share: float) -> float:
+        """Where a share lies [px]."""
+        part = (100.0 * share - self.low) / (self.high - self.low)
+        return round(_EDGE + (_WIDE - 2 * _EDGE) * min(max(part, 0.0), 1.0), 1)
+
+
+def common_scale(some: Iterable[Estimate]) -> Scale:
+    """The tens around all intervals."""
+    ends = [end for one in some for end in (one.ci95 or ())] or [0.0, 1.0]
+    low, high = 10 * math.floor(10 * min(ends)), 10 * math.ceil(10 * max(ends))
+    return Scale(low=max(0, low), high=min(100, max(high, low + 10)))
+
+
+def draw_axis(on: Scale) -> Markup:
+    """The head of a column of marks: its ends in numbers."""
+    look: dict[str, str | int] = {"y": 11, "font_size": 10, "fill": "var(--soft)"}
+    ends = (
+        tag("text", str(on.low), x=on.at(on.low / 100.0) - 4, **look),
+        tag("text", str(on.high), x=on.at(on.high / 100.0) + 4, text_anchor="end", **look),
+    )
+    return _drawing("scale", *ends)
+
+
+def draw_interval(one: Estimate, on: Scale, colour: str) -> Markup:
+    """A dot for the mean, a line for the interval, thin lines at each tenth."""
+    if one.mean is None:
+        return NOTHING
+    low, high = one.ci95 or (one.mean, one.mean)
+    step = 10 if on.high - on.low <= 60 else 20
+    grid = (
+        tag("line", x1=on.at(tenth / 100), x2=on.at(tenth / 100), y1=0, y2=_HIGH, stroke="var(--line)")
+        for tenth in range(on.low, on.high + 1, step)
+    )
+    middle, ink = _HIGH / 2, f"var(--{colour})"
+    bar = tag("line", x1=on.at(low), x2=on.at(high), y1=middle, y2=middle, stroke_width="2.5")
+    dot = tag("circle", cx=on.at(one.mean), cy=middle, r="3.6")
+    words = f"{100 * one.mean:.1f} %, 95 % interval {100 * low:.1f} to {100 * high:.1f}"
+    return _drawing(words, *grid, tag("g", bar, dot, stroke=ink, fill=ink, stroke_linecap="round"))
+
+
+def _drawing(words: str, *parts: Piece) -> Markup:
+    box = f"0 0 {_WIDE:g} {_HIGH:g}"
+    return tag("svg", tag("title", words), *parts, role="img", width=_WIDE, height=_HIGH, viewBox=box)
+
+
+SORT = """
+for(const th of document.querySelectorAll("th[data-k]")){
+ const go=()=>{
+  const first=th.dataset.k==="-1"?"descending":"ascending";
+  const way=Number(th.dataset.k)*(th.getAttribute("aria-sort")===first?-1:1);
+  const body=th.closest("table").tBodies[0],at=th.cellIndex,value=row=>Number(row.cells[at].dataset.v);
+  const rows=[...body.rows].sort((one,other)=>way*(value(one)-value(other)));
+  for(const other of th.parentNode.cells)other.removeAttribute("aria-sort");
+  th.setAttribute("aria-sort",way===1?"ascending":"descending");
+  body.append(...rows);
+ };
+ th.tabIndex=0;th.addEventListener("click",go);
+ th.addEventListener("keydown",key=>{if(key.key==="Enter"||key.key===" "){key.preventDefault();go();}});
+}
+"""
+
+
+def table(
+    head: Iterable[tuple[Piece, int]],
+    lines: Sequence[tuple[str, Sequence[Cell]]],
+    *,
+    words: Iterable[int],
+    named: int = 1,
+) -> Markup:
+    """A table whose heads sort it.
+
+    Args:
+        head: each column's title and which way it sorts first: 1 up, -1 down, 0 not at all.
+        lines: each row's class and cells.
+        words: columns that hold no numbers. named: the column that is the row's name.
+    """
+    wordy = set(words)
+    tops = [
+        tag("th", tag("span", title), scope="col", class_=None if place in wordy else "n", data_k=way or None)
+        for place, (title, way) in enumerate(head)
+    ]
+    body = (
+        tag(
+            "tr",
+            *(_table_cell(part, place == named, place in wordy) for place, part in enumerate(parts)),
+            class_=kind or None,
+        )
+        for kind, parts in lines
+    )
+    return markup.table(tops, body)
+
+
+def _table_cell(part: Cell, named: bool, wordy: bool) -> Markup:
+    kind = {"scope": "row"} if named else {"class_": None if wordy else "n"}
+    return tag("th" if named else "td", part.shown, **kind, data_v=float(part.order))
+
+
+def fold(title: str, *inside: Piece) -> Markup:
+    """Something that is shown when its title is clicked."""
+    return tag("details", tag("summary", title), *inside)

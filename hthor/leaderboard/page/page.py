@@ -1,7 +1,7 @@
 """The leaderboard as one page that needs nothing else: no network, and a script that only sorts."""
 
 from hthor.eval.metrics.metric import SECONDS
-from hthor.leaderboard.page import cells, interval_marks, tables
+from hthor.leaderboard.page import cells
 from hthor.leaderboard.page.cells import Cell
 from hthor.leaderboard.ranking.board import Board, Row, Section, Struck
 from hthor.report.html import markup as m
@@ -107,7 +107,7 @@ def render(found: Board) -> str:
         *body,
         tag("footer", made),
     )
-    return m.page(title, main, style.css(_RULES), code=tables.SORT, sealed=True)
+    return m.page(title, main, style.css(_RULES), code=cells.SORT, sealed=True)
 
 
 def _section(number: int, one: Section) -> Markup:
@@ -130,25 +130,25 @@ def _section(number: int, one: Section) -> Markup:
         m.NOTHING if one.calibrated else tag("p", _UNFITTED, class_="note"),
         _ranking(one),
         tag("p", said, class_="soft") if said else m.NOTHING,
-        tables.fold("By difficulty and kind of task", _splits(one)),
-        tables.fold("What was run", _origins(one)),
+        cells.fold("By difficulty and kind of task", _splits(one)),
+        cells.fold("What was run", _origins(one)),
     )
 
 
 def _ranking(one: Section) -> Markup:
-    on = interval_marks.common_scale(row.sr for row in one.rows)
-    head: list[tuple[Piece, int]] = [(title or interval_marks.draw_axis(on), way) for title, way in _HEAD]
+    on = cells.common_scale(row.sr for row in one.rows)
+    head: list[tuple[Piece, int]] = [(title or cells.draw_axis(on), way) for title, way in _HEAD]
     lines = [("ref" if row.reference else "", _cells(row, on)) for row in one.rows]
-    return tables.table(head, lines, words=(0, 1, 3, 12, 13))
+    return cells.table(head, lines, words=(0, 1, 3, 12, 13))
 
 
-def _cells(row: Row, on: interval_marks.Scale) -> list[Cell]:
+def _cells(row: Row, on: cells.Scale) -> list[Cell]:
     colour = _COLOURS.get(row.name, "ink") if row.reference else "ink"
     return [
         cells.rank(row),
         cells.agent(row),
         cells.share(row.sr),
-        Cell(interval_marks.draw_interval(row.sr, on, colour)),
+        Cell(cells.draw_interval(row.sr, on, colour)),
         cells.fresh(row),
         cells.share(row.twsr),
         cells.gain(row.uplift.sr if row.uplift else None),
@@ -172,26 +172,26 @@ def _splits(one: Section) -> Markup:
         ("ref" if row.reference else "", [Cell(row.name), *(_split(row, name, value) for name, value in columns)])
         for row in one.rows
     ]
-    return tables.table(head, lines, words=(0,), named=0)
+    return cells.table(head, lines, words=(0,), named=0)
 
 
 def _split(row: Row, name: str, value: str) -> Cell:
     found = row.splits.get(name, {}).get(value)
-    return Cell(cells.NOTHING, -1.0) if found is None else cells.share(found.sr)
+    return Cell(cells.DASH, -1.0) if found is None else cells.share(found.sr)
 
 
 def _origins(one: Section) -> Markup:
     head: list[tuple[Piece, int]] = [(word, 0) for word in ("entry", "body", "agent's code", "hthor", "commit")]
     lines = [("", [Cell(part) for part in _origin(row)]) for row in one.rows]
-    return tables.table(head, lines, words=range(5), named=0)
+    return cells.table(head, lines, words=range(5), named=0)
 
 
 def _origin(row: Row) -> tuple[Piece, ...]:
     used = row.harness
-    commit = (used.commit[:10] or cells.NOTHING) + (", changed" if used.dirty else "")
+    commit = (used.commit[:10] or cells.DASH) + (", changed" if used.dirty else "")
     return (
         tag("code", row.id),
-        ", ".join(row.bodies) or cells.NOTHING,
+        ", ".join(row.bodies) or cells.DASH,
         " ".join(digest[:10] for digest in row.code),
         used.version,
         commit if row.official or row.reference else f"{commit} (claimed)",

@@ -5,8 +5,6 @@ from collections.abc import Sequence
 from hthor.eval.results import aggregate
 from hthor.report.analysis import (
     breakdown,
-    comparisons,
-    fault_summary,
     run_provenance,
     session_statistics,
     trial_selection,
@@ -31,7 +29,7 @@ def build_findings(runs: Sequence[Run], published: Published | None = None) -> F
     own = [run for run in runs if run.plan.humans.name == people]
     baseline = next((run for run in own if run.condition == "none"), None)
     each = trial_selection.EACH if len(own) <= _MANY else 1
-    compared, incomparable = comparisons.compare_labelled(baseline, own)
+    compared, incomparable = breakdown.compare_labelled(baseline, own)
     return Findings(
         suite=runs[0].plan.suite,
         people=people,
@@ -44,11 +42,11 @@ def build_findings(runs: Sequence[Run], published: Published | None = None) -> F
         trust=tuple(curve for run in own if (curve := session_statistics.trust_curve(run)) is not None),
         splits=breakdown.all_splits(own),
         by_people=breakdown.split_by_population(runs),
-        people_uplift=comparisons.uplift_by_population(runs),
+        people_uplift=breakdown.uplift_by_population(runs),
         shown=tuple(
             one for run in own if run.plan.seats for one in trial_selection.best_and_worst(run, baseline, each)
         ),
-        failures=tuple(one for run in runs for one in fault_summary.fault_summary(run)),
+        failures=tuple(one for run in runs for one in trial_selection.fault_summary(run)),
         origins=tuple(run_provenance.run_provenance(run) for run in runs),
     )
 

@@ -4,6 +4,7 @@ Fractions are fractions, times are seconds, trust is 1 to 7.
 """
 
 import math
+from typing import Literal
 
 from msgspec import Struct
 
@@ -11,8 +12,55 @@ from hthor.eval.comparison.compare import Comparison
 from hthor.eval.config.run_config import SuiteRef
 from hthor.eval.results.result_file import Scores
 from hthor.eval.statistics.intervals import Estimate
-from hthor.report.analysis.example_trials import ExampleTrial, FaultGroup
 from hthor.report.analysis.run_provenance import Provenance
+
+
+class ExampleTrial(Struct, frozen=True, kw_only=True):
+    """A trial worth a map. ``gain_s`` is the time saved [s] against the same person without a robot, None without one.
+
+    ``replay`` is the command that draws it whole.
+    """
+
+    arm: str
+    rank: Literal["best", "worst"]
+    key: str
+    task: str
+    instruction: str
+    house: str
+    participant: int
+    index: int
+    met: bool
+    time_s: float
+    t_star: float
+    alone_met: bool | None
+    alone_s: float | None
+    gain_s: float | None
+    replay: str
+
+
+class FaultGroup(Struct, frozen=True, kw_only=True):
+    """One way in which a run's robots failed: in how many ``trials`` out of ``whole``, and the first of them.
+
+    ``detail`` is the traceback or what the robot's mind did, ``output`` what it printed last, empty where nothing was
+    kept; ``again`` the command that plays the trial once more, ``replay`` the one that draws it.
+    """
+
+    run: str
+    seat: str
+    agent: str
+    kind: str
+    trials: int
+    whole: int
+    key: str
+    task: str
+    participant: int
+    index: int
+    after_s: float
+    detail: str
+    output: str
+    again: str
+    replay: str
+
 
 SCHEMA = "hthor.report/3"
 

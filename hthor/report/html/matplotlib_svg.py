@@ -147,3 +147,26 @@ def _short(text: str) -> str:
     text = re.sub(r"(\d+\.\d{2})\d+", r"\1", text)
     used = set(re.findall(r'(?:href="#|url\(#)([^")]+)', text))
     return re.sub(r' id="([^"]+)"', lambda found: found.group(0) if found.group(1) in used else "", text)
+
+
+_ELEMENT_HEAD = re.compile(r'<svg role="img" viewBox="0 0 ([\d.]+) ([\d.]+)" style="[^"]*">')
+_FONT = "Helvetica, Arial, &quot;DejaVu Sans&quot;, sans-serif"
+
+
+def svg_document(element: str) -> str:
+    """The file's text.
+
+    Args:
+        element: as `to_svg` makes it.
+    """
+    found = _ELEMENT_HEAD.match(element)
+    assert found is not None
+    wide, high = found.groups()
+    head = (
+        f'<svg xmlns="http://www.w3.org/2000/svg" role="img" width="{wide}pt" height="{high}pt" '
+        f'viewBox="0 0 {wide} {high}" font-family="{_FONT}">'
+    )
+    body = element[found.end() :]
+    for colour, variable in VARIABLES.items():
+        body = body.replace(f"var(--{variable})", colour)
+    return f'<?xml version="1.0" encoding="utf-8"?>\n{head}{body}\n'

@@ -11,7 +11,7 @@ from hthor.guest import AgentInputs
 from hthor.report.analysis import load_runs
 from hthor.report.analysis.load_runs import Run
 from hthor.report.drawing import lettering, render_trial
-from hthor.report.html import matplotlib_svg, svg_file
+from hthor.report.html import matplotlib_svg
 from hthor.report.page import camera_frames, key_moments
 from hthor.report.page.figures import case_study
 from hthor.report.page.figures.case_study import Row
@@ -61,7 +61,7 @@ def write_case_study(
     stem = f"case-{spec.task.id.replace('/', '-')}-{spec.participant}"
     words = f"{spec.task.instruction} One person at this task with: {', '.join(run.label for run in runs)}."
     drawn, seen = out / f"{stem}.svg", out / f"{stem}.png"
-    jsonio.write(drawn, svg_file.svg_document(matplotlib_svg.to_svg(made, "case", words)).encode())
+    jsonio.write(drawn, matplotlib_svg.svg_document(matplotlib_svg.to_svg(made, "case", words)).encode())
     pixels = io.BytesIO()
     with matplotlib_svg.style():
         lettering.save_figure(made, pixels, format="png", dpi=_DPI, metadata={"Software": None})

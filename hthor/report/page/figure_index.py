@@ -8,7 +8,7 @@ from msgspec import Struct
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.report.analysis.document import Findings
 from hthor.report.drawing import trial_trace
-from hthor.report.page.figures import breakdown, communication, comparison, scores, time_spent, trial_map, trust
+from hthor.report.page.figures import breakdown, scores, session, trial_map
 from hthor.types import HouseSpec
 
 PAIRS_MOST = 15
@@ -57,21 +57,21 @@ def _of_runs(found: Findings) -> Iterator[NamedFigure]:
     yield NamedFigure(
         name="scores",
         words="Success, time-weighted success and adoption of every run, with 95 % intervals",
-        figure=scores.figure(found),
+        figure=scores.scores_figure(found),
     )
     pairs = found.comparisons if len(found.comparisons) <= PAIRS_MOST else found.uplift
     if pairs:
         words = "Differences between runs over shared trials, with 95 % intervals"
-        yield NamedFigure(name="compared", words=words, figure=comparison.figure(pairs, found.arms))
+        yield NamedFigure(name="compared", words=words, figure=scores.comparison_figure(pairs, found.arms))
     words = "Box plots of the time spent, and the share of trials solved by each second"
-    yield NamedFigure(name="time-spent", words=words, figure=time_spent.figure(found.spent, found.arms))
+    yield NamedFigure(name="time-spent", words=words, figure=session.time_figure(found.spent, found.arms))
     if found.trust:
         words = "Mean trust by trial of the session, with standard errors"
-        yield NamedFigure(name="trust", words=words, figure=trust.figure(found.trust, found.arms))
+        yield NamedFigure(name="trust", words=words, figure=session.trust_figure(found.trust, found.arms))
     speaking = [arm for arm in found.arms if (arm.scores["sent"].mean or 0.0) > 0.0]
     if speaking:
         words = "What became of the robots' messages, how soon they were useful, how often they interrupted"
-        yield NamedFigure(name="channel", words=words, figure=communication.figure(speaking))
+        yield NamedFigure(name="channel", words=words, figure=session.communication_figure(speaking))
 
 
 def _of_parts(found: Findings) -> Iterator[NamedFigure]:

@@ -5,31 +5,21 @@ from html import escape
 
 from hthor.report.analysis.document import Findings
 from hthor.report.html import elements, style
-from hthor.report.page import headline, sentences, warnings
-from hthor.report.page.sections import (
-    breakdown,
-    communication,
-    comparison,
-    faults,
-    provenance,
-    results,
-    time_spent,
-    trials,
-    trust,
-)
+from hthor.report.page import headline, sentences
+from hthor.report.page.sections import breakdown, provenance, results, session, trials
 
 _SECTIONS: dict[str, tuple[str, Callable[[Findings, Mapping[str, str]], list[str]]]] = {
-    "results": (results.TITLE, results.parts),
-    "compared": (comparison.TITLE, comparison.parts),
-    "time": (time_spent.TITLE, time_spent.parts),
-    "trust": (trust.TITLE, trust.parts),
-    "channel": (communication.TITLE, communication.parts),
-    "difficulty": (breakdown.DIFFICULTY, breakdown.difficulty),
-    "scenes": (breakdown.SCENES, breakdown.scenes),
-    "people": (breakdown.PEOPLE, breakdown.people),
-    "trials": (trials.TITLE, trials.parts),
-    "faults": (faults.TITLE, faults.parts),
-    "provenance": (provenance.TITLE, provenance.parts),
+    "results": ("Results", results.scores),
+    "compared": ("Paired comparisons", results.comparison),
+    "time": ("Time spent", session.time_spent),
+    "trust": ("Trust", session.trust),
+    "channel": ("Communication, and being in the way", session.communication),
+    "difficulty": ("By difficulty and kind of task", breakdown.difficulty),
+    "scenes": ("By scene", breakdown.scenes),
+    "people": ("By kind of person", breakdown.people),
+    "trials": ("Best and worst trials", trials.trials),
+    "faults": ("Faults", trials.faults),
+    "provenance": ("Where the runs come from", provenance.parts),
 }
 _RULES = """
 main{max-width:50rem;counter-reset:figure table}
@@ -92,7 +82,7 @@ def _head(found: Findings, title: str) -> str:
             f"<h1>{elements.inside(title)}</h1>",
             elements.paragraph(headline.headline(found), "lead"),
             elements.paragraph(sentences.page_facts(found), "facts"),
-            *(elements.paragraph(note, "note") for note in warnings.warnings(found)),
+            *(elements.paragraph(note, "note") for note in sentences.warnings(found)),
         )
     )
 

@@ -9,7 +9,7 @@ from hthor.report.analysis import build, load_runs
 from hthor.report.analysis.document import Findings, Published
 from hthor.report.analysis.load_runs import Run, pairing_key
 from hthor.report.drawing import render_trial
-from hthor.report.html import matplotlib_svg, svg_file
+from hthor.report.html import matplotlib_svg
 from hthor.report.page import figure_index, page
 from hthor.report.page.figure_index import MapScene
 
@@ -30,7 +30,7 @@ def write_report(folders: Sequence[Path], out: Path, published: Published | None
         elements[one.name] = matplotlib_svg.to_svg(one.figure, one.name, one.words)
     text = page.render(found, elements)
     for name, element in elements.items():
-        jsonio.write(out / "figures" / f"{name}.svg", svg_file.svg_document(element).encode())
+        jsonio.write(out / "figures" / f"{name}.svg", matplotlib_svg.svg_document(element).encode())
     jsonio.write(out / "report.json", jsonio.pretty(found))
     jsonio.write(out / "report.html", text.encode())
     return found

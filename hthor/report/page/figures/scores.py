@@ -1,15 +1,17 @@
-"""Success, time-weighted success, adoption and progress of every run beside the published ones."""
+"""Scores of every run beside the published ones, and runs against each other over the trials that they share."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from hthor.eval.comparison.compare import Comparison
 from hthor.eval.metrics import registry
-from hthor.report.analysis.document import Findings
+from hthor.eval.results import result_file
+from hthor.report.analysis.document import Arm, Findings
 from hthor.report.drawing import text_fit
 from hthor.report.html import matplotlib_svg
 from hthor.report.page.figures import run_styles
@@ -24,7 +26,7 @@ _MANY = 4
 """So many panels have short titles."""
 
 
-def figure(found: Findings) -> Figure:
+def scores_figure(found: Findings) -> Figure:
     """Means with 95 % intervals; diamonds are the article's, with intervals of their own where it tells counts."""
     own, rows = run_styles.run_styles(found.arms), len(found.arms)
     held = [metric for metric in METRICS if any(arm.scores[metric.name].n for arm in found.arms)]
@@ -97,3 +99,29 @@ def _publish(ax: Axes, y: float, name: str, found: Findings) -> None:
     ax.plot(
         100.0 * published.figures[name], y, "D", mfc="none", mec=matplotlib_svg.PUBLISHED, mew=1.1, ms=4.6, zorder=5
     )
+
+
+def comparison_figure(pairs: Sequence[Comparison], arms: Sequence[Arm]) -> Figure:
+    """Paired differences with their intervals, those of success as the verdicts have them.
+
+    Right of the line the robot that is named first is better.
+    """
+    own, rows = run_styles.run_styles(arms), len(pairs)
+    names = [f"{pair.second} − {pair.first}" for pair in pairs]
+    with matplotlib_svg.style():
+        made = matplotlib_svg.new_figure(0.62 + rows * run_styles.row_height(names, 0.34))
+        panels = made.subplots(1, len(result_file.UPLIFT_METRICS), sharey=True)
+        for ax, metric in zip(panels, map(registry.get, result_file.UPLIFT_METRICS), strict=True):
+            scale = metric.sign * metric.unit.scale
+            matplotlib_svg.quiet_axes(ax)
+            ax.set_title(metric.gain)
+            ax.axvline(0.0, color=matplotlib_svg.SOFT, lw=0.9)
+            for y, pair in enumerate(pairs):
+                one = pair.success if metric.name == "sr" else pair.differences[metric.name]
+                ends = None if one.ci95 is None else sorted(scale * end for end in one.ci95)
+                run_styles.interval(ax, y, scale * one.difference, ends, own[pair.second])
+            ax.margins(x=0.08)
+        labels = [f"{run_styles.axis_label(name)}\nn = {pair.n}" for name, pair in zip(names, pairs, strict=True)]
+        panels[0].set_yticks(range(rows), labels)
+        panels[0].set_ylim(rows - 0.45, -0.55)
+    return made

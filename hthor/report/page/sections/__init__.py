@@ -1,1 +1,1 @@
-"""The report's sections, one a file, in the order in which they stand; each knows its tables and figures alone."""
+"""The report's sections: functions of the findings that give parts of the page."""

@@ -11,7 +11,6 @@ from hthor.report.html.elements import Band, Piece
 from hthor.report.html.number_format import listed
 from hthor.report.page import sentences, table_cells
 
-DIFFICULTY, SCENES, PEOPLE = "By difficulty and kind of task", "By scene", "By kind of person"
 _KEYS = {"difficulty": "difficulty", "kind of task": "kind", "split": "split", "scene": "scene"}
 _LONG = 12
 """A table of more groups is shown when one asks for it."""

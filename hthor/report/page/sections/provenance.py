@@ -9,8 +9,6 @@ from hthor.report.analysis.run_provenance import Platform, Provenance
 from hthor.report.html import elements
 from hthor.report.html.elements import Code, Piece
 
-TITLE = "Where the runs come from"
-
 
 def parts(found: Findings, _: Mapping[str, str]) -> list[str]:
     """Of what the section is made."""

@@ -1,18 +1,19 @@
-"""The table against the baselines and the article."""
+"""The tables against the baselines and the article, and of runs against each other, trial by trial."""
 
 from collections.abc import Iterator, Mapping
 
+from hthor.eval.comparison.compare import Comparison
 from hthor.eval.metrics import registry
+from hthor.eval.results import result_file
 from hthor.report.analysis.document import Findings
 from hthor.report.html import elements
-from hthor.report.html.elements import Band, Piece
-from hthor.report.page import sentences, table_cells
+from hthor.report.html.elements import Band, Piece, Value
+from hthor.report.page import headline, sentences, table_cells
 
-TITLE = "Results"
 _PUBLISHED = {"none": "no robot", "frontier": "frontier", "oracle": "oracle"}
 
 
-def parts(found: Findings, drawings: Mapping[str, str]) -> list[str]:
+def scores(found: Findings, drawings: Mapping[str, str]) -> list[str]:
     """Of what the section is made."""
     metrics = [metric for metric in registry.MAIN if any(arm.scores[metric.name].n for arm in found.arms)]
     rows: list[list[Piece] | Band] = []
@@ -48,3 +49,74 @@ def _published(found: Findings, metrics: list[str]) -> Iterator[list[Piece] | Ba
     trials = sum(one.n for name, one in study.counts.items() if name.startswith("sr "))
     yield Band(f"Published: {study.source.partition(':')[0]}, people in {trials} trials")
     yield from rows
+
+
+_SHORT = 24
+"""Names up to so long stand in one line."""
+_COLUMNS = (
+    "Below: n, the trials that both runs share, and mde, the smallest true difference that these would have seen in "
+    "four of five cases. Won: only the robot that is named first succeeded; lost: only the other; with the exact "
+    "McNemar test of that. Tied: both succeeded, or neither did. p (Holm): two-sided, of no difference in success, "
+    "adjusted for all comparisons here."
+)
+_PAIR_HEAD = ("", *(registry.get(name).gain for name in result_file.UPLIFT_METRICS), "won : lost", "tied", "p (Holm)")
+
+
+def comparison(found: Findings, drawings: Mapping[str, str]) -> list[str]:
+    """Of what the section is made."""
+    said = [elements.paragraph(sentences.without_baseline(found))] if not found.baseline else []
+    apart = [elements.bullets([sentences.not_comparable(one) for one in found.apart])] if found.apart else []
+    if not found.comparisons:
+        return [*said, *apart]
+    return [
+        *said,
+        elements.bullets([sentences.comparison_sentence(pair) for pair in headline.notable_comparisons(found)]),
+        elements.drawn(
+            drawings,
+            "compared",
+            "Differences trial by trial: the same person, on the same day, at the same task. Right of the line the "
+            f"robot that is named first is better. Bars: {_bars(found)}.",
+        ),
+        elements.table(
+            _PAIR_HEAD,
+            [_pair_row(pair) for pair in found.comparisons],
+            f"The same in numbers. {_intervals(found)} {_COLUMNS}",
+        ),
+        *apart,
+    ]
+
+
+def _among(found: Findings) -> int:
+    return max(pair.among for pair in found.comparisons)
+
+
+def _bars(found: Findings) -> str:
+    among = _among(found)
+    return "95 % intervals" + (f", those of success adjusted for {among} comparisons" if among > 1 else "")
+
+
+def _intervals(found: Findings) -> str:
+    """What the brackets say."""
+    among = _among(found)
+    if among == 1:
+        return "In brackets: 95 % interval."
+    return (
+        f"In brackets: 95 % interval; that of success is adjusted for {among} comparisons, as its p is, and leaves out "
+        "0 exactly where one robot is better. The others stand each for itself."
+    )
+
+
+def _pair_row(pair: Comparison) -> list[Piece]:
+    only = pair.mcnemar
+    told = f"p {'' if only.p < 0.001 else '= '}{table_cells.p_value(only.p)}"
+    name = f"{pair.second} − {pair.first}"
+    return [
+        name.replace(" ", "\u00a0") if len(name) <= _SHORT else name,
+        *(
+            table_cells.difference(pair.success if name == "sr" else pair.differences.get(name), registry.get(name))
+            for name in result_file.UPLIFT_METRICS
+        ),
+        Value(f"{only.only_second} : {only.only_first}", "", told),
+        str(pair.n - only.only_first - only.only_second),
+        table_cells.p_value(pair.p_holm),
+    ]
