@@ -123,9 +123,7 @@ def _draw_targets(ax: Axes, record: TrialRecord) -> None:
     wanted = {job.target for job in record.spec.task.goal.todo}
     for placed in record.spec.task.objects:
         if placed.id in wanted:
-            ax.scatter(
-                *placed.position[:2], s=70, marker="*", color=trial_trace.TARGET, edgecolor="white", lw=0.7, zorder=12
-            )
+            trial_trace.draw_mark(ax, placed.position, "*", 70, trial_trace.TARGET, 0.7, 12)
 
 
 def posterior(beliefs: Event) -> tuple[dict[str, float], float]:

@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from hthor import catalog
 from hthor.errors import HthorError
 from hthor.eval.task_check.omniscient_solver import PACE_M_S, Solution
-from hthor.report.drawing import floor_plan, lettering, text_fit, trial_trace
+from hthor.report.drawing import floor_plan, lettering, text_fit, trial_legend, trial_trace
 from hthor.report.drawing.render_trial import PICTURES
 from hthor.types import HouseSpec, Placement, Pose, TaskSpec
 
@@ -112,17 +112,12 @@ def _headline(task: TaskSpec, feat: Solution) -> tuple[str, str]:
 
 
 def _legend(sheet: Figure, destined: bool) -> None:
-    def mark(marker: str, face: str, label: str, edge: str, size: float) -> Line2D:
-        return Line2D(
-            [], [], ls="", marker=marker, markersize=size, markerfacecolor=face, markeredgecolor=edge, label=label
-        )
-
     handles = [
-        mark("*", trial_trace.TARGET, "target", "white", 10),
-        mark("o", _OTHER, "other object", "white", 5.5),
-        *([mark("s", "#bfe3d4", "destination", "#00795a", 7)] if destined else []),
-        mark("o", "white", "person's start", trial_trace.PERSON, 7),
-        mark("o", "white", "robots' starts", trial_trace.ROBOTS[0], 7),
+        trial_legend.mark("*", trial_trace.TARGET, "target", size=10),
+        trial_legend.mark("o", _OTHER, "other object", size=5.5),
+        *([trial_legend.destination(7)] if destined else []),
+        trial_legend.mark("o", "white", "person's start", edge=trial_trace.PERSON, size=7),
+        trial_legend.mark("o", "white", "robots' starts", edge=trial_trace.ROBOTS[0], size=7),
         Line2D([], [], color=trial_trace.PERSON, lw=1.5, ls=(0, (4, 2)), label="shortest walk"),
     ]
     text_fit.legend(sheet, handles, len(handles), loc="outside lower center", handlelength=1.8)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from matplotlib import patheffects
 from matplotlib.figure import Figure
@@ -133,15 +133,8 @@ def _name_destinations(ax: Axes, spec: TrialSpec, house: HouseSpec) -> None:
     marked = trial_trace.destinations(spec, house)
     for thing in house.things:
         if thing.id in marked:
-            text = ax.annotate(
-                floor_plan.title(thing.kind),
-                thing.centre[:2],
-                ha="center",
-                va="center",
-                fontsize=7.5,
-                color="#00604a",
-                zorder=7,
-            )
+            look: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": 7.5, "color": "#00604a", "zorder": 7}
+            text = ax.annotate(floor_plan.title(thing.kind), thing.centre[:2], **look)
             text.set_path_effects(_STROKE)
 
 
@@ -217,18 +210,8 @@ def _metres(ax: Axes) -> float:
 def _draw_acts(ax: Axes, log: EpisodeLog) -> None:
     for event in log.events:
         if event.kind in trial_trace.ACTS:
-            x, y = trial_trace.position_at(log, event.seat, event.tick)
-            marker = trial_trace.ACTS[event.kind][0]
-            ax.scatter(
-                x,
-                y,
-                s=40,
-                marker=marker,
-                color=trial_trace.seat_colour(event.seat),
-                edgecolor="white",
-                linewidths=0.8,
-                zorder=11,
-            )
+            place, shade = trial_trace.position_at(log, event.seat, event.tick), trial_trace.seat_colour(event.seat)
+            trial_trace.draw_mark(ax, place, trial_trace.ACTS[event.kind][0], 40, shade, 0.8, 11)
 
 
 def headline(spec: TrialSpec, log: EpisodeLog, inches: float, size: float) -> str:

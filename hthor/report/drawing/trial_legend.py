@@ -21,19 +21,19 @@ def legend_entries(spec: TrialSpec, log: EpisodeLog, house: HouseSpec, *, moving
     Args:
         moving: whether it is for a video, which has no marks for starts, ends, actions and messages.
     """
-    found: list[Artist] = [_line(trial_trace.PERSON, "person")]
-    found += [_line(trial_trace.seat_colour(robot.seat), trial_trace.robot_words(robot)) for robot in spec.robots]
+    found: list[Artist] = [line(trial_trace.PERSON, "person")]
+    found += [line(trial_trace.seat_colour(robot.seat), trial_trace.robot_words(robot)) for robot in spec.robots]
     if not moving:
-        found += [_mark("o", "white", "start", edge="#555555"), _mark("o", "#555555", "end")]
-    found.append(_mark("*", trial_trace.TARGET, "target at the start", size=9))
+        found += [mark("o", "white", "start", edge="#555555"), mark("o", "#555555", "end")]
+    found.append(mark("*", trial_trace.TARGET, "target at the start", size=9))
     if any(job.place is not None for job in spec.task.goal.todo) and not moving:
-        found.append(_mark("*", "white", "where it belongs", edge=trial_trace.TARGET, size=8))
+        found.append(mark("*", "white", "where it belongs", edge=trial_trace.TARGET, size=8))
     if trial_trace.destinations(spec, house):
-        found.append(_mark("s", floor_plan.MARKED, "destination", edge=floor_plan.MARKED_EDGE))
+        found.append(destination())
     if moving and trial_trace.messages(log):
-        found.append(_mark("o", "none", "where a message says it is", edge=trial_trace.MESSAGE, size=9))
+        found.append(mark("o", "none", "where a message says it is", edge=trial_trace.MESSAGE, size=9))
     if log.faults:
-        found.append(_mark("X", trial_trace.FAILED, "the agent failed", size=8))
+        found.append(mark("X", trial_trace.FAILED, "the agent failed", size=8))
     if any(floor_plan.is_flat(thing) for thing in house.things):
         found.append(
             Patch(
@@ -47,16 +47,23 @@ def _marks(log: EpisodeLog) -> list[Artist]:
     """The marks of messages and actions."""
     shades = set(trial_trace.message_colours(log).values())
     words = {trial_trace.MESSAGE: "confirmed", trial_trace.IDLE_MESSAGE: "not confirmed"}
-    found: list[Artist] = [_mark("o", shade, f"message, {words[shade]}", size=7) for shade in words if shade in shades]
+    found: list[Artist] = [mark("o", shade, f"message, {words[shade]}", size=7) for shade in words if shade in shades]
     present = {event.kind for event in log.events}
-    return found + [_mark(mark, "#555555", verb) for kind, (mark, verb) in trial_trace.ACTS.items() if kind in present]
+    return found + [mark(shape, "#555555", verb) for kind, (shape, verb) in trial_trace.ACTS.items() if kind in present]
 
 
-def _line(shade: str, label: str) -> Line2D:
+def line(shade: str, label: str) -> Line2D:
+    """An entry for a way."""
     return Line2D([], [], color=shade, lw=2, label=label)
 
 
-def _mark(marker: str, face: str, label: str, *, edge: str = "white", size: float = 6.5) -> Line2D:
+def mark(marker: str, face: str, label: str, *, edge: str = "white", size: float = 6.5) -> Line2D:
+    """An entry for a mark of ``size`` [pt]."""
     return Line2D(
         [], [], ls="", marker=marker, markersize=size, markerfacecolor=face, markeredgecolor=edge, label=label
     )
+
+
+def destination(size: float = 6.5) -> Line2D:
+    """The entry for where objects belong."""
+    return mark("s", floor_plan.MARKED, "destination", edge=floor_plan.MARKED_EDGE, size=size)

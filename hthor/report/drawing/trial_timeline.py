@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from hthor import rules
 from hthor.episode import EpisodeLog, Fault
@@ -76,9 +76,7 @@ def _draw_progress(ax: Axes, steps: Sequence[Event], end: float, row: float, wor
 
 
 def _mark_fault(ax: Axes, fault: Fault, seconds: float, row: float) -> None:
-    ax.scatter(
-        seconds, row, s=56, marker="X", facecolor=trial_trace.FAILED, edgecolor="white", linewidths=0.8, zorder=15
-    )
+    trial_trace.draw_mark(ax, (seconds, row), "X", 56, trial_trace.FAILED, 0.8, 15)
     told = f"{fault.kind} at {seconds:.1f} s"
     ax.annotate(told, (seconds, row), (7, 5), textcoords="offset points", fontsize=7, color=trial_trace.FAILED)
 
@@ -95,35 +93,16 @@ def _timeline_marks(ax: Axes, log: EpisodeLog, seat: str, row: float, word_s: fl
     for group in trial_trace.group_messages(log, marks, letter, 1.0):
         half = 0.5 * letter * (len(group.words) + 2)  # so that the seat's name is not covered
         trial_trace.draw_badge(ax, (max(group.place[0], half), row), group.words, group.shade)
-    words = {
-        **{kind: verb for kind, (_, verb) in trial_trace.ACTS.items()},
-        "confirmed": "confirms",
-        "declined": "declines",
-    }
+    words = {kind: verb for kind, (_, verb) in trial_trace.ACTS.items()}
+    words |= {"confirmed": "confirms", "declined": "declines"}
     last = dict.fromkeys(_LIFTS, -math.inf)
     for event in log.events:
         if event.seat != seat or event.kind not in words:
             continue
         x = event.tick * rules.TICK_S
         marker = trial_trace.ACTS.get(event.kind, ("o", ""))[0]
-        ax.scatter(
-            x,
-            row,
-            s=26,
-            marker=marker,
-            color=trial_trace.seat_colour(seat),
-            edgecolor="white",
-            linewidths=0.6,
-            zorder=3,
-        )
+        trial_trace.draw_mark(ax, (x, row), marker, 26, trial_trace.seat_colour(seat), 0.6, 3)
         lift = next((lift for lift in _LIFTS if x - last[lift] > word_s), _LIFTS[-1])
         last[lift] = x
-        ax.annotate(
-            words[event.kind],
-            (x, row),
-            (0, lift),
-            textcoords="offset points",
-            fontsize=7,
-            ha="center",
-            color=trial_trace.INK,
-        )
+        look: dict[str, Any] = {"textcoords": "offset points", "fontsize": 7, "ha": "center", "color": trial_trace.INK}
+        ax.annotate(words[event.kind], (x, row), (0, lift), **look)

@@ -198,6 +198,11 @@ def number_ranges(numbers: Sequence[int]) -> str:
     return ", ".join(words) if len(words) <= _PARTS else f"{numbers[0]} … {numbers[-1]}"
 
 
+def draw_mark(ax: Axes, place: Sequence[float], shape: str, size: float, shade: str, edge: float, z: float) -> None:
+    """A mark of ``size`` [pt^2] in a white line of ``edge`` [pt]."""
+    ax.scatter(place[0], place[1], s=size, marker=shape, color=shade, edgecolor="white", linewidths=edge, zorder=z)
+
+
 def draw_badge(ax: Axes, place: Vec2, text: str, shade: str) -> None:
     """Messages' numbers in a disc. It takes no room from the axes, even where it stands at their edge."""
     style = "circle,pad=0.22" if len(text) < _ROUND else "round,pad=0.2,rounding_size=0.6"

@@ -13,7 +13,7 @@ from msgspec import Struct
 
 from hthor import rules
 from hthor.eval.records.trial_record import TrialRecord
-from hthor.report.drawing import floor_plan, text_fit, trial_figure, trial_trace
+from hthor.report.drawing import floor_plan, text_fit, trial_figure, trial_legend, trial_trace
 from hthor.report.html import matplotlib_svg
 from hthor.report.page.camera_frames import Views
 from hthor.report.page.key_moments import MANY, Moment
@@ -82,9 +82,7 @@ def _draw_map(ax: Axes, row: Row, house: HouseSpec) -> None:
     for seat in record.paths:
         trial_figure.draw_path(ax, record.log, seat, words=False)
     for _, start in trial_trace.targets(record.spec, house):
-        ax.scatter(
-            *start.position[:2], s=80, marker="*", color=trial_trace.TARGET, edgecolor="white", lw=0.6, zorder=12
-        )
+        trial_trace.draw_mark(ax, start.position, "*", 80, trial_trace.TARGET, 0.6, 12)
     busy = [start.position[:2] for _, start in trial_trace.targets(record.spec, house)]
     marks = [(seat, place, letters) for seat in record.paths for place, letters in _places(row, seat)]
     for seat, place, letters in marks:
@@ -186,21 +184,14 @@ def _task(record: TrialRecord) -> str:
 def _legend(rows: Sequence[Row], *, destined: bool) -> list[Line2D]:
     seats = dict.fromkeys(seat for row in rows for seat in row.record.paths)
     named = {seat: "person" if seat == HUMAN else seat for seat in seats}
-    ways = [
-        Line2D([], [], color=trial_trace.seat_colour(seat), lw=2, label=f"{name}, way and view")
-        for seat, name in named.items()
-    ]
-    marks = [
-        Line2D([], [], ls="", marker="o", mfc="white", mec=matplotlib_svg.SOFT, label="start"),
-        Line2D([], [], ls="", marker="o", mfc=matplotlib_svg.SOFT, mec="white", label="end"),
-        Line2D([], [], ls="", marker="*", mfc=trial_trace.TARGET, mec="white", ms=9, label="target at the start"),
+    marks = [trial_legend.line(trial_trace.seat_colour(seat), f"{name}, way and view") for seat, name in named.items()]
+    marks += [
+        trial_legend.mark("o", "white", "start", edge=matplotlib_svg.SOFT, size=6.0),
+        trial_legend.mark("o", matplotlib_svg.SOFT, "end", size=6.0),
+        trial_legend.mark("*", trial_trace.TARGET, "target at the start", size=9.0),
     ]
     if any(row.record.faults for row in rows):
-        marks.append(
-            Line2D([], [], ls="", marker="X", mfc=trial_trace.FAILED, mec="white", ms=7.5, label="the agent failed")
-        )
+        marks.append(trial_legend.mark("X", trial_trace.FAILED, "the agent failed", size=7.5))
     if destined:
-        marks.append(
-            Line2D([], [], ls="", marker="s", mfc=floor_plan.MARKED, mec=floor_plan.MARKED_EDGE, label="destination")
-        )
-    return [*ways, *marks]
+        marks.append(trial_legend.destination(6.0))
+    return marks

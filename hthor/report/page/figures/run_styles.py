@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from matplotlib.lines import Line2D
 from msgspec import Struct
@@ -99,16 +99,8 @@ def draw_names(ax: Axes, ends: Sequence[tuple[float, float, str, RunStyle]], lin
     highs = [line * (text.count("\n") + 1) for text in words]
     places = _apart([y for _, y, _, _ in ordered], highs, ax.get_ylim())
     for (_, _, _, mark), text, y in zip(ordered, words, places, strict=True):
-        ax.annotate(
-            text,
-            (right, y),
-            (9, 0),
-            textcoords="offset points",
-            color=mark.shade,
-            fontsize=_NAME_PT,
-            va="center",
-            annotation_clip=False,
-        )
+        look: dict[str, Any] = {"color": mark.shade, "fontsize": _NAME_PT, "va": "center"}
+        ax.annotate(text, (right, y), (9, 0), textcoords="offset points", annotation_clip=False, **look)
 
 
 def _apart(middles: Sequence[float], highs: Sequence[float], within: tuple[float, float]) -> list[float]:

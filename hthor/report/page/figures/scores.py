@@ -50,22 +50,10 @@ def scores_figure(found: Findings) -> Figure:
         panels[0].set_ylim(rows - 0.45, -0.55)
         if study and found.published is not None:
             word = f"published ({found.published.name}), 95 % from its counts where it has any"
-            handles = [
-                Line2D(
-                    [],
-                    [],
-                    color=matplotlib_svg.SOFT,
-                    lw=1.6,
-                    marker="o",
-                    ms=5,
-                    mec=matplotlib_svg.PAPER,
-                    label="mean and 95 %",
-                )
-            ]
-            handles.append(
-                Line2D([], [], color=matplotlib_svg.PUBLISHED, lw=0.9, marker="D", mfc="none", ms=4.6, label=word)
-            )
-            text_fit.legend(made, handles, 2, loc="outside lower right")
+            mine = Line2D([], [], color=matplotlib_svg.SOFT, lw=1.6, marker="o", ms=5, mec=matplotlib_svg.PAPER)
+            theirs = Line2D([], [], color=matplotlib_svg.PUBLISHED, lw=0.9, marker="D", mfc="none", ms=4.6, label=word)
+            mine.set_label("mean and 95 %")
+            text_fit.legend(made, [mine, theirs], 2, loc="outside lower right")
     return made
 
 
@@ -89,16 +77,10 @@ def _publish(ax: Axes, y: float, name: str, found: Findings) -> None:
     if published is None or name not in published.figures:
         return
     if name in published.counts:
-        ax.plot(
-            [100.0 * end for end in published.counts[name].ci95],
-            (y, y),
-            color=matplotlib_svg.PUBLISHED,
-            lw=0.9,
-            zorder=2,
-        )
-    ax.plot(
-        100.0 * published.figures[name], y, "D", mfc="none", mec=matplotlib_svg.PUBLISHED, mew=1.1, ms=4.6, zorder=5
-    )
+        ends = [100.0 * end for end in published.counts[name].ci95]
+        ax.plot(ends, (y, y), color=matplotlib_svg.PUBLISHED, lw=0.9, zorder=2)
+    value = 100.0 * published.figures[name]
+    ax.plot(value, y, "D", mfc="none", mec=matplotlib_svg.PUBLISHED, mew=1.1, ms=4.6, zorder=5)
 
 
 def comparison_figure(pairs: Sequence[Comparison], arms: Sequence[Arm]) -> Figure:

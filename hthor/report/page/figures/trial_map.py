@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from hthor.eval.records.trial_record import TrialRecord
-from hthor.report.drawing import floor_plan, text_fit, trial_figure, trial_trace
+from hthor.report.drawing import floor_plan, text_fit, trial_figure, trial_legend, trial_trace
 from hthor.report.html import matplotlib_svg
 from hthor.types import HUMAN, HouseSpec
 
@@ -36,15 +36,7 @@ def figure(record: TrialRecord, house: HouseSpec, alone: TrialRecord | None) -> 
         for seat in record.paths:
             trial_figure.draw_path(ax, record.log, seat, words=False)
         for _, start in trial_trace.targets(record.spec, house):
-            ax.scatter(
-                *start.position[:2],
-                s=95,
-                marker="*",
-                color=trial_trace.TARGET,
-                edgecolor="white",
-                linewidths=0.6,
-                zorder=12,
-            )
+            trial_trace.draw_mark(ax, start.position, "*", 95, trial_trace.TARGET, 0.6, 12)
         trial_figure.draw_messages(ax, record.log, arrows=False)
     return made
 
@@ -56,23 +48,20 @@ def legend(seats: Collection[str], *, alone: bool, destined: bool, failed: bool 
         seats: everybody who is drawn. alone: whether ways without a robot are. destined: whether destinations are.
         failed: whether the mind of one of them failed.
     """
-    ways = [
-        Line2D([], [], color=trial_trace.seat_colour(seat), lw=2, label="person" if seat == HUMAN else seat)
-        for seat in seats
-    ]
+    ways = [trial_legend.line(trial_trace.seat_colour(seat), "person" if seat == HUMAN else seat) for seat in seats]
     if alone:
         ways.append(Line2D([], [], color=trial_trace.INK, lw=0.9, ls=_DASH, label="the same person alone"))
     marks = [
-        _mark("o", "white", "start", matplotlib_svg.SOFT),
-        _mark("o", matplotlib_svg.SOFT, "end"),
-        _mark("*", trial_trace.TARGET, "target at the start", size=9),
-        _mark("o", trial_trace.MESSAGE, "message, confirmed"),
-        _mark("o", trial_trace.IDLE_MESSAGE, "message, not confirmed"),
+        trial_legend.mark("o", "white", "start", edge=matplotlib_svg.SOFT),
+        trial_legend.mark("o", matplotlib_svg.SOFT, "end"),
+        trial_legend.mark("*", trial_trace.TARGET, "target at the start", size=9),
+        trial_legend.mark("o", trial_trace.MESSAGE, "message, confirmed"),
+        trial_legend.mark("o", trial_trace.IDLE_MESSAGE, "message, not confirmed"),
     ]
     if failed:
-        marks.append(_mark("X", trial_trace.FAILED, "the agent failed", size=7.5))
+        marks.append(trial_legend.mark("X", trial_trace.FAILED, "the agent failed", size=7.5))
     if destined:
-        marks.append(_mark("s", floor_plan.MARKED, "destination", floor_plan.MARKED_EDGE))
+        marks.append(trial_legend.destination())
     handles = [*ways, *marks]
     columns = -(-len(handles) // 2)
     with matplotlib_svg.style():
@@ -82,7 +71,3 @@ def legend(seats: Collection[str], *, alone: bool, destined: bool, failed: bool 
             made, handles, columns, loc="center left", columnspacing=1.6, handlelength=1.8, labelcolor=trial_trace.INK
         )
     return made
-
-
-def _mark(marker: str, face: str, label: str, edge: str = "white", size: float = 6.5) -> Line2D:
-    return Line2D([], [], ls="", marker=marker, ms=size, mfc=face, mec=edge, label=label)
