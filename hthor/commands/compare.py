@@ -34,7 +34,7 @@ def compare(
 ) -> None:
     """Compare runs trial by trial: which is better, by how much, or that the data cannot tell."""
     from hthor.eval.comparison import compare as comparing
-    from hthor.report.terminal import comparison_tables
+    from hthor.report.terminal import result_tables
 
     found = comparing.compare_runs(runs)
     if json := formats.asks_json(json, shape):
@@ -43,11 +43,11 @@ def compare(
         output.put_records([row for pair in found.pairs for row in _rows(pair)])
     else:
         for pair in found.pairs:
-            output.put_rich(comparison_tables.comparison_table(pair), shape)
+            output.put_rich(result_tables.pair_table(pair), shape)
             if len(found.pairs) == 1:
                 for by in pair.groups:
-                    output.put_rich(comparison_tables.groups_table(pair, by), shape)
-            for line in comparison_tables.comparison_lines(pair):
+                    output.put_rich(result_tables.groups_table(pair, by), shape)
+            for line in result_tables.comparison_lines(pair):
                 output.put_line(line, shape)
     if len(found.pairs) > 1 and not json:
         output.say("compare two runs, or use --json, to see kinds, splits, difficulties and scenes")

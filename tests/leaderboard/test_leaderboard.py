@@ -35,7 +35,7 @@ from hthor.leaderboard.entries import column_packing, entry_metrics, files, over
 from hthor.leaderboard.page import page
 from hthor.leaderboard.ranking import admission, listing
 from hthor.leaderboard.submission import archive, submission
-from hthor.leaderboard.verify import verify
+from hthor.leaderboard.verify import replay, verify
 
 # ------------------------------------------------------------------------------------------------------- entries
 
@@ -120,7 +120,7 @@ def test_a_board_that_is_not_there_is_not_in_order(whole: Path, tmp_path: Path):
         with pytest.raises(files.BoardError, match="not a folder"):
             look(tmp_path / "board")
     with pytest.raises(files.BoardError, match="is no file"):
-        verify.verify_entry(whole, whole, verify.Request(word="chance"))
+        verify.verify_entry(whole, whole, replay.Request(word="chance"))
 
 
 def test_a_column_that_cannot_be_read_is_named_with_its_file(board: Path):

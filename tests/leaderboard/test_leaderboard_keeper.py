@@ -295,7 +295,7 @@ def test_an_agent_that_does_not_repeat_itself_is_judged_by_all_its_trials():
 
 def test_a_platform_that_was_not_noted_lowers_no_bar(board: Path):
     path = entry_of(board, "helper")
-    request = verify.Request(word="chance", suite="nowhere")
+    request = replay.Request(word="chance", suite="nowhere")
     assert files.read_entry(path).platforms == ()
     with pytest.raises(BoardError, match="platforms: is empty"):
         verify.verify_entry(path, board, request)
@@ -304,8 +304,8 @@ def test_a_platform_that_was_not_noted_lowers_no_bar(board: Path):
 def test_an_agent_that_does_not_repeat_itself_has_all_trials_drawn(whole: Path):
     entry = files.read_entry(entry_of(whole, "helper"))
     free = msgspec.structs.replace(entry, agent=msgspec.structs.replace(entry.agent, deterministic=False))
-    assert verify._size(free, verify.Request(word="x")) == COUNT
-    assert verify._size(entry, verify.Request(word="x")) == verify.SAMPLE
+    assert verify._size(free, replay.Request(word="x")) == COUNT
+    assert verify._size(entry, replay.Request(word="x")) == verify.SAMPLE
     assert verify.entry_tier(free) == "V3"
 
 

@@ -65,10 +65,11 @@ def verify(
     from hthor.guest.agent import inputs
     from hthor.leaderboard import publish
     from hthor.leaderboard.entries import files, verification
+    from hthor.leaderboard.verify import replay
     from hthor.leaderboard.verify import verify as verifying
 
     where = board or entry.resolve().parents[1]
-    request = verifying.Request(
+    request = replay.Request(
         word=draw,
         agent=agent,
         given=inputs.parse_inputs(agent_args or (), readable or ()),

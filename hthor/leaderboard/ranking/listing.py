@@ -1,5 +1,6 @@
 """Makes the list from the entries: sections, ranks, rows; the same entries give the same bytes."""
 
+import itertools
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -167,21 +168,13 @@ NEAR_S = 1.0
 
 def group_duplicates(entries: Sequence[Entry], held: Sequence[Outcomes]) -> list[list[int]]:
     """Entries that are one agent, as groups of their places; linked entries are in one group."""
-    home = list(range(len(entries)))
+    from scipy.sparse import csgraph  # comes with the core: scikit-image needs it
 
-    def root(place: int) -> int:
-        while home[place] != place:
-            place = home[place]
-        return place
-
-    for one in range(len(entries)):
-        for other in range(one):
-            if _is_one(entries[one], entries[other]) or similarity(held[one], held[other]) >= ALIKE:
-                home[root(one)] = root(other)
-    groups: dict[int, list[int]] = {}
-    for place in range(len(entries)):
-        groups.setdefault(root(place), []).append(place)
-    return list(groups.values())
+    alike = np.zeros((len(entries), len(entries)), dtype=bool)
+    for one, other in itertools.combinations(range(len(entries)), 2):
+        alike[one, other] = _is_one(entries[one], entries[other]) or similarity(held[one], held[other]) >= ALIKE
+    count, groups = csgraph.connected_components(alike, directed=False) if entries else (0, alike)
+    return [np.flatnonzero(groups == number).tolist() for number in range(count)]
 
 
 def representatives(entries: Sequence[Entry], held: Sequence[Outcomes]) -> dict[str, str]:

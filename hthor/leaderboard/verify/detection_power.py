@@ -34,8 +34,18 @@ def detection_probability(
         return round(_hit(count, len(again.rows), turned), 4)
     places = list(drawn) if by == "V2" else sorted(again.rows)
     draw = np.random.default_rng(abs(seeds.derive(0, "catching", by, count, len(places))))
-    game = _outcomes if by == "V2" else _whole
-    return round(sum(game(claimed, again, places, participants, turned, draw) for _ in range(_GAMES)) / _GAMES, 4)
+    owners = np.arange(len(places)) if by == "V2" else np.array([participants[place] for place in places])
+    outcome, rows = trial_outcomes.outcome_bytes, claimed.rows
+    unlike = {number for number, place in enumerate(places) if outcome(again.rows[place]) != outcome(rows[place])}
+    caught = 0
+    for _ in range(_GAMES):
+        gaps, worth, lies = _forge(claimed, again, places, owners, turned, draw)
+        if by == "V2":
+            share = 1.0 - len(unlike | set(lies.tolist())) / len(places)
+            caught += not verdict.judge_outcomes(share, worth, len(places))[0]
+        else:
+            caught += not verdict.judge_means(gaps, worth, owners)[0]
+    return round(caught / _GAMES, 4)
 
 
 def _hit(count: int, compared: int, turned: int) -> float:
@@ -67,39 +77,3 @@ def _forge(
     gaps[lies] += 1
     worth[lies] = _WORTH
     return gaps, worth - true, lies
-
-
-def _outcomes(
-    claimed: Outcomes,
-    again: ReplayedTrials,
-    places: Sequence[int],
-    participants: Sequence[int],
-    turned: int,
-    draw: np.random.Generator,
-) -> bool:
-    del participants
-    _, worth, lies = _forge(claimed, again, places, np.arange(len(places)), turned, draw)
-    rows = [
-        (trial_outcomes.outcome_bytes(again.rows[place]), trial_outcomes.outcome_bytes(row))
-        for place, row in _rows(claimed, places)
-    ]
-    other = {number for number, (came, said) in enumerate(rows) if came != said} | set(lies.tolist())
-    return not verdict.judge_outcomes(1.0 - len(other) / len(places), worth, len(places))[0]
-
-
-def _rows(claimed: Outcomes, places: Sequence[int]) -> list[tuple[int, bytes]]:
-    rows = claimed.rows
-    return [(place, rows[place]) for place in places]
-
-
-def _whole(
-    claimed: Outcomes,
-    again: ReplayedTrials,
-    places: Sequence[int],
-    participants: Sequence[int],
-    turned: int,
-    draw: np.random.Generator,
-) -> bool:
-    owners = np.array([participants[place] for place in places])
-    met, worth, _ = _forge(claimed, again, places, owners, turned, draw)
-    return not verdict.judge_means(met, worth, owners)[0]

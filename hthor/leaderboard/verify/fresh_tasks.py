@@ -19,53 +19,36 @@ from hthor.eval.metrics.metric import DIGITS
 from hthor.eval.runner.trial_runner import make_runner
 from hthor.eval.statistics import intervals
 from hthor.eval.task_check import solvability
-from hthor.guest import AgentInputs
 from hthor.humans.population import resolve
 from hthor.leaderboard.entries import entry_metrics, files, trial_outcomes
 from hthor.leaderboard.entries.entry import Entry
 from hthor.leaderboard.entries.files import BoardError
 from hthor.leaderboard.entries.verification import Fresh
 from hthor.leaderboard.verify import performance_drop, replay
+from hthor.leaderboard.verify.replay import Request
 from hthor.tasks.generation import fresh_tasks, secret_suites
 from hthor.tasks.suite import encode_suite
 from hthor.tasks.suites.commitment import Salt
 from hthor.types import TaskSpec
 
-TASKS = 200
-"""Fresh tasks by default; the verification says which drop of success they detect."""
 _HOUSE_TASKS = 10
 """Tasks in each fresh house of an official suite."""
 
 
-def verify_fresh_tasks(
-    entry: Entry,
-    board: Path,
-    word: str,
-    count: int,
-    *,
-    agent: str = "",
-    jobs: int | None = None,
-    required: str = "",
-    given: AgentInputs | None = None,
-) -> Fresh:
+def verify_fresh_tasks(entry: Entry, board: Path, request: Request) -> Fresh:
     """Draw tasks, have the agent play them, and compare.
-
-    Args:
-        word: public random text from after the submission. count: how many tasks.
-        agent: the agent's file, for one that is not hthor's own. required: the least level that holds it.
-        given: arguments and files that it is given.
 
     Raises:
         BoardError: when the recipe is not known, or a trial could not be played.
     """
     with tempfile.TemporaryDirectory() as folder:
-        _draw(entry, board, word, count, Path(folder), jobs)
+        _draw(entry, board, request, Path(folder))
         chosen = task_selection.select_tasks(folder, "")
-        team, humans = replay.robot_team_of(entry, agent, given), resolve.resolve_humans(entry.run.humans.source)
+        team, humans = replay.robot_team_of(entry, request), resolve.resolve_humans(entry.run.humans.source)
         clock = {name: value for name, value in replay.session_options(entry).items() if name != "participants"}
         whole = sessions.make_sessions(chosen.suite, agent=team, human=humans, **clock)
-        sources = replay.make_sources_of(folder, team, humans, required, given)
-        played = replay.run_sessions(entry, whole, functools.partial(make_runner, sources), jobs)
+        sources = replay.make_sources_of(folder, team, humans, request)
+        played = replay.run_sessions(entry, whole, functools.partial(make_runner, sources), request.jobs)
     records = sorted((one for one, _ in played), key=lambda one: (one.spec.participant, one.spec.index))
     owners = [one.spec.participant for one in records]
     values = {name: trial_metrics.column((one.metrics for one in records), name) for name in ("sr", "twsr")}
@@ -99,12 +82,14 @@ def judge_fresh_tasks(entry: Entry, digest: str, values: dict[str, np.ndarray], 
     )
 
 
-def _draw(entry: Entry, board: Path, word: str, count: int, folder: Path, jobs: int | None) -> None:
+def _draw(entry: Entry, board: Path, request: Request, folder: Path) -> None:
     """Write a suite of fresh tasks to a folder."""
-    name = entry.run.suite.name
-    lot = hashlib.sha256(f"hthor fresh\n{word}\n{entry.digest}\n".encode()).hexdigest()
+    name, count = entry.run.suite.name, request.fresh
+    lot = hashlib.sha256(f"hthor fresh\n{request.word}\n{entry.digest}\n".encode()).hexdigest()
     if name in tasks.suite_names():
-        drawn = fresh_tasks.make_fresh_suite(name, int(lot[:30], 16), count, functools.partial(_possible, jobs=jobs))
+        drawn = fresh_tasks.make_fresh_suite(
+            name, int(lot[:30], 16), count, functools.partial(_possible, jobs=request.jobs)
+        )
         jsonio.write(folder / secret_suites.SUITE, encode_suite(drawn))
         return
     season = files.read_commitments(board).get(entry.run.suite.sha256)

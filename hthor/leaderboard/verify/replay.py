@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import msgspec
+from msgspec import Struct
 
 from hthor import code_identity
 from hthor.eval.config import robot_team, run_config, task_selection
@@ -33,38 +34,46 @@ from hthor.tasks.suites import library
 _SHOWN = 3
 
 
-def replay_trials(
-    entry: Entry,
-    places: Sequence[int],
-    *,
-    agent: str = "",
-    suite: str = "",
-    jobs: int | None = None,
-    require_isolation: str = "",
-    given: AgentInputs | None = None,
-) -> dict[int, tuple[TrialRecord, bytes]]:
-    """The records of the trials at these places, and of those that had to be run before them, with their lines.
+class Request(Struct, frozen=True, kw_only=True):
+    """The options of `hthor leaderboard verify`.
 
-    Args:
-        agent: the agent's file, for one that is not hthor's own. suite: where the suite lies, when it is not either.
-        require_isolation: the least level that will do for a submitted agent.
-        given: arguments and files that it is given.
+    ``word`` is public random text from after the submission. ``agent`` is the agent's file, for one that is not hthor's
+    own, and ``suite`` where the suite lies, when it is not either. ``given`` are arguments and files that the agent is
+    given, ``require_isolation`` the least level that holds it. ``sample`` None draws `verify.SAMPLE` trials, or all
+    where the agent does not repeat itself; ``fresh`` is how many fresh tasks are played.
+    """
+
+    word: str
+    agent: str = ""
+    given: AgentInputs | None = None
+    suite: str = ""
+    sample: int | None = None
+    fresh: int = 200
+    official: bool = False
+    jobs: int | None = None
+    require_isolation: str = ""
+    by: str = ""
+    date: str = ""
+
+
+def replay_trials(entry: Entry, places: Sequence[int], request: Request) -> dict[int, tuple[TrialRecord, bytes]]:
+    """The records of the trials at these places, and of those that had to be run before them, with their lines.
 
     Raises:
         BoardError: when this is not what the entry says was played, naming the field; when a trial that is wanted could
             not be played, as nothing follows from a part of a draw.
     """
-    chosen = task_selection.select_tasks(suite or entry.run.suite.name, "")
-    team, humans = robot_team_of(entry, agent, given), resolve.resolve_humans(entry.run.humans.source)
+    chosen = task_selection.select_tasks(request.suite or entry.run.suite.name, "")
+    team, humans = robot_team_of(entry, request), resolve.resolve_humans(entry.run.humans.source)
     job = RunJob(
         config=_same_config(entry, chosen, team, humans),
         team=team,
         population=humans,
         tasks=chosen,
-        sources=make_sources_of(suite, team, humans, require_isolation, given),
+        sources=make_sources_of(request.suite, team, humans, request),
     )
     wanted, seats = _cut(job.sessions, places)
-    played = run_sessions(entry, wanted, job.make_runner, jobs)
+    played = run_sessions(entry, wanted, job.make_runner, request.jobs)
     return {seats[one.spec.participant, one.spec.index]: (one, line) for one, line in played}
 
 
@@ -96,19 +105,18 @@ def run_sessions(
     return found
 
 
-def robot_team_of(entry: Entry, agent: str, given: AgentInputs | None = None) -> RobotTeam:
+def robot_team_of(entry: Entry, request: Request) -> RobotTeam:
     """The robots of an entry, with the submitted agent from its file."""
     minds: list[str] = []
     for robot in entry.run.robots:
         ours = robot.agent.source.startswith(OURS)
-        if not ours and not agent:
+        if not ours and not request.agent:
             raise BoardError(f"{entry.id}: the agent is a file, {robot.agent.source}. Name it with --agent.")
-        minds.append(robot.agent.name if ours else agent)
+        minds.append(robot.agent.name if ours else request.agent)
     bodies = [robot.robot or "scout" for robot in entry.run.robots]  # a mind that wants no robot has no body either
     first = entry.run.robots[0]
-    return robot_team.form_team(
-        bodies, minds, first.detector or "own", first.camera or "own", GuestConfig(inputs=given or AgentInputs())
-    )
+    guests = GuestConfig(inputs=request.given or AgentInputs())
+    return robot_team.form_team(bodies, minds, first.detector or "own", first.camera or "own", guests)
 
 
 def _same_config(entry: Entry, chosen: TaskSelection, team: RobotTeam, humans: ParticipantSource) -> RunConfig:
@@ -142,23 +150,17 @@ def _cut(whole: Sequence[Session], places: Sequence[int]) -> tuple[list[Session]
     return wanted, seats
 
 
-def make_sources_of(
-    suite: str, team: RobotTeam, humans: ParticipantSource, required: str, given: AgentInputs | None = None
-) -> Sources:
-    """Where everything is that the entry's run needs.
-
-    Args:
-        suite: where the suite is, empty for one of hthor's own.
-        required: the lowest acceptable isolation of a submitted agent.
-        given: its arguments and readable files.
-    """
+def make_sources_of(suite: str, team: RobotTeam, humans: ParticipantSource, request: Request) -> Sources:
+    """Where everything is that the entry's run needs; ``suite`` is empty for one of hthor's own."""
     code_identity.keep_compiled()
     own = bool(suite) and Path(suite).exists() and bool(library.house_files(suite))
     folder = Path(suite) if Path(suite).is_dir() else Path(suite).parent
-    isolation = run_isolation.resolve_isolation("auto", required, sorted(set(team.agent_paths.values())))
+    isolation = run_isolation.resolve_isolation(
+        "auto", request.require_isolation, sorted(set(team.agent_paths.values()))
+    )
     guests = GuestConfig(
         isolation=isolation.level if isolation else "auto",
         hidden=(str(folder.resolve()),) if suite else (),
-        inputs=given or AgentInputs(),
+        inputs=request.given or AgentInputs(),
     )
     return make_sources(team, houses=folder / "houses" if own else None, humans=humans.word, guests=guests)

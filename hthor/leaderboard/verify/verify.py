@@ -5,44 +5,23 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import msgspec
-from msgspec import Struct
 
 from hthor import jsonio
 from hthor.errors import HthorError
 from hthor.eval.config import task_selection
 from hthor.eval.records import platform
 from hthor.eval.records.trial_record import TrialRecord
-from hthor.guest import AgentInputs
 from hthor.leaderboard import board_check
 from hthor.leaderboard.entries import entry_metrics, files, invariants, trial_outcomes, verification
 from hthor.leaderboard.entries.entry import REALTIME, Entry
 from hthor.leaderboard.entries.files import BoardError, Problem
 from hthor.leaderboard.entries.verification import Replayed, Tier, Verification
 from hthor.leaderboard.verify import detection_power, fresh_tasks, replay, verdict
+from hthor.leaderboard.verify.replay import Request
 from hthor.leaderboard.verify.verdict import ReplayedTrials
 
 SAMPLE = 200
 """Trials that are drawn where outcomes are compared one by one; of an agent that does not repeat itself, all."""
-
-
-class Request(Struct, frozen=True, kw_only=True):
-    """The options of `hthor leaderboard verify`.
-
-    ``sample`` None draws `SAMPLE` trials, or all where the agent does not repeat itself; ``fresh`` 0 plays no fresh
-    tasks.
-    """
-
-    word: str
-    agent: str = ""
-    given: AgentInputs | None = None
-    suite: str = ""
-    sample: int | None = None
-    fresh: int = fresh_tasks.TASKS
-    official: bool = False
-    jobs: int | None = None
-    require_isolation: str = ""
-    by: str = ""
-    date: str = ""
 
 
 def verify_entry(path: Path, board: Path, request: Request) -> tuple[Entry, Verification]:
@@ -66,8 +45,8 @@ def verify_entry(path: Path, board: Path, request: Request) -> tuple[Entry, Veri
         id=entry.id,
         entry=entry.digest,
         draw=request.word,
-        trials=judge_replay(entry, drawn, _again(entry, drawn, request)),
-        control=None if control is None else judge_replay(control, drawn, _again(control, drawn, request)),
+        trials=_replayed(entry, drawn, request),
+        control=None if control is None else _replayed(control, drawn, request),
         official=request.official,
         platform=jsonio.sha256(platform.this_platform()),
         by=request.by,
@@ -75,17 +54,7 @@ def verify_entry(path: Path, board: Path, request: Request) -> tuple[Entry, Veri
     )
     if found.refuted or not request.fresh:
         return entry, found
-    fresh = fresh_tasks.verify_fresh_tasks(
-        entry,
-        board,
-        request.word,
-        request.fresh,
-        agent=request.agent,
-        jobs=request.jobs,
-        required=request.require_isolation,
-        given=request.given,
-    )
-    return entry, msgspec.structs.replace(found, fresh=fresh)
+    return entry, msgspec.structs.replace(found, fresh=fresh_tasks.verify_fresh_tasks(entry, board, request))
 
 
 def draw_sample(word: str, digest: str, count: int, size: int) -> list[int]:
@@ -101,6 +70,10 @@ def draw_sample(word: str, digest: str, count: int, size: int) -> list[int]:
         return hashlib.sha256(key + number.to_bytes(8, "little")).digest()
 
     return sorted(sorted(range(count), key=lot)[:size])
+
+
+def _replayed(entry: Entry, drawn: Sequence[int], request: Request) -> Replayed:
+    return judge_replay(entry, drawn, replay.replay_trials(entry, drawn, request))
 
 
 def judge_replay(entry: Entry, drawn: Sequence[int], again: dict[int, tuple[TrialRecord, bytes]]) -> Replayed:
@@ -160,18 +133,6 @@ def _sorts(path: Path, entry: Entry, request: Request) -> None:
             entry, trial_outcomes.unpack(entry.trials), trial_outcomes.tasks_of_trials(suite, entry)
         )
         files.raise_problems(Problem(file=str(path), field=field, problem=problem) for field, problem in laws)
-
-
-def _again(entry: Entry, drawn: Sequence[int], request: Request) -> dict[int, tuple[TrialRecord, bytes]]:
-    return replay.replay_trials(
-        entry,
-        drawn,
-        agent=request.agent,
-        suite=request.suite,
-        jobs=request.jobs,
-        require_isolation=request.require_isolation,
-        given=request.given,
-    )
 
 
 def _grounds(by: Tier, entry: Entry, here: dict[str, str]) -> str:
