@@ -20,6 +20,9 @@ from hthor.leaderboard.submission import submission
 from hthor.tasks.suites import library
 from hthor.types import TaskSpec
 
+SPELLING = "$ (canonical form)"
+"""The field that is named when only the spelling is wrong."""
+
 
 class _Held(Struct, frozen=True, kw_only=True):
     """An entry that can be read, and its columns."""
@@ -131,10 +134,6 @@ def _submitted(entry: Entry, folder: Path) -> invariants.Problems:
         yield "submission", f"is '{entry.submission}', but there is no {folder}"
     elif found := manifest.differences(entry.files, submission.list_files(folder)):
         yield "files", f"is not what lies in {folder}: {'; '.join(found)}"
-
-
-SPELLING = "$ (canonical form)"
-"""The field that is named when only the spelling is wrong."""
 
 
 def form_problems(path: Path) -> Iterator[Problem]:

@@ -17,6 +17,22 @@ from hthor.report.terminal.result_tables import format_detectable
 DASH = "–"
 _TIERS = {"V1": "byte for byte", "V2": "by outcomes", "V3": "statistically"}
 _LAST = 1e9
+_WIDE, _HIGH, _EDGE = 150.0, 16.0, 6.0
+SORT = """
+for(const th of document.querySelectorAll("th[data-k]")){
+ const go=()=>{
+  const first=th.dataset.k==="-1"?"descending":"ascending";
+  const way=Number(th.dataset.k)*(th.getAttribute("aria-sort")===first?-1:1);
+  const body=th.closest("table").tBodies[0],at=th.cellIndex,value=row=>Number(row.cells[at].dataset.v);
+  const rows=[...body.rows].sort((one,other)=>way*(value(one)-value(other)));
+  for(const other of th.parentNode.cells)other.removeAttribute("aria-sort");
+  th.setAttribute("aria-sort",way===1?"ascending":"descending");
+  body.append(...rows);
+ };
+ th.tabIndex=0;th.addEventListener("click",go);
+ th.addEventListener("keydown",key=>{if(key.key==="Enter"||key.key===" "){key.preventDefault();go();}});
+}
+"""
 
 
 class Cell(Struct, frozen=True):
@@ -153,9 +169,6 @@ def _minus(text: str) -> str:
     return text.replace("-", "−")
 
 
-_WIDE, _HIGH, _EDGE = 150.0, 16.0, 6.0
-
-
 class Scale(Struct, frozen=True, kw_only=True):
     """From where to where a column's marks go, in percent."""
 
@@ -205,23 +218,6 @@ def draw_interval(one: Estimate, on: Scale, colour: str) -> Markup:
 def _drawing(words: str, *parts: Piece) -> Markup:
     box = f"0 0 {_WIDE:g} {_HIGH:g}"
     return tag("svg", tag("title", words), *parts, role="img", width=_WIDE, height=_HIGH, viewBox=box)
-
-
-SORT = """
-for(const th of document.querySelectorAll("th[data-k]")){
- const go=()=>{
-  const first=th.dataset.k==="-1"?"descending":"ascending";
-  const way=Number(th.dataset.k)*(th.getAttribute("aria-sort")===first?-1:1);
-  const body=th.closest("table").tBodies[0],at=th.cellIndex,value=row=>Number(row.cells[at].dataset.v);
-  const rows=[...body.rows].sort((one,other)=>way*(value(one)-value(other)));
-  for(const other of th.parentNode.cells)other.removeAttribute("aria-sort");
-  th.setAttribute("aria-sort",way===1?"ascending":"descending");
-  body.append(...rows);
- };
- th.tabIndex=0;th.addEventListener("click",go);
- th.addEventListener("keydown",key=>{if(key.key==="Enter"||key.key===" "){key.preventDefault();go();}});
-}
-"""
 
 
 def table(

@@ -17,6 +17,12 @@ from hthor.leaderboard.ranking.board import Board, Checked, Gain, Ranks, Row, Se
 
 _NO_ROBOT = "no robot"
 Key = tuple[str, str, str, str, int, str, str, str]
+ALIKE = 0.9
+"""The share of trials with the same success and nearly the same time from which two agents are one. No robot and the
+frontier robot, the most alike of the references, agree in about half of the trials of ``standard``; see
+docs/leaderboard.md."""
+NEAR_S = 1.0
+"""How far two times may be from each other [s]."""
 
 
 def comparison_key(entry: Entry) -> Key:
@@ -156,14 +162,6 @@ def _checked(entry: Entry, kept: KeeperRecords) -> Checked | None:
     if found is None:
         return None
     return Checked(trials=found.trials, control=found.control, fresh=found.fresh, official=found.official)
-
-
-ALIKE = 0.9
-"""The share of trials with the same success and nearly the same time from which two agents are one. No robot and the
-frontier robot, the most alike of the references, agree in about half of the trials of ``standard``; see
-docs/leaderboard.md."""
-NEAR_S = 1.0
-"""How far two times may be from each other [s]."""
 
 
 def group_duplicates(entries: Sequence[Entry], held: Sequence[Outcomes]) -> list[list[int]]:

@@ -12,6 +12,8 @@ from hthor.report.analysis.load_runs import Run, pairing_key
 
 EACH = 2
 """So many of the best and of the worst."""
+_DETAIL_MAX, _OUTPUT_MAX = 4000, 2000
+_FOLDER = "faults"
 
 
 def best_and_worst(run: Run, alone: Run | None, each: int = EACH) -> list[ExampleTrial]:
@@ -66,10 +68,6 @@ def _shown(run: Run, rank: str, record: TrialRecord, other: TrialRecord | None) 
 def replay_command(run: Run, record: TrialRecord) -> str:
     """The command that draws a trial, as it can be typed where the report was written."""
     return shlex.join(["hthor", "replay", str(cli_command.relative_path(run.folder)), record.key])
-
-
-_DETAIL_MAX, _OUTPUT_MAX = 4000, 2000
-_FOLDER = "faults"
 
 
 class _Left(Struct):

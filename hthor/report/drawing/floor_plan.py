@@ -29,6 +29,10 @@ _FURNITURE, _EDGE = "#d9d4cb", "#a8a196"
 RUG, RUG_EDGE, RUG_HATCH = "#faf7f0", "#cdc6b8", "////"
 _FLAT_M = 0.05
 """What rises no higher from the floor is walked and driven over: rugs and mats."""
+_DPI, _STRIP_PX = 100, 34
+_LABEL_STROKE: list[patheffects.AbstractPathEffect] = [patheffects.withStroke(linewidth=2.6, foreground="white")]
+_TITLE_CHARACTERS = 8.0
+"""Pixels that a character of the title takes, about."""
 
 
 def draw_house(ax: Axes, house: HouseSpec, *, marked: Collection[str] = (), small: bool = False) -> None:
@@ -162,12 +166,6 @@ def _frame(ax: Axes, house: HouseSpec) -> None:
 def title(kind: str) -> str:
     """A kind's name for people; kinds that the catalogue lacks are named as they are."""
     return catalog.kind(kind).title if kind in catalog.names() else kind.replace("_", " ")
-
-
-_DPI, _STRIP_PX = 100, 34
-_LABEL_STROKE: list[patheffects.AbstractPathEffect] = [patheffects.withStroke(linewidth=2.6, foreground="white")]
-_TITLE_CHARACTERS = 8.0
-"""Pixels that a character of the title takes, about."""
 
 
 @lettering.plain_lettering()

@@ -87,6 +87,8 @@ _STYLE = {
     "legend.fontsize": 7.5,
     "lines.solid_capstyle": "round",
 }
+_ELEMENT_HEAD = re.compile(r'<svg role="img" viewBox="0 0 ([\d.]+) ([\d.]+)" style="[^"]*">')
+_FONT = "Helvetica, Arial, &quot;DejaVu Sans&quot;, sans-serif"
 
 
 @contextmanager
@@ -147,10 +149,6 @@ def _short(text: str) -> str:
     text = re.sub(r"(\d+\.\d{2})\d+", r"\1", text)
     used = set(re.findall(r'(?:href="#|url\(#)([^")]+)', text))
     return re.sub(r' id="([^"]+)"', lambda found: found.group(0) if found.group(1) in used else "", text)
-
-
-_ELEMENT_HEAD = re.compile(r'<svg role="img" viewBox="0 0 ([\d.]+) ([\d.]+)" style="[^"]*">')
-_FONT = "Helvetica, Arial, &quot;DejaVu Sans&quot;, sans-serif"
 
 
 def svg_document(element: str) -> str:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 Row = tuple[str, Unit, Estimate]
 """Title, unit and value."""
+_HEADINGS = ("difference", "95 % interval", "could have seen", "p", "trials")
 
 
 def result_table(result: RunResult, *, everything: bool = False) -> Table:
@@ -187,9 +188,6 @@ def _uplift_cell(result: RunResult) -> str:
     gain = result.uplift.sr
     ends = " … ".join(format_difference(end, SHARE) for end in gain.ci95 or ())
     return f"{format_difference(gain.difference, SHARE)} {SHARE.difference}\n{ends}"
-
-
-_HEADINGS = ("difference", "95 % interval", "could have seen", "p", "trials")
 
 
 def pair_table(pair: Comparison) -> Table:

@@ -24,6 +24,7 @@ METRICS = tuple(metric for metric in registry.MAIN if metric.is_share)
 _SHIFT = 0.17
 _MANY = 4
 """So many panels have short titles."""
+_QUIET = {"ha": "center", "va": "center", "color": matplotlib_svg.SOFT, "fontsize": 7}
 
 
 def scores_figure(found: Findings) -> Figure:
@@ -55,9 +56,6 @@ def scores_figure(found: Findings) -> Figure:
             mine.set_label("mean and 95 %")
             text_fit.legend(made, [mine, theirs], 2, loc="outside lower right")
     return made
-
-
-_QUIET = {"ha": "center", "va": "center", "color": matplotlib_svg.SOFT, "fontsize": 7}
 
 
 def _ends(found: Findings, metric: str) -> Iterator[float]:

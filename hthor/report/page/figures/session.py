@@ -22,9 +22,19 @@ if TYPE_CHECKING:
     from hthor.report.page.figures.run_styles import RunStyle
 
 _EDGES_IN = 0.8
-"""Inches of title and labels."""
+"""Inches of title and labels of the figure of times."""
 _MANY = 6
 """So many curves are named at their ends; boxes have the names of more."""
+_SIDE = 0.06
+_HIGH_IN, _TRUST_EDGES_IN = 2.7, 0.75
+"""Inches of the figure of trust, and of its title and labels."""
+FATES = {
+    "accepted": ("confirmed", trial_trace.MESSAGE),
+    "declined": ("declined", trial_trace.IDLE_MESSAGE),
+    "covered": ("covered by a newer one", matplotlib_svg.PRIOR),
+    "unanswered": ("unanswered", matplotlib_svg.LINE),
+}
+_PANELS = ("first_useful_s", "interruptions_per_min")
 
 
 def time_figure(parts: Sequence[TimeSpent], arms: Sequence[Arm]) -> Figure:
@@ -68,11 +78,6 @@ def _box(ax: Axes, y: int, one: TimeSpent, mark: RunStyle) -> None:
     ax.plot((one.median, one.median), (y - 0.25, y + 0.25), color=shade, lw=2.4, solid_capstyle="butt", zorder=4)
 
 
-_SIDE = 0.06
-_HIGH_IN, _TRUST_EDGES_IN = 2.7, 0.75
-"""Inches of the trust_figure, and of its title and labels."""
-
-
 def trust_figure(curves: Sequence[TrustCurve], arms: Sequence[Arm]) -> Figure:
     """Means with bars and bands of their 95 % intervals."""
     own, ends = run_styles.run_styles(arms), []
@@ -107,15 +112,6 @@ def trust_window(curves: Sequence[TrustCurve]) -> tuple[float, float]:
     if high - low < 2.0:
         low, high = (low - 1.0, high) if low - 1.0 >= rules.TRUST_MIN else (low, high + 1.0)
     return low, high
-
-
-FATES = {
-    "accepted": ("confirmed", trial_trace.MESSAGE),
-    "declined": ("declined", trial_trace.IDLE_MESSAGE),
-    "covered": ("covered by a newer one", matplotlib_svg.PRIOR),
-    "unanswered": ("unanswered", matplotlib_svg.LINE),
-}
-_PANELS = ("first_useful_s", "interruptions_per_min")
 
 
 def communication_figure(arms: Sequence[Arm]) -> Figure:

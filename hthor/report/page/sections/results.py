@@ -11,6 +11,15 @@ from hthor.report.html.elements import Band, Piece, Value
 from hthor.report.page import headline, sentences, table_cells
 
 _PUBLISHED = {"none": "no robot", "frontier": "frontier", "oracle": "oracle"}
+_SHORT = 24
+"""Names up to so long stand in one line."""
+_COLUMNS = (
+    "Below: n, the trials that both runs share, and mde, the smallest true difference that these would have seen in "
+    "four of five cases. Won: only the robot that is named first succeeded; lost: only the other; with the exact "
+    "McNemar test of that. Tied: both succeeded, or neither did. p (Holm): two-sided, of no difference in success, "
+    "adjusted for all comparisons here."
+)
+_PAIR_HEAD = ("", *(registry.get(name).gain for name in result_file.UPLIFT_METRICS), "won : lost", "tied", "p (Holm)")
 
 
 def scores(found: Findings, drawings: Mapping[str, str]) -> list[str]:
@@ -49,17 +58,6 @@ def _published(found: Findings, metrics: list[str]) -> Iterator[list[Piece] | Ba
     trials = sum(one.n for name, one in study.counts.items() if name.startswith("sr "))
     yield Band(f"Published: {study.source.partition(':')[0]}, people in {trials} trials")
     yield from rows
-
-
-_SHORT = 24
-"""Names up to so long stand in one line."""
-_COLUMNS = (
-    "Below: n, the trials that both runs share, and mde, the smallest true difference that these would have seen in "
-    "four of five cases. Won: only the robot that is named first succeeded; lost: only the other; with the exact "
-    "McNemar test of that. Tied: both succeeded, or neither did. p (Holm): two-sided, of no difference in success, "
-    "adjusted for all comparisons here."
-)
-_PAIR_HEAD = ("", *(registry.get(name).gain for name in result_file.UPLIFT_METRICS), "won : lost", "tied", "p (Holm)")
 
 
 def comparison(found: Findings, drawings: Mapping[str, str]) -> list[str]:

@@ -13,6 +13,7 @@ from hthor.report.page import sentences, table_cells
 from hthor.report.page.figures import session
 
 _TIME_HEAD = ("robot", "trials", "minimum", "lower quartile", "median", "upper quartile", "maximum", "unsolved")
+_TRUST_HEAD = ("robot", "people", "after the first trial", "after the last trial", "slope [points a trial]")
 
 
 def time_spent(found: Findings, drawings: Mapping[str, str]) -> list[str]:
@@ -36,9 +37,6 @@ def time_spent(found: Findings, drawings: Mapping[str, str]) -> list[str]:
         ),
         elements.table(_TIME_HEAD, rows, "Time spent [s]; an unsolved trial counts with its time limit."),
     ]
-
-
-_TRUST_HEAD = ("robot", "people", "after the first trial", "after the last trial", "slope [points a trial]")
 
 
 def trust(found: Findings, drawings: Mapping[str, str]) -> list[str]:

@@ -9,6 +9,7 @@ from hthor.report.html.elements import Code, Mark, Piece
 from hthor.report.page import sentences
 
 _RANKS = {"best": "Best trials", "worst": "Worst trials"}
+_FAULT_HEAD = ("run", "whose", "fault", "trials", "share", "first in")
 
 
 def trials(found: Findings, drawings: Mapping[str, str]) -> list[str]:
@@ -34,9 +35,6 @@ def trials(found: Findings, drawings: Mapping[str, str]) -> list[str]:
 def _card(one: ExampleTrial, drawing: str) -> str:
     caption: list[Piece] = [Mark(sentences.time_gained(one), "plain"), sentences.example_trial(one), Code(one.replay)]
     return elements.figure(drawing, caption, "map")
-
-
-_FAULT_HEAD = ("run", "whose", "fault", "trials", "share", "first in")
 
 
 def faults(found: Findings, _: Mapping[str, str]) -> list[str]:
