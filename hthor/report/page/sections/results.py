@@ -72,8 +72,8 @@ def comparison(found: Findings, drawings: Mapping[str, str]) -> list[str]:
         elements.drawn(
             drawings,
             "compared",
-            "Differences trial by trial: the same person, on the same day, at the same task. Right of the line the "
-            f"robot that is named first is better. Bars: {_bars(found)}.",
+            "Differences trial by trial: the same person with the same task at the same point of the session. Right of "
+            f"the line the robot that is named first is better. Bars: {_bars(found)}.",
         ),
         elements.table(
             _PAIR_HEAD,
