@@ -165,7 +165,7 @@ class Checker:
             elif not state.held_by and not self._indoors(x, y):
                 yield f"{state.id} is in no room, at {state.position}"
             if state.support not in things:
-                yield f"{state.id} lies on '{state.support}', which there is not"
+                yield f"{state.id} lies on '{state.support}', which does not exist"
             if state.held_by and state.support:
                 yield f"{state.id} is in the hand of {state.held_by} and on {state.support}"
             holders = [seat for seat in world.seats if world.holding(seat) == state.id]
@@ -175,7 +175,7 @@ class Checker:
                 yield f"{state.id} has two states, {state} and {states.get(state.id)}"
         for seat in world.seats:
             if world.holding(seat) and world.holding(seat) not in states:
-                yield f"{seat} holds {world.holding(seat)}, which there is not"
+                yield f"{seat} holds {world.holding(seat)}, which does not exist"
 
     def _indoors(self, x: float, y: float) -> bool:
         rooms = [room.polygon for room in self._world.house.rooms]

@@ -104,7 +104,7 @@ def summarize_houses(name: str, houses: Iterable[HouseFigures]) -> HouseStatisti
     """
     all_ = list(houses)
     if not all_:
-        raise ValueError("a census needs at least one house")
+        raise ValueError("statistics of houses need at least one house")
     rooms = [room for one in all_ for room in one.rooms]
     kinds = ("kitchen", "living_room", "bedroom", "bathroom")
     figures: dict[str, Sequence[float]] = {

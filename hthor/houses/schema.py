@@ -154,7 +154,7 @@ def convert_document(document: Any, file: str) -> HouseFile:
         for where, value in _values(document, ""):
             if isinstance(value, str):
                 if not jsonio.is_text(value):
-                    raise HouseError(file, where, f"half a character, without the other half: {value!a:.60}")
+                    raise HouseError(file, where, f"a lone surrogate, half of a character: {value!a:.60}")
             elif not abs(value) < _LIMIT:
                 raise HouseError(file, where, f"must be a finite number, got {value!r:.24}")
         _check_version(document, file)

@@ -71,7 +71,10 @@ def make_entry(folder: Path, submission: Submission | None = None) -> Entry:
     records = [msgspec.structs.replace(one, metrics=trial_metrics.measure(one.spec, one.log)) for one in kept]
     gain = baseline.measure_uplift(folder, config, records)
     if gain is None and config.seats:
-        raise RunError(f"{folder} has no run without a robot beside it. 'hthor eval' plays it without --no-control.")
+        raise RunError(
+            f"{folder} has no baseline, a run of the same people without a robot. 'hthor eval' plays one unless "
+            "--no-control is given."
+        )
     held = run.isolation
     result = aggregate.make_result(config, lines, records, uplift=gain, isolation=held, replays=run.restarts)
     columns = trial_outcomes.make_outcomes(records, map(trial_outcomes.leaf_hash, lines))
@@ -112,7 +115,7 @@ def _runs(folder: Path) -> list[Path]:
     found = [path.parent for path in sorted(folder.glob("*/run.json"))]
     if not found:
         raise RunError(
-            f"{folder} is no run's folder, nor a folder of runs: no run.json is there. 'hthor eval' makes one."
+            f"{folder} is neither a run's folder nor a folder of runs: it has no run.json. 'hthor eval' makes one."
         )
     return found
 
@@ -155,11 +158,11 @@ def _same_files(folder: Path, agents: Sequence[Manifest], submission: Submission
     if submission is None:
         return
     if len(agents) != 1:
-        raise BoardError(f"{folder / 'run.json'}: agents: has {len(agents)} agents, and a submission is one.")
+        raise BoardError(f"{folder / 'run.json'}: agents: has {len(agents)} agents, but a submission is one agent.")
     found = invariants.foreign_files(agents[0].files, submission.files)
     if found:
         raise BoardError(
-            f"{folder / 'run.json'}: agents[0].files: is not what is in {submission.path.parent}: "
+            f"{folder / 'run.json'}: agents[0].files: differs from what is in {submission.path.parent}: "
             f"{'; '.join(found)}. Run the agent that was submitted."
         )
 
@@ -178,8 +181,10 @@ def _there(entry: Entry, path: Path) -> bool:
     other = itertools.islice(invariants.differences("", there, entry), _SHOWN)
     shown = "; ".join(f"{field.lstrip('.')} {problem}" for field, problem in other)
     raise BoardError(
-        f"{path}: the board has another entry of this run, and it is not overwritten{f' ({shown})' if shown else ''}. "
-        "'hthor leaderboard verify' tells which is true; to replace the old one, its keeper deletes the file first."
+        f"{path}: the board has another entry of this run, and it is not "
+        f"overwritten{f' ({shown})' if shown else ''}. "
+        "'hthor leaderboard verify' finds out which is true; to replace the old one, the board's keeper deletes its "
+        "file first."
     )
 
 

@@ -58,7 +58,7 @@ def canonical_name(name: str, size: str = "") -> str:
 def _size(text: str) -> tuple[int, int]:
     found = _SIZE.fullmatch(text)
     if found is None:
-        raise HthorError(f"'{text}' is no size of pictures. {_EXAMPLE}.")
+        raise HthorError(f"'{text}' is not a picture size. {_EXAMPLE}.")
     width, height = int(found[1]), int(found[2])
     if max(width, height) > LARGEST:
         raise HthorError(f"pictures of {text} are too large: at most {LARGEST} pixels a side. {_EXAMPLE}.")

@@ -31,7 +31,7 @@ def parse(text: str) -> DetectorSpec:
             hint = "Or rates, such as miss=0.2,false_alarm=0.05,position_sigma=0.03."
             raise UnknownName("detector", text, (OWN, *_NAMED), hint)
         if not equals or name not in _RATES or name in rates:
-            raise HthorError(f"unknown detector '{text}': '{word.strip()}' is no rate. Valid: {_VALID}.")
+            raise HthorError(f"unknown detector '{text}': '{word.strip()}' is not a rate. Valid: {_VALID}.")
         rates[name] = _rate(name, number)
     known = DetectorSpec(name="", **rates)
     listed = ",".join(f"{name}={getattr(known, name):.12g}" for name in _RATES if getattr(known, name))

@@ -260,7 +260,7 @@ class Actor:
         if message is None:
             waiting = self.inbox()
             if not waiting:
-                raise HthorError(f"no message waits for an answer of {self.seat}")
+                raise HthorError(f"there is no message for {self.seat} to answer")
             message = waiting[0].id
         self._post(self._world.mail.reply(self._world.tick, self.seat, Reply(message=message, accept=accept)))
 

@@ -66,7 +66,7 @@ class GroundTruth:
         """
         if moment != (self._human.pose, self._objects.changes, self._doors.changes):
             raise StaleObservation(
-                f"in_view of the snapshot of tick {tick} is asked for only now that the world has moved on; "
+                f"in_view of the snapshot of tick {tick} was read after the world had moved on; "
                 "read it while the snapshot is new"
             )
         return self._visibility.in_view(self._human)

@@ -59,7 +59,7 @@ class SensingSimulation(Simulation):
         given = [hthor_cameras.parse(one) if isinstance(one, str) else one for one in cameras]
         if len(given) > len(self.seats) - 1:
             raise HthorError(
-                f"there are {len(given)} cameras and {len(self.seats) - 1} robots; give one camera a robot"
+                f"there are {len(given)} cameras and {len(self.seats) - 1} robots; give one camera for each robot"
             )
         self.cameras = dict(zip(self.seats[1:], given, strict=False))
         self._pictures = LazyImages(

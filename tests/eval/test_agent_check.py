@@ -31,12 +31,12 @@ AGENTS = {
         "class Agent:\n    persistent = True\n    trials = 0\n    def begin(self, briefing):\n"
         "        Agent.trials += 1\n"
         "    def act(self, observation):\n        return Action(motion=Rotate(yaw=0.1 * Agent.trials))\n",
-        {"deterministic": ("ok", ""), "keeps nothing": ("broken", "parts at step 1 (tick 0)")},
+        {"deterministic": ("ok", ""), "keeps nothing": ("broken", "differs at step 1 (tick 0)")},
     ),
     "gambles": (
         "class Agent:\n    def begin(self, briefing):\n        self.dice = random.SystemRandom()\n"
         "    def act(self, observation):\n        return Action(motion=Rotate(yaw=self.dice.random()))\n",
-        {"deterministic": ("broken", "parts at step 1 (tick 0)")},
+        {"deterministic": ("broken", "differs at step 1 (tick 0)")},
     ),
     "boasts": (
         "class Agent:\n    def begin(self, briefing):\n        self.target = briefing.target\n"

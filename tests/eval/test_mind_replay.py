@@ -63,7 +63,7 @@ def test_a_trial_is_the_same_while_it_is_filmed_and_another_one_is_not_shown(run
     for seen in views.values():
         assert seen.keys() == one.paths.keys()
         assert all(view.shape == (camera_frames.SIZE[1], camera_frames.SIZE[0], 3) for view in seen.values())
-    with pytest.raises(RunError, match="went otherwise than it was logged"):
+    with pytest.raises(RunError, match="did not repeat as it was logged"):
         camera_frames.render_frames(run, msgspec.structs.replace(one, ticks=one.ticks - 1), [0])
 
 

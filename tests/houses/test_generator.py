@@ -106,7 +106,7 @@ def test_requests_that_cannot_be_met_are_refused() -> None:
         generator.generate(0, 3)
     with pytest.raises(UnknownName, match="room spec 'castle'"):
         generator.generate(0, 4, "castle")
-    with pytest.raises(HthorError, match=r"'5-room' does not have 4 rooms; specs that have: 4-room"):
+    with pytest.raises(HthorError, match=r"'5-room' does not have 4 rooms; specs that do: 4-room"):
         generator.generate(0, 4, "5-room")
     with pytest.raises(UnknownName, match=r"optional kind 'pilow'.*Did you mean 'pillow'"):
         generator.generate(0, 4, needs={"pilow"})

@@ -127,7 +127,7 @@ def test_a_debian_package_is_read(tmp_path: Path) -> None:
 def test_what_was_taken_and_what_was_not_is_said(built: making.ConvertedModel) -> None:
     assert built.pack.kinds == ("dining_table", "mug", "sofa")
     reasons = {skipped.pick.kind: skipped.reason for skipped in built.skipped}
-    assert reasons["fridge"] == "a fridge opens, and no model of a pack can"
+    assert reasons["fridge"] == "a fridge opens, which no model of a pack can do"
     assert "too far from" in reasons["bed"]
 
 

@@ -59,7 +59,7 @@ def estimate_from_logs(
     data = trial_features.read_sessions(logs)
     if not any(event.kind == "stick" for one in data.trials for event in one.record.journal):
         raise RunError(
-            f"{logs[0]} holds no journal of the person: no stick, no attempts. It was written by an older version of "
+            f"{logs[0]} has no record of the person's motions and attempts. It was written by an older version of "
             "hthor; repeat the run with 'hthor eval'."
         )
     old = population_file.load_population(resolve.default_population() if prior == PROXY else prior)

@@ -82,7 +82,7 @@ def _records(path: Path) -> list[TrialRecord]:
     file = path / "trials.jsonl" if path.is_dir() else path
     if not file.is_file():
         what = "a folder without trials.jsonl" if path.is_dir() else "not there"
-        raise RunError(f"{path} is {what}. --target takes runs' folders, such as 'hthor eval' makes, or their logs.")
+        raise RunError(f"{path} is {what}. --target takes run folders of 'hthor eval', or their logs.")
     lines = file.read_bytes().split(b"\n")
     if lines[-1]:
         raise RunError(
@@ -97,7 +97,8 @@ def _record(file: Path, number: int, line: bytes) -> TrialRecord:
         return trial_record.decode(line)
     except trial_record.Damaged as damage:
         raise RunError(
-            f"{file}, line {number} is no trial as 'hthor eval' logs it: {damage.field}: {damage.problem}. Give the "
+            f"{file}, line {number} is not a trial that 'hthor eval' logged: {damage.field}: {damage.problem}. "
+            "Give the "
             "log of a run, or delete that line."
         ) from None
 

@@ -73,7 +73,7 @@ def read_scenes(wheel: Path | None = None) -> Scenes:
     try:
         rooms = documents.decode(data, dict[str, tuple[Scene, ...]])
     except documents.Unreadable as error:
-        raise HthorError(f"{FILE} of {PACKAGE} {version} has another form than expected: {error}.") from None
+        raise HthorError(f"{FILE} of {PACKAGE} {version} does not have the expected format: {error}.") from None
     scenes = tuple(scene for group in rooms.values() for scene in group)
     origin = Origin(
         part="frequency",
@@ -103,7 +103,7 @@ def _of_wheel(wheel: Path) -> tuple[str, bytes]:
     except OSError as error:
         raise HthorError(f"{wheel}: {error.strerror or error}. {how}") from None
     except (zipfile.BadZipFile, KeyError, IndexError) as error:
-        raise HthorError(f"{wheel} is not that wheel: {str(error).strip(chr(39))}. {how}") from None
+        raise HthorError(f"{wheel} is not the expected wheel: {str(error).strip(chr(39))}. {how}") from None
 
 
 def types(kind: str) -> tuple[str, ...]:

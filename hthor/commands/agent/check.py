@@ -142,9 +142,9 @@ def _tell(paper: Console, done: Rerun) -> None:
     for failure in done.left.failures if done.left else ():
         lines += ["", *failure_lines(failure)]
     if done.changed:
-        lines += ["", "the agent's files have changed since the run, so this may go otherwise than it was logged."]
+        lines += ["", "the agent's files have changed since the run, so this may differ from what was logged."]
     else:
-        lines += ["", "as it was logged." if done.same else "it went otherwise than it was logged."]
+        lines += ["", "this is what was logged." if done.same else "this differs from what was logged."]
     for line in lines:
         output.say(line, paper)
 

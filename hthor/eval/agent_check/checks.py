@@ -59,7 +59,7 @@ def check_agent(
     try:
         character = robot_team.load_agent_info(agent, guests)
     except AgentError as error:
-        broken = Finding(check="loads", status="broken", told=str(error), advice="Mend that, and check again.")
+        broken = Finding(check="loads", status="broken", told=str(error), advice="Fix that, and check again.")
         return _report(agent, [broken], {})
     if character.absent:
         raise HthorError(f"{agent} says that there is no robot at all (absent = True), so there is nothing to check.")

@@ -17,7 +17,7 @@ from hthor.humans.population.parameters import Parameters
 
 Status = Literal["ok", "broken", "warning", "skipped"]
 _ADVICE = {
-    "raised": "The last lines say where it failed. Mend that, and check again.",
+    "raised": "The last lines say where it failed. Fix that, and check again.",
     "timeout": "A step may take 5 s, and 60 s more in all. Do less in act, or spread the work over several steps.",
     "died": "Its process ended. Look for os._exit, a crash in a library, or what it printed last.",
     "memory": "Load less, or load it in smaller parts.",
@@ -103,7 +103,7 @@ def check_same(name: str, one: ProbeResult, other: ProbeResult, what: str, advic
         return Finding(check=name, status="ok", told=f"{what}: {len(one.actions)} actions and every byte the same")
     for step, (a, b) in enumerate(zip(one.actions, other.actions, strict=False), 1):
         if a != b:
-            told = f"{what} parts at step {step} (tick {a[0]}): {a[1]} and {b[1]}"
+            told = f"{what} differs at step {step} (tick {a[0]}): {a[1]} and {b[1]}"
             return Finding(check=name, status="broken", told=told, advice=advice)
     told = f"{what}: {len(one.actions)} actions and {len(other.actions)}"
     if other.faults:

@@ -197,14 +197,16 @@ def _check(results: Mapping[str, Sequence[RunResult]]) -> None:
     models = {runs[0].humans.model for runs in results.values() if runs}
     if not all(results.values()) or not models.issuperset(EXTREMES) or len(models) == len(EXTREMES):
         raise HthorError(
-            f"a bracket needs results of greedy people, of random people and of a population, got {sorted(results)}."
+            "the two bounds need results of people who accept everything, of random people and of a population, "
+            f"got {sorted(results)}."
         )
     played = {name: [(r.name, r.suite.sha256, r.seed, r.counts.trials) for r in some] for name, some in results.items()}
     first, *others = played
     for name in others:
         if played[name] != played[first]:
             raise HthorError(
-                f"a bracket compares the same robots on the same trials, but {first} had {played[first]} and {name} "
+                f"the two bounds compare the same robots on the same trials, but {first} had {played[first]} and "
+                f"{name} "
                 f"{played[name]} (robot, suite, seed, trials)."
             )
 

@@ -111,7 +111,7 @@ def _read_shard(folder: RunFolder) -> _ShardLog:
         trial, mine = (record.spec.participant, record.spec.index), (place, record.key, trial_record.checksum(line))
         if lines.setdefault(trial, mine)[1:] != mine[1:]:
             raise RunError(
-                f"{place.path}: trial {record.key} is there twice and not the same. Delete one of the two lines."
+                f"{place.path}: trial {record.key} is there twice, with different content. Delete one of the two lines."
             )
     return _ShardLog(folder=folder, shard=config.shard, lines=lines, opened=tuple(opened))
 
@@ -141,7 +141,7 @@ def _join(shards: Sequence[_ShardLog]) -> dict[_Trial, _Line]:
             if known[1:] != line[1:]:
                 raise RunError(
                     f"trial {line[1]} is not the same in {known[0].path} and in {line[0].path}. An agent that is not "
-                    "deterministic gives such; leave one of the folders out."
+                    "deterministic does that; leave one of the folders out."
                 )
     return joined
 
@@ -161,7 +161,7 @@ def _write(
             new += log.append(key, line)
             if not log.agrees(key, line):
                 raise RunError(
-                    f"{whole}: trial {key} is there already, and is not as in the shards. Choose another --out."
+                    f"{whole}: trial {key} is there already and differs from the shards'. Choose another --out."
                 )
         return len(log), new
 

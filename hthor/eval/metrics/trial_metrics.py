@@ -29,7 +29,7 @@ class MetricValues(Struct, frozen=True, kw_only=True):
         """The value of a metric that every trial has; raises ValueError when this one has none."""
         value = self[metric]
         if value is None:
-            raise ValueError(f"this trial has no value of '{metric}'")
+            raise ValueError(f"this trial has no value for '{metric}'")
         return value
 
     def by_seat(self, metric: str) -> dict[str, float]:

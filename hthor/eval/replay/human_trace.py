@@ -105,8 +105,8 @@ def trace_human(
         participants.human = person = TracedHuman(participants.human)
         if not all(hasattr(type(person.human), name) for name in ("about", "listener")):
             raise HthorError(
-                f"the people of this run, '{spec.human}', have no mind to look into. --mind takes runs whose people "
-                "are the proxy, or a model made of it."
+                f"the people of this run, '{spec.human}', record no decisions. --mind works with runs whose people "
+                "are the proxy, or a model based on it."
             )
         for number, one in enumerate(session.trials, 1):
             activity.say(f"playing trial {number} of {len(session.trials)} again")

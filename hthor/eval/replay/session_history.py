@@ -70,7 +70,7 @@ def session_before(folder: RunFolder, trial: TrialRecord) -> tuple[TrialSpec, ..
     if here != logged:
         raise RunError(
             f"{folder} was played by another version of hthor (its code's hash was {logged[:10]} and is {here[:10]}), "
-            "in which people may think otherwise. Play the run again with 'hthor eval', or look with that version."
+            "in which people may decide differently. Play the run again with 'hthor eval', or use that version."
         )
     specs = [record.spec for record in folder.records()]
     mine = [one for one in specs if one.participant == spec.participant and one.index <= spec.index]

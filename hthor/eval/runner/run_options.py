@@ -264,7 +264,9 @@ def parse_max_faults(text: str) -> Callable[[int], float]:
     except ValueError:
         value = -1.0
     if not 0.0 <= value < math.inf or (percent and value > 100.0):
-        raise HthorError(f"--max-faults '{text}' is no number of trials, such as 3, and no share of them, such as 5%.")
+        raise HthorError(
+            f"--max-faults '{text}' is neither a number of trials, such as 3, nor a share of them, such as 5%."
+        )
     return lambda trials: value / 100.0 * trials if percent else value
 
 

@@ -56,7 +56,7 @@ def _act(pipe: HostConnection, agent: Any, look: wire.Look) -> wire.Acted | wire
     size = len(wire.encode(message))
     if size > wire.MOST_BYTES:
         return wire.Failed(
-            kind="oversized", detail=f"the action takes {size} bytes, at most {wire.MOST_BYTES} are taken"
+            kind="oversized", detail=f"the action takes {size} bytes, at most {wire.MOST_BYTES} are accepted"
         )
     return message
 

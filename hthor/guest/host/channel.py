@@ -139,12 +139,12 @@ class MessageChannel:
         except PeerGone:
             raise self.fault(*self._live_transport().end_reason()) from None
         if isinstance(body, int):
-            raise self.fault("oversized", f"a message of {body} bytes, at most {wire.MOST_BYTES} are taken")
+            raise self.fault("oversized", f"a message of {body} bytes, at most {wire.MOST_BYTES} are accepted")
         message: wire.ToHost | wire.Over
         try:
             message = _supervisors_messages.decode(body) if from_supervisor else _guests_messages.decode(body)
         except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
-            raise self.fault("garbage", f"what came is no message: {error}") from None
+            raise self.fault("garbage", f"what the agent sent is not a message: {error}") from None
         if len(self.opened) < _MOST_OPENED:
             self.opened.update(name for name in getattr(message, "files", ()) if len(name) <= _LONGEST)
         if isinstance(message, wire.Failed) and (self.loaded or from_supervisor):

@@ -72,7 +72,9 @@ def make_info(reference: AgentReference, sha256: str, ready: wire.Ready, held: I
         valid = ", ".join(wire.PRIVILEGES)
         raise AgentError(f"{reference.text}: its privileges name '{sanitize_text(unknown[0][:80])}'. Valid: {valid}.")
     if ready.wire != wire.VERSION:
-        raise AgentError(f"{reference.text}: it speaks version {ready.wire} of the wire, valid is {wire.VERSION}.")
+        raise AgentError(
+            f"{reference.text}: it uses version {ready.wire} of the protocol, but this hthor uses {wire.VERSION}."
+        )
     if not math.isfinite(ready.gpus) or ready.gpus < 0:
         raise AgentError(f"{reference.text}: gpus must be a number from 0 on, got {ready.gpus}.")
     for name in (ready.name, *ready.robots):

@@ -147,7 +147,7 @@ class GuestStartup:
                 reason = namespaces.failure_reason(answer) if rung == "L3" else answer
             unavailable[rung] = reason
             not_higher = not_higher or f"{rung}: {reason}"
-        raise IsolationError(f"isolation {level} cannot be had on this machine: {reason}. {_HINT}")
+        raise IsolationError(f"isolation {level} is not available on this machine: {reason}. {_HINT}")
 
     def _describe(self, level: str, confined: wire.Confined, not_higher: str) -> Isolation:
         here = {name: os.readlink(f"/proc/self/ns/{name}") for name in confined.spaces}

@@ -137,4 +137,4 @@ def _sensed(observation: Observation, ask: wire.Ask) -> Any:
     pictures = [message.image for message in observation.inbox if message.id == ask.which]
     if ask.what == "image" and pictures and callable(pictures[0]):
         return pictures[0]()
-    raise UnknownSensor(f"asked for '{ask.what[:80]}', which there is not")
+    raise UnknownSensor(f"asked for '{ask.what[:80]}', which does not exist")

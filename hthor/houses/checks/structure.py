@@ -120,7 +120,7 @@ def _check_ids(house: HouseFile) -> None:
         for where, name in group:
             if name in seen:
                 raise StructureFault(
-                    f"{where}.id", f"the id '{name}' is already that of {seen[name]}; ids must be unique"
+                    f"{where}.id", f"the id '{name}' already belongs to {seen[name]}; ids must be unique"
                 )
             seen[name] = where
 
@@ -194,9 +194,7 @@ def _check_hole(where: str, opening: OpeningRow, wall: WallRow) -> None:
     for key, span, limit in (("x", (a.x, b.x), math.dist(*wall_line(wall))), ("y", (a.y, b.y), high - low)):
         for index, value in enumerate(span):
             if not -_HOLE_M <= value <= limit + _HOLE_M:
-                raise StructureFault(
-                    f"{where}[{index}].{key}", f"{value:g} lies outside of '{wall.id}', 0 to {limit:.3f} m"
-                )
+                raise StructureFault(f"{where}[{index}].{key}", f"{value:g} is outside '{wall.id}', 0 to {limit:.3f} m")
 
 
 def _check_objects(house: HouseFile) -> None:
@@ -205,7 +203,7 @@ def _check_objects(house: HouseFile) -> None:
     for where, row, _ in iter_objects(house):
         if room_at((row.position.x, row.position.z), rooms) is None:
             at = f"x {row.position.x:.2f}, z {row.position.z:.2f}"
-            raise StructureFault(f"{where}.position", f"'{row.id}' lies outside of every room, at {at}")
+            raise StructureFault(f"{where}.position", f"'{row.id}' is outside every room, at {at}")
         if not -OUTSIDE_M <= row.position.y <= ceiling + OUTSIDE_M:
             problem = f"'{row.id}' lies at height {row.position.y:.2f}; floor 0, ceiling {ceiling:.2f} m"
             raise StructureFault(f"{where}.position.y", problem)
@@ -218,7 +216,7 @@ def _check_start(house: HouseFile) -> None:
     where, agent = found
     rooms = [(room.id, floor_polygon(room)) for room in house.rooms]
     if room_at((agent.position.x, agent.position.z), rooms, slack=0.0) is None:
-        raise StructureFault(f"{where}.position", "lies outside of every room")
+        raise StructureFault(f"{where}.position", "is outside every room")
 
 
 def _names(names: Iterable[str]) -> str:

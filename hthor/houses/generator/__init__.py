@@ -34,7 +34,7 @@ class GeneratorError(HthorError):
         listed = "; ".join(f"attempt {number}: {problem} ({rule})" for number, (rule, problem) in enumerate(reasons))
         super().__init__(
             f"seed {seed} gave no valid house of {rooms} rooms in {len(reasons)} attempts: {listed}. "
-            "Take another seed, or allow more tries."
+            "Choose another seed, or allow more tries."
         )
 
 

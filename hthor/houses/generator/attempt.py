@@ -87,7 +87,7 @@ def build_document(spec: RoomSpec, wants: Requirements, dice: Dice, record: dict
         if gone := next(iter(sorted(wants.must - kinds)), ""):
             raise AttemptFailed("object-visible", f"the only {gone.replace('_', ' ')} cannot be seen from the floor")
         if _judged(shell, spec, dice, record):
-            raise AttemptFailed("object-visible", "things came to be hidden when others were taken away")
+            raise AttemptFailed("object-visible", "removing things hid others")
     return shell
 
 
@@ -98,7 +98,7 @@ def _judged(shell: dict[str, Any], spec: RoomSpec, dice: Dice, record: dict[str,
     walkable = validity.reached(free)
     start = _start(house, space, walkable, dice.of("start"))
     if start is None:
-        raise AttemptFailed("start-free", "no floor is roomy enough to start on")
+        raise AttemptFailed("start-free", "no free floor is large enough to start on")
     shell["metadata"] = document.metadata(spec.name, start, record)
     pose = msgspec.structs.replace(house.start, x=start[0], y=start[1])
     placed: HouseSpec = msgspec.structs.replace(house, start=pose)

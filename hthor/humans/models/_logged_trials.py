@@ -116,7 +116,7 @@ def _read(path: str) -> dict[int, list[LoggedTrial]]:
             raise HthorError(f"{path}, line {number}: {error}. {_HINT}") from None
         trials.setdefault(trial.spec.participant, []).append(trial)
     if not trials:
-        raise HthorError(f"{path} holds no whole trial. {_HINT}")
+        raise HthorError(f"{path} has no complete trial. {_HINT}")
     return {number: sorted(own, key=lambda trial: trial.spec.index) for number, own in trials.items()}
 
 

@@ -221,6 +221,6 @@ def to_quantiles(values: ArrayLike) -> Floats:
 def _by_column(table: ArrayLike, functions: list[Callable[[float], float]]) -> Floats:
     array = np.asarray(table, dtype=np.float64)
     if array.ndim != 2 or array.shape[1] != len(functions):
-        raise ValueError(f"a table with {len(functions)} columns is expected, got the shape {array.shape}")
+        raise ValueError(f"expected a table with {len(functions)} columns, got the shape {array.shape}")
     values = [[f(x) for f, x in zip(functions, row, strict=True)] for row in array.tolist()]
     return np.array(values).reshape(array.shape)

@@ -154,7 +154,7 @@ def _arrays(path: Path, document: Document) -> tuple[Any, Any]:
     except KeyError as error:
         raise PopulationError(str(path), str(error).strip("'\"").split(" ")[0], f"is missing; {_DAMAGED}") from None
     except (ValueError, EOFError, OSError, zipfile.BadZipFile) as error:
-        raise PopulationError(str(path), "$", f"is no NPZ archive: {error}; {_DAMAGED}") from None
+        raise PopulationError(str(path), "$", f"is not an NPZ archive: {error}; {_DAMAGED}") from None
     columns = [spec.name for spec in document.parameters]
     if (names := arrays["names"].tolist()) != columns:
         raise PopulationError(str(path), "names", f"are {names}, the JSON file lists {columns}")

@@ -73,7 +73,7 @@ def checked_index(index: Any, situation: Situation) -> int:
     """
     count = len(situation.options)
     if isinstance(index, bool) or not isinstance(index, int) or not 0 <= index < count:
-        raise HthorError(f"a policy's choose must return an index from 0 to {count - 1}, got {index!r}. Mend its file.")
+        raise HthorError(f"a policy's choose must return an index from 0 to {count - 1}, got {index!r}. Fix its file.")
     return index
 
 

@@ -79,7 +79,7 @@ def unpack_labels(text: str, count: int, most: int) -> np.ndarray:
         raise ValueError(f"has {len(text)} characters for {count} trials")
     held = [_DIGITS.find(one) for one in text]
     if held and not 0 <= min(held) <= max(held) < most:
-        raise ValueError(f"names a label beyond the {most} that there are")
+        raise ValueError(f"refers to label number {most} or above, which does not exist")
     return np.array(held, dtype=np.int64)
 
 
@@ -95,5 +95,5 @@ def _data(text: str, size: int) -> bytes:
     if len(data) != size:
         raise ValueError(f"holds {len(data)} bytes where {size} belong")
     if _text(data) != text:
-        raise ValueError("is not base64 in its one canonical spelling")
+        raise ValueError("is not canonical base64")
     return data

@@ -67,7 +67,7 @@ def _zip(path: Path) -> Iterator[_Member]:
             if one.is_dir():
                 continue
             if kind not in (0, stat.S_IFREG):
-                raise _refused(path, one.filename, "is a link or no plain file")
+                raise _refused(path, one.filename, "is not a plain file")
             if one.flag_bits & 0x1:
                 raise _refused(path, one.filename, "is encrypted")
             yield _Member(one.filename, lambda one=one: held.open(one))  # type: ignore[misc]
@@ -79,7 +79,7 @@ def _tar(path: Path) -> Iterator[_Member]:
             if one.isdir():
                 continue
             if not one.isreg() or one.issparse():
-                raise _refused(path, one.name, "is a link or no plain file")
+                raise _refused(path, one.name, "is not a plain file")
             yield _Member(one.name, lambda one=one: held.extractfile(one))  # type: ignore[misc]
 
 
@@ -98,7 +98,7 @@ def _write(path: Path, members: Iterator[_Member], folder: Path, most_bytes: int
         if pure.is_absolute() or not parts or ".." in parts or "\\" in member.name or "\0" in member.name:
             raise _refused(path, member.name, "leads out of the archive's folder")
         if count > most_files:
-            raise _refused(path, member.name, f"is one file too many; at most {most_files} are taken")
+            raise _refused(path, member.name, f"exceeds the number of files; at most {most_files} are taken")
         target = folder.joinpath(*parts)
         target.parent.mkdir(parents=True, exist_ok=True)
         if target.exists():
@@ -109,7 +109,11 @@ def _write(path: Path, members: Iterator[_Member], folder: Path, most_bytes: int
             while chunk := source.read(_CHUNK):
                 size += len(chunk)
                 if size > most_bytes:
-                    raise _refused(path, member.name, f"is too much: at most {most_bytes} bytes are taken, unpacked")
+                    raise _refused(
+                        path,
+                        member.name,
+                        f"makes the archive too large: at most {most_bytes} bytes are accepted, unpacked",
+                    )
                 file.write(chunk)
 
 

@@ -94,7 +94,10 @@ def _draw(entry: Entry, board: Path, request: Request, folder: Path) -> None:
         return
     season = files.read_commitments(board).get(entry.run.suite.sha256)
     if season is None:
-        raise BoardError(f"{entry.id}: run.suite.sha256: no recipe of this suite is known for fresh tasks.")
+        raise BoardError(
+            f"{entry.id}: run.suite.sha256: fresh tasks cannot be drawn for this suite, since its specification "
+            "is not known."
+        )
     from hthor.world.validation.house_soundness import check_soundness
 
     homes = max(1, min(season.houses, count // _HOUSE_TASKS))

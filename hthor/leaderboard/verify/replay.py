@@ -125,7 +125,9 @@ def _same_config(entry: Entry, chosen: TaskSelection, team: RobotTeam, humans: P
     there, here = (msgspec.structs.replace(one, versions={}) for one in (entry.run, config))
     if there != here:
         differences = "; ".join(run_config.differences(there, here))
-        raise BoardError(f"{entry.id}: this is not what was run: {differences} ('there' is the entry).")
+        raise BoardError(
+            f"{entry.id}: this agent differs from the one that was run: {differences} ('there' is the entry)."
+        )
     return config
 
 

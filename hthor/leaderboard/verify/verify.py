@@ -32,9 +32,11 @@ def verify_entry(path: Path, board: Path, request: Request) -> tuple[Entry, Veri
             where it was played; when a trial could not be played.
     """
     if not request.word:
-        raise HthorError("--draw is empty; it takes public chance, such as the hash of a commit made after submission.")
+        raise HthorError(
+            "--draw is empty; it takes a public random value, such as the hash of a commit made after submission."
+        )
     if not path.is_file():
-        raise BoardError(f"{path} is no file; an entry is one, such as leaderboard/entries/NAME.json.")
+        raise BoardError(f"{path} is not a file; give an entry, such as leaderboard/entries/NAME.json.")
     files.raise_problems(board_check.check_board(board, [path]))
     entry = files.read_entry(path)
     _noted(entry, request)
@@ -120,8 +122,8 @@ def _noted(entry: Entry, request: Request) -> None:
     """Only the official run may leave out where an entry was played: a comparison of outcomes is the lower bar."""
     if not entry.platforms and not request.official:
         raise BoardError(
-            f"{entry.id}: platforms: is empty, so no record can be compared byte for byte. Play the run with this "
-            "version, which notes the platform, or have the official workflow play it (--official)."
+            f"{entry.id}: platforms: is empty, so no record can be compared byte for byte. Run it with this "
+            "version, which records the platform, or have the official workflow run it (--official)."
         )
 
 

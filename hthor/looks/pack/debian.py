@@ -81,14 +81,14 @@ def _files(deb: Path, data: bytes) -> Iterator[tuple[str, bytes]]:
 def _members(deb: Path, data: bytes) -> Iterator[tuple[str, bytes]]:
     """The files of an ar archive, which every Debian package is."""
     if not data.startswith(_AR):
-        raise PackError(f"{deb} is no Debian package: it does not begin with '!<arch>'. {_HOW}")
+        raise PackError(f"{deb} is not a Debian package: it does not begin with '!<arch>'. {_HOW}")
     place = len(_AR)
     while place + _HEADER <= len(data):
         header = data[place : place + _HEADER]
         length = int(header[48:58])
         content = data[place + _HEADER : place + _HEADER + length]
         if len(content) < length:
-            raise EOFError("it ends in the middle of a file")
+            raise EOFError("the archive ends in the middle of a file")
         yield header[:16].decode("ascii", "replace").strip().rstrip("/"), content
         place += _HEADER + length + length % 2
 
@@ -96,5 +96,8 @@ def _members(deb: Path, data: bytes) -> Iterator[tuple[str, bytes]]:
 def _unzstd(deb: Path, content: bytes) -> bytes:
     tool = shutil.which("zstd")
     if tool is None:
-        raise PackError(f"{deb} is packed with zstd, and there is no 'zstd' program here. Install zstd, or unpack it.")
+        raise PackError(
+            f"{deb} is packed with zstd, and the program 'zstd' is not installed. Install zstd, or unpack the "
+            "file yourself."
+        )
     return subprocess.run([tool, "-dc"], input=content, capture_output=True, check=True).stdout

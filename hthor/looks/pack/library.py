@@ -51,7 +51,7 @@ class Library:
             PackError: when the library has no such model.
         """
         if model not in self.entries:
-            raise PackError(f"library '{self.name}' has no model '{model}'; it is another version than expected.")
+            raise PackError(f"library '{self.name}' has no model '{model}'; it is a different version than expected.")
         return self.entries[model]
 
     def has(self, path: str) -> bool:

@@ -89,7 +89,7 @@ def convert_models(
 
 def _take(library: Library, pick: Pick) -> _Piece:
     if fitting.opens(pick.kind):
-        raise ValueError(f"a {pick.kind} opens, and no model of a pack can")
+        raise ValueError(f"a {pick.kind} opens, which no model of a pack can do")
     entry = library.entry(pick.model)
     groups, size = shape.place_shape(_read(library, entry), entry.size, entry.rotation, pick.turns)
     own = catalog.kind(pick.kind).size
@@ -101,7 +101,7 @@ def _take(library: Library, pick: Pick) -> _Piece:
     rests = shape.find_surfaces(meshes, size, places, own, soft=pick.kind in _SOFT)
     pictures: dict[str, bytes] = {}
     if fitting.stretch(pick.kind, size, rests, own) is None:
-        raise ValueError("its place for things would have to be moved too far")
+        raise ValueError("its surface for objects would have to be moved too far")
     parts = tuple(_surface(library, entry, group.paint, pictures) for group in groups)
     licence = LICENCES[pick.library][0]
     model = Model(
@@ -151,7 +151,7 @@ def _picture(data: bytes, name: str) -> bytes:
 
     image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
     if image is None:
-        raise ValueError(f"{name} is no picture")
+        raise ValueError(f"{name} is not a picture")
     if image.ndim == 3 and image.shape[2] == 4:
         if float(np.mean(image[..., 3] < 128)) > _CLEAR:
             raise ValueError(f"{name} has see-through parts")

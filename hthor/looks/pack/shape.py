@@ -95,7 +95,7 @@ def _rest(field: Any, size: Vec3, place: Surface, own: Vec3, give: tuple[float, 
     least = (_LEAST * (x1 - x0), _LEAST * (y1 - y0))
     while not np.isfinite(height) or level[x0:x1, y0:y1].mean() < _HELD:
         if not np.isfinite(height) or x1 - x0 <= least[0] or y1 - y0 <= least[1]:
-            raise ValueError(f"too little of its '{place.name}' is level, so things would float or sink")
+            raise ValueError(f"too little of its '{place.name}' is level, so objects would float or sink")
         block = level[x0:x1, y0:y1]
         side = int(np.argmin([block[0].mean(), block[-1].mean(), block[:, 0].mean(), block[:, -1].mean()]))
         x0, x1, y0, y1 = x0 + (side == 0), x1 - (side == 1), y0 + (side == 2), y1 - (side == 3)

@@ -114,7 +114,7 @@ class Pack:
         path = self.folder / TEXTURES / name
         image = cv2.imdecode(np.frombuffer(self._checked(f"{TEXTURES}/{name}"), np.uint8), cv2.IMREAD_COLOR)
         if image is None:
-            raise PackError(f"{path} is no picture. Build the pack again: hthor assets build.")
+            raise PackError(f"{path} is not a picture. Build the pack again: hthor assets build.")
         return np.ascontiguousarray(image[..., ::-1])
 
     def check(self) -> None:
@@ -129,7 +129,9 @@ class Pack:
     def _checked(self, name: str) -> bytes:
         data = _read(self.folder / name)
         if hashlib.sha256(data).hexdigest() != self.contents.files.get(name):
-            raise PackError(f"{self.folder / name} is not as it was built. Build the pack again: hthor assets build.")
+            raise PackError(
+                f"{self.folder / name} was changed after it was built. Build the pack again: hthor assets build."
+            )
         return data
 
     @functools.cached_property
@@ -185,7 +187,7 @@ def overwritable(folder: Path) -> None:
         PackError: when it holds something else.
     """
     if folder.exists() and not (folder / LIST).is_file() and (folder.is_file() or any(folder.iterdir())):
-        raise PackError(f"{folder} is there and is no pack. Choose another folder with --out.")
+        raise PackError(f"{folder} exists and is not a furniture pack. Choose another folder with --out.")
 
 
 def installed() -> tuple[str, ...]:

@@ -112,8 +112,8 @@ def _together(first: Run, other: Run) -> None:
     for field, (one, two, words) in fields.items():
         if one != two:
             raise RunError(
-                f"{other.folder / 'run.json'}: {field} is not that of {first.folder / 'run.json'}: {words}. "
-                "A report is of one suite under one set of rules; give such runs a report each."
+                f"{other.folder / 'run.json'}: {field} differs from {first.folder / 'run.json'}: {words}. "
+                "A report covers one suite under one set of rules; make one report for each."
             )
 
 
@@ -123,7 +123,7 @@ def _distinct(found: Sequence[Run]) -> None:
         twin = seen.setdefault(one.plan.sha256, one)
         if twin is not one:
             raise RunError(
-                f"{twin.folder} and {one.folder} are the same run: their run.json say the same. Give it once."
+                f"{twin.folder} and {one.folder} are the same run: their run.json files are equal. Give it once."
             )
 
 

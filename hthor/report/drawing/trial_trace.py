@@ -98,9 +98,7 @@ def _path(log: EpisodeLog, seat: str) -> list[tuple[int, int, int]]:
         RunError: when the log does not say, as one that was changed by hand.
     """
     if not (path := log.paths.get(seat)):
-        raise RunError(
-            f"the trial's record has no path of '{seat}', so the trial cannot be drawn; 'hthor score' can do."
-        )
+        raise RunError(f"the trial's record has no path of '{seat}', so the trial cannot be drawn.")
     return path
 
 

@@ -94,8 +94,8 @@ def render_frames(
             done = stage.run(company, trial, world).record
         if _course(done) != _course(wanted):
             raise RunError(
-                f"{folder}: trial {wanted.key} went otherwise than it was logged, so its views would be of another "
-                "trial. An agent that does not repeat itself, or another machine, does that; 'hthor replay' draws it "
+                f"{folder}: trial {wanted.key} did not repeat as it was logged, so its views would show another "
+                "trial. The agent is not deterministic, or the machine is different; 'hthor replay' draws the trial "
                 "from its log alone."
             )
         activity.say(f"drawing what was seen in {folder.name}")

@@ -34,7 +34,7 @@ def draw_triplet(target: str, kinds: Set[str], root: int) -> Triplet:
     """
     first = next(triplets_in_random_order(target, kinds, root), None)
     if first is None:
-        raise ValueError(f"no reference of '{target}' is among {sorted(kinds)}")
+        raise ValueError(f"no reference object for '{target}' is among {sorted(kinds)}")
     return first
 
 

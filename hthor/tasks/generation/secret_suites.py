@@ -229,4 +229,4 @@ def check_salt_outside(path: Path, folder: Path) -> None:
         TaskError: when it is.
     """
     if path.resolve().is_relative_to(folder.resolve()):
-        raise TaskError(str(path), "$", f"the salt lies in {folder}, which will be published; keep it elsewhere")
+        raise TaskError(str(path), "$", f"the salt is in {folder}, which will be published; keep it elsewhere")

@@ -58,7 +58,7 @@ class CollaborativeCarrying(JobKind):
             if start and goal and LEAST_M <= carrying_way(house, start, goal.jobs[0]) <= MOST_M:
                 return goal, (start,)
         raise HthorError(
-            f"house '{house.id}' has no two rooms with floor enough to carry a trunk from one to the other"
+            f"house '{house.id}' has no two rooms with enough floor to carry a trunk from one to the other"
         )
 
     def progress(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec) -> float:

@@ -79,7 +79,7 @@ def create_salt(path: Path) -> None:
     try:
         handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
     except FileExistsError:
-        raise HthorError(f"{path} is there already, and a salt is never written over. Choose another name.") from None
+        raise HthorError(f"{path} exists, and a salt is never overwritten. Choose another name.") from None
     with os.fdopen(handle, "w", encoding="ascii") as file:
         file.write(secrets.token_hex(32) + "\n")
 
@@ -95,17 +95,17 @@ def read_salt(path: Path) -> Salt:
     try:
         text = path.read_text(encoding="ascii").strip()
     except UnicodeDecodeError:
-        raise HthorError(f"{path}: a salt is plain ASCII text, this is not. {advice}") from None
+        raise HthorError(f"{path}: a salt is plain ASCII text, but this is not. {advice}") from None
     except OSError as error:
         raise HthorError(f"{path}: the salt cannot be read: {error.strerror}. {advice}") from None
     if not text.isprintable():
-        raise HthorError(f"{path}: a salt is one line of text, this is more than one. {advice}")
+        raise HthorError(f"{path}: a salt is one line of text, but the file has several. {advice}")
     if len(text) < LEAST_CHARACTERS:
         problem = f"the salt has {len(text)} characters, at least {LEAST_CHARACTERS} are needed"
-        raise HthorError(f"{path}: {problem}: a short one can be found by trying. {advice}")
+        raise HthorError(f"{path}: {problem}: a short one can be guessed. {advice}")
     if estimate_bits(text) < LEAST_BITS:
         problem = f"the salt looks as if it held {estimate_bits(text):.0f} bits, at least {LEAST_BITS} are needed"
-        raise HthorError(f"{path}: {problem}: what repeats itself or is a simple word can be found by trying. {advice}")
+        raise HthorError(f"{path}: {problem}: a repetitive one or a simple word can be guessed. {advice}")
     return Salt(text)
 
 

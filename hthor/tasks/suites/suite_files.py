@@ -32,7 +32,7 @@ def find_sources(given: Sequence[str]) -> tuple[HouseSource, ...]:
 
     Raises:
         UnknownName, HouseError: as `hthor.houses.load`.
-        HthorError: when two have one name, or a file is called like a house of hthor's own.
+        HthorError: when two have one name, or a file has the name of one of hthor's own houses.
     """
     ours = {*houses.names(), *houses.names("unseen")}
     found = [HouseSource(given=one, file=None if one in ours else Path(one)) for one in given]
@@ -40,7 +40,7 @@ def find_sources(given: Sequence[str]) -> tuple[HouseSource, ...]:
     for number, (one, name) in enumerate(zip(found, names, strict=True)):
         if one.file is not None and name in ours:
             raise HthorError(
-                f"{one.given} is called like a house of hthor's own, '{name}'; give the file another name."
+                f"{one.given} has the name of one of hthor's own houses, '{name}'; give the file another name."
             )
         if name in names[:number]:
             raise HthorError(
@@ -97,7 +97,7 @@ def check_unused(out: Path) -> None:
     """
     for path in (out, out.with_suffix(".houses")) if out.suffix == ".json" else (out,):
         if path.exists() and (path.is_file() or any(path.iterdir())):
-            raise HthorError(f"{path} is there already. Choose another place with --out, or delete it.")
+            raise HthorError(f"{path} exists. Choose another path with --out, or delete it.")
 
 
 def _excerpt(own: Sequence[Path]) -> bytes:

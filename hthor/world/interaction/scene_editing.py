@@ -61,7 +61,7 @@ class SceneEditor:
             raise UnknownName("object", id, [one.id for one in self._objects])
         if item.held_by or item.bearers:
             who = " and ".join(item.bearers) or item.held_by
-            raise HthorError(f"{id} is in the hand of {who}; let it be placed or dropped first")
+            raise HthorError(f"{id} is in the hand of {who}; have it placed or dropped first")
         return item
 
     def _on(self, item: MovableObject, on: str, near: Vec3 | None, yaw: float) -> QPose:

@@ -84,4 +84,4 @@ def generate_valid_home(seed: int, rooms: int) -> ValidHome:
         refused += (finding for finding in findings if finding.severity == "error")
         attempt += 1
     found = f"seed {seed} gave no sound home of {rooms} rooms in {ATTEMPTS} attempts"
-    raise HthorError(f"{found}; of the last: {refused[-1]}. Take another seed")
+    raise HthorError(f"{found}; of the last: {refused[-1]}. Choose another seed")

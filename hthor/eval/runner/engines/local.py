@@ -32,7 +32,9 @@ class Engine:
     ) -> None:
         del gpus  # the jobs share the machine's GPU
         if address:
-            raise HthorError(f"--address {address}: the engine 'local' has none. Leave it out, or add --engine ray.")
+            raise HthorError(
+                f"--address {address}: the engine 'local' takes no address. Leave it out, or add --engine ray."
+            )
         self._jobs = jobs or len(os.sched_getaffinity(0))
         self._limit_s, self._clock, self._draining = limit_s, PausableClock(), False
 

@@ -223,5 +223,6 @@ def _compare(host: str, code: str, versions: dict[str, str]) -> None:
     names = [name for name in here if there.get(name) != here[name]]
     if different := [f"{name} is {there.get(name)} there and {here[name]} here" for name in names]:
         raise HthorError(
-            f"{host} of the Ray cluster is no match: {'; '.join(different)}. Install the same on all machines."
+            f"{host} of the Ray cluster does not match this machine: {'; '.join(different)}. Install the same on "
+            "all machines."
         )

@@ -91,5 +91,5 @@ def choose_spec(rooms: int, dice: Dice, name: str | None) -> RoomSpec:
     named = [spec for spec in fitting if spec.name == name]
     if not named:
         valid = ", ".join(spec.name for spec in fitting)
-        raise HthorError(f"the room spec '{name}' does not have {rooms} rooms; specs that have: {valid}")
+        raise HthorError(f"the room spec '{name}' does not have {rooms} rooms; specs that do: {valid}")
     return named[0]
