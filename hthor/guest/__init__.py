@@ -1,4 +1,4 @@
-"""A submitted agent runs in processes of its own and is never imported by the evaluation. Begin with `host.guest`.
+"""A submitted agent runs in separate processes and is never imported by the evaluation. Begin with `host.guest`.
 
 Packages are named by the process that their files run in::
 

@@ -1,7 +1,7 @@
-"""An agent's files with their hashes: listed when a run begins, and compared with the disk around every trial.
+"""Lists an agent's files with their hashes when a run begins, and compares them with the disk for every trial.
 
-The agent says which files it has opened. The host adds what the sources name and what the user made readable, and
-hashes all of it itself.
+The agent reports the files that it has opened. The host adds the files that its sources name and those that the user
+made readable, and computes all hashes itself.
 """
 
 import ast
@@ -26,7 +26,7 @@ _MOST_BYTES = 4 << 20
 _LONGEST = 300
 _WORD = re.compile(rb"[A-Za-z0-9_@+.~-][A-Za-z0-9_@+.~/-]{0,299}")
 _DEEPEST = 3
-"""Depth of nested folders whose names a source gives one by one."""
+"""Greatest depth of a file in nested folders that a source names one by one."""
 
 
 def list_files(
@@ -46,10 +46,10 @@ def list_files(
 
 
 def unlisted_files(names: Iterable[str], known: Manifest, paths: AgentPaths, agent: str = "") -> tuple[File, ...]:
-    """Files that an agent has opened and that are not in its manifest; ``agent`` is its own file.
+    """Files that an agent has opened and that are not in its manifest; ``agent`` is the path of its main file.
 
     Raises:
-        AgentError: when one of them cannot be read.
+        AgentError: when such a file cannot be read.
     """
     new = list(_real(set(names) - {file.path for file in known.files}, paths))
     hidden = _hidden(paths.root, agent) if new else []
@@ -57,10 +57,10 @@ def unlisted_files(names: Iterable[str], known: Manifest, paths: AgentPaths, age
 
 
 def check_unchanged(known: Manifest, paths: AgentPaths) -> None:
-    """Check that an agent's files are as they were when its run began.
+    """Check that an agent's files have not changed since its run began.
 
     Raises:
-        AgentError: names the first that is not.
+        AgentError: when a file has changed; the message names the first.
     """
     if known.claimed:
         return
@@ -76,7 +76,7 @@ def check_hashes(files: Iterable[File], paths: AgentPaths, *, since: str = "whil
     """Check these files against their hashes.
 
     Raises:
-        AgentError: names the first that is not.
+        AgentError: when a file has changed; the message names the first.
     """
     for file in files:
         path = paths.find(file.path)
@@ -89,7 +89,7 @@ def check_hashes(files: Iterable[File], paths: AgentPaths, *, since: str = "whil
 
 
 def change_message(path: str, what: str) -> str:
-    """The message to a user whose agent is not the one that a run began with."""
+    """The message to a user whose agent has changed since its run began."""
     return (
         f"{path} {what}. Change it back and repeat the command to finish this run, or evaluate the new version in a "
         "run of its own."
@@ -104,7 +104,7 @@ def _first(agent: AgentReference) -> list[Path]:
 
 
 def _real(names: Iterable[str], paths: AgentPaths) -> Iterator[Path]:
-    """The files with these names, without any that are not the agent's, whatever it claims."""
+    """The files with these names that belong to the agent; other names that it reports are ignored."""
     for name in sorted(set(names)):
         path = paths.find(name)
         if paths.name(str(path)) == name and path.is_file():
@@ -136,7 +136,7 @@ def _readable(paths: AgentPaths) -> Iterator[str]:
 
 
 def _hidden(folder: str, agent: str = "") -> list[str]:
-    """What isolation hides from every agent in a folder. It is no part of an agent, though at L1 it could be read."""
+    """Paths that isolation hides from every agent in a folder. They belong to no agent, even if L1 shows them."""
     return [str(path) for path in hidden_paths.hidden_below(Path(folder).resolve(), agent)] if folder else []
 
 
@@ -154,7 +154,7 @@ def _file(path: str, paths: AgentPaths) -> File:
 
 
 def referenced_files(first: Iterable[str], paths: AgentPaths) -> set[str]:
-    """These files, and every file of the agent's own that they name, and so on. All paths are absolute."""
+    """These files and the agent's own files that they name, directly or through other files, as absolute paths."""
     found: set[str] = set()
     left = sorted(set(first))
     while left:
@@ -185,14 +185,14 @@ def _named(path: str, paths: AgentPaths) -> Iterator[str]:
 
 
 def _python(data: bytes) -> tuple[set[str], set[tuple[int, str]]]:
-    """Strings in a source that can be names of files, and the modules that it imports anywhere, with their level."""
+    """Strings in a source that can be names of files, and all modules that it imports, with their import levels."""
     try:
         tree = ast.parse(data)
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return set(), set()
     words: set[str] = set()
     modules: set[tuple[int, str]] = set()
-    told = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}  # doc strings name no files
+    told = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}  # docstrings name no files
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             modules |= {(0, alias.name) for alias in node.names}
@@ -221,7 +221,7 @@ def _modules(level: int, name: str, folder: str, paths: AgentPaths) -> Iterator[
 
 
 def _files(words: Iterable[str], suffix: str, bases: Iterable[str], paths: AgentPaths) -> Iterator[str]:
-    """Files that are named, in these folders or in their subfolders that are named too."""
+    """Files among these words, in the folders ``bases`` or in subfolders of them that are also among the words."""
     usable = sorted(word for word in words if word and len(word) <= _LONGEST and "\0" not in word and "\n" not in word)
     folders = set(bases)
     tried: set[str] = set()

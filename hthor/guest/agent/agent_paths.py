@@ -17,10 +17,10 @@ class AgentPaths(Struct, frozen=True, kw_only=True):
     """The folders of an agent's files.
 
     Attributes:
-        root: the agent's folder, empty for none.
-        base: the part of it that is its own: all of it, or its own package among installed libraries.
-        apart: folders in it that are not its own: installed libraries, this package, caches.
-        readable: files and folders elsewhere that the user lets it read.
+        root: the agent's folder, empty if it has none.
+        base: the agent's part of ``root``: all of it, or its package or module among installed libraries.
+        apart: folders in ``root`` that are not the agent's: installed libraries, this package, caches.
+        readable: files and folders elsewhere that the user lets the agent read.
     """
 
     root: str
@@ -36,7 +36,7 @@ class AgentPaths(Struct, frozen=True, kw_only=True):
         return not any(part in _NEVER for part in parts) and not any(_below(path, folder) for folder in self.apart)
 
     def name(self, path: str) -> str | None:
-        """A path's name in the manifest; None for what is no part of the agent."""
+        """A path's name in the manifest; None if it is not part of the agent."""
         for place in (os.path.normpath(path), os.path.realpath(path)):
             if self.owns(place):
                 return os.path.relpath(place, self.root).replace(os.sep, "/")
@@ -62,7 +62,7 @@ def find_agent_paths(agent: AgentReference, readable: tuple[str, ...] = ()) -> A
         base = base if os.path.isdir(base) else f"{base}.py"
     strangers = [*_strangers(), os.path.join(root, "runs")]
     apart = [folder for folder in strangers if root and folder != root and _below(folder, root)]
-    if agent.words:  # a command may name files anywhere; if none are its own, it consists of the program
+    if agent.words:  # a command may name files anywhere; if none is its own, the agent is the program
         named = [str(path) for path in reference.own_files(agent.words)] or [agent.words[0]]
         readable += tuple(path for path in named if not (root and _below(path, root)))
     return AgentPaths(root=root, base=base, apart=tuple(sorted(set(apart))), readable=tuple(dict.fromkeys(readable)))

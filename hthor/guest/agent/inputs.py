@@ -26,7 +26,7 @@ def parse_arguments(texts: Iterable[str]) -> dict[str, str]:
     """The arguments that a user typed as ``key=value``; the path of a file that exists is made absolute.
 
     Raises:
-        HthorError: when one cannot be read, or a key is there twice.
+        HthorError: when a text is not ``key=value``, or a key is given twice.
     """
     found: dict[str, str] = {}
     for text in texts:
@@ -41,10 +41,10 @@ def parse_arguments(texts: Iterable[str]) -> dict[str, str]:
 
 
 def convert_arguments(cls: type[Any], given: Mapping[str, str]) -> dict[str, Any]:
-    """The arguments with values of the types of the constructor's parameters, by annotation or default.
+    """The arguments, converted to the types of the constructor's parameters (from annotations or defaults).
 
     Raises:
-        ArgumentMismatch: when the constructor has no such parameter, lacks one, or the value is of another type.
+        ArgumentMismatch: when an argument has no parameter, is missing, or cannot be converted.
     """
     try:
         parameters = dict(inspect.signature(cls).parameters)
@@ -71,7 +71,7 @@ def convert_arguments(cls: type[Any], given: Mapping[str, str]) -> dict[str, Any
 
 
 def make_factory(cls: type[Any], given: Mapping[str, str]) -> Callable[[], Any]:
-    """A function that makes a new agent with these arguments, which must fit."""
+    """A function that makes a new agent with these arguments, which must suit its constructor."""
     values = convert_arguments(cls, given)
     return lambda: cls(**values)
 
@@ -100,7 +100,7 @@ def as_options(given: Mapping[str, str]) -> tuple[str, ...]:
 
 
 class AgentInputs(Struct, frozen=True, kw_only=True):
-    """Arguments by their keys, and absolute paths of files and folders; a file among the arguments is readable too."""
+    """Arguments by key, and absolute paths of readable files and folders; a file in an argument is readable too."""
 
     args: dict[str, str] = {}
     readable: tuple[str, ...] = ()
@@ -129,7 +129,7 @@ def parse_inputs(args: Iterable[str] = (), readable: Iterable[Path | str] = ()) 
     """The inputs that a user typed.
 
     Raises:
-        HthorError: when an argument cannot be read, or there is no such file or folder.
+        HthorError: when an argument is not ``key=value``, or a file or folder does not exist.
     """
     places: list[str] = []
     for path in readable:
@@ -141,7 +141,7 @@ def parse_inputs(args: Iterable[str] = (), readable: Iterable[Path | str] = ()) 
         raise HthorError(f"--readable names two files or folders called '{twice[0]}'; rename one of them.")
     found = parse_arguments(args)
     folders = [place for place in places if os.path.isdir(place)]
-    for key, value in found.items():  # a folder without a slash could be any word
+    for key, value in found.items():  # a folder's name without a slash could be any word
         if os.path.isdir(value) and os.path.realpath(value) in folders:
             found[key] = os.path.realpath(value)
     return AgentInputs(args=found, readable=tuple(dict.fromkeys(places)))

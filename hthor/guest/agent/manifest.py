@@ -14,7 +14,7 @@ from hthor.errors import AgentError
 
 _Sign = tuple[int, int, int, int, int]
 _SETTLED_NS = 2_000_000_000
-"""A file that was written so recently may be written again without a change of its times."""
+"""[ns] A file changed within this time may change again without new timestamps."""
 _known: dict[str, tuple[_Sign, str]] = {}
 
 
@@ -35,12 +35,12 @@ class Manifest(Struct, frozen=True, kw_only=True):
 
     Attributes:
         name, source: as in `AgentRef`.
-        sha256: as in `AgentRef`: the hash of source, arguments, files and library; of a served agent, of its server's
+        sha256: as in `AgentRef`: the hash of source, arguments, files and library; for a served agent, of its server's
             description.
         args: the ``--agent-args``; files appear by their path in ``files``.
         files: sorted by path.
         library: hash of the modules of hthor that its files import, directly or not; empty without Python files.
-        claimed: whether this is only what the agent's server says.
+        claimed: whether the agent's server reports all this, unchecked.
     """
 
     name: str
@@ -61,7 +61,7 @@ def make_manifest(name: str, source: str, args: dict[str, str], files: Iterable[
 
 
 def differences(there: Iterable[File], here: Iterable[File]) -> list[str]:
-    """The differences between two lists of files, a few words for each."""
+    """The differences between two lists of files, as short phrases."""
     before, now = ({file.path: file.sha256 for file in files} for files in (there, here))
     words = []
     for path in sorted({*before, *now}):
@@ -94,7 +94,7 @@ def hash_file(path: Path) -> tuple[str, int]:
         OSError: when it cannot be read, or is not a file.
     """
     if path.exists() and not path.is_file():  # reading it might never end
-        raise OSError(errno.EINVAL, "it is no file")
+        raise OSError(errno.EINVAL, "it is not a file")
     with path.open("rb") as file:
         found = os.fstat(file.fileno())
         sign = (found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns, found.st_ctime_ns)

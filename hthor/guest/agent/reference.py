@@ -30,17 +30,17 @@ _ENV = ("/usr/bin/env", "/bin/env")
 
 
 class AgentReference(Struct, frozen=True, kw_only=True):
-    """An agent before anything of it runs.
+    """A submitted agent, as described before any of its code runs.
 
     Attributes:
         form: file, module, command or served.
-        text: names the same agent for another process of this machine, in any working folder.
+        text: a text that names the same agent for any process of this machine, in any working folder.
         source: its name in results, without folders of this machine.
-        name: its name, unless it gives another one.
-        path: the file that is imported or started; empty when it is served.
-        root: its own folder, which it may read; empty for none.
-        cls: the class to use, empty for the only one. module: its name, where it is imported by name.
-        words: the program and its arguments. url: of the server.
+        name: its name, unless the agent itself gives another name.
+        path: the file that is imported or started; empty for a served agent.
+        root: its own folder, which it may read; empty if it has none.
+        cls: the class to use, empty for the only one. module: the module's name if it is imported by name.
+        words: the program and its arguments. url: the server's address.
     """
 
     form: str
@@ -56,7 +56,7 @@ class AgentReference(Struct, frozen=True, kw_only=True):
 
     @property
     def sha256(self) -> str:
-        """Hash of its file, or of its command without folders and its files (else the program); empty when served.
+        """Hash of its file; of a command's words without folders, and its files or else its program; "" if served.
 
         Raises:
             AgentError: when a file cannot be read.
@@ -77,8 +77,8 @@ def parse_reference(text: str, cls: str | None = None) -> AgentReference:
     """Parse what a user typed.
 
     Raises:
-        UnknownName: when it has none of the forms.
-        AgentError: when it has one, but there is no such module, program or address.
+        UnknownName: when the text has none of the `FORMS`.
+        AgentError: when the module, program or address that it names does not exist.
     """
     if text.startswith("cmd:"):
         return _command(text)

@@ -1,1 +1,1 @@
-"""What runs in a trial's process, or in ``hthor agent serve``: loads the agent and runs trials with it."""
+"""Code of a trial's process and of ``hthor agent serve``: loads the agent and runs trials with it."""

@@ -1,7 +1,7 @@
 """Records which of its own files an agent opens, in the agent's own process.
 
-An agent can evade this, and libraries in C open files unseen. So the host hashes the files itself and adds those that
-the sources name; of a submission, everything that was handed in counts.
+An agent can evade this, and libraries in C open files unnoticed. So the host hashes the files itself and adds those
+that the sources name; for a submission, all submitted files count.
 """
 
 import errno
@@ -17,11 +17,11 @@ BATCH_BYTES = 16 << 10
 
 
 class UnprintableName(PermissionError):
-    """A file of the agent's own that it may not open, because no manifest can list its name."""
+    """The agent may not open this file of its own, because a manifest cannot list its name."""
 
 
 class FileRecorder:
-    """Every file of the agent's own that was opened for reading since `start`, each named once."""
+    """Records the agent's own files that are opened for reading after `start`, each once."""
 
     def __init__(self, paths: AgentPaths) -> None:
         self._paths = paths

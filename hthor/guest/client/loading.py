@@ -1,7 +1,7 @@
 """Imports an agent's file and finds its class.
 
-The agent's own modules are imported from their sources, never from compiled files beside them: those can be older, or
-of another source, so that what runs would not be what was hashed.
+The agent's own modules are imported from their sources, never from compiled files next to them: those can be outdated
+or come from other sources, so that other code would run than was hashed.
 """
 
 import importlib
@@ -52,7 +52,7 @@ def load_agent(order: wire.Load) -> tuple[type[Any], wire.Ready]:
     """The class in an agent's file or module, and its description of itself.
 
     Raises:
-        ContractViolation: when there is none, or it cannot be imported.
+        ContractViolation: when there is no agent class, or the file cannot be imported.
     """
     path = Path(order.path)
     module = _import(path, order)
@@ -115,7 +115,7 @@ def _by_file(path: Path) -> ModuleType:
 
 
 def _pick(module: ModuleType, path: Path, wanted: str) -> type[Any]:
-    """The class to use: the one asked for, the only one, or the one called Agent."""
+    """The class to use: the requested class, the only class, or the class called Agent."""
     found = {
         name: value
         for name, value in vars(module).items()

@@ -1,4 +1,4 @@
-"""What an agent reads of its robot's senses, asked for over the wire."""
+"""Lets an agent read its robot's senses, by requests to the host."""
 
 from collections.abc import Callable, Mapping
 from typing import Any, NoReturn, Protocol
@@ -27,7 +27,7 @@ class HostConnection(Protocol):
 
 
 class RemoteSenses:
-    """Asks the host for what the agent reads, each thing once; implements `hthor.types.Senses`.
+    """Requests readings from the host when the agent reads them, each once; implements `hthor.types.Senses`.
 
     Args:
         ahead: data that came with the observation.
@@ -47,7 +47,7 @@ class RemoteSenses:
         self._fresh = False
 
     def __getattr__(self, name: str) -> Callable[[], Any]:
-        """The sensor of that name."""
+        """The method that reads the sensor of this name."""
         if name not in READINGS:
             raise AttributeError(f"there is no sensor '{name}'; there are {', '.join(READINGS)}")
         return lambda: self._get(name)

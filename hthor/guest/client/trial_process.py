@@ -1,6 +1,6 @@
 """One trial's process: confines itself, then imports the agent's file and runs the trial.
 
-A submitted file is executed here and nowhere else, and nothing of it lasts: the next trial has another process.
+A submitted file is executed only here and leaves nothing behind: the next trial has a new process.
 """
 
 import os
@@ -32,8 +32,8 @@ def run_trials(awaited: Callable[[], GuestEnds | None], order: wire.Load, held: 
     """Run one trial, or, for an agent with ``persistent = True``, all of them.
 
     Args:
-        awaited: waits for the trial's pipes; None when none will come. Until then nothing is sent, and nothing of the
-            agent is read.
+        awaited: waits for the trial's pipes and returns them, or None when no trial follows. Before that, nothing is
+            sent and none of the agent's files is read.
         held: rules for files. first: whether to report how this process is confined, and what the agent is.
     """
     word = seccomp.new_token() if order.words and held is not None else b""
@@ -75,7 +75,7 @@ def run_trials(awaited: Callable[[], GuestEnds | None], order: wire.Load, held: 
 
 
 def _watched(order: wire.Load) -> FileRecorder | None:
-    """Record which files the agent opens from here on, and import its own modules from their sources alone."""
+    """Record which files the agent opens from now on, and import its own modules only from their sources."""
     if order.paths is None:
         return None
     loading.import_from_sources(order.paths)
@@ -85,7 +85,7 @@ def _watched(order: wire.Load) -> FileRecorder | None:
 
 
 def _taken(ends: GuestEnds) -> HostPipe:
-    """The pipes of this trial, with standard input and output of its own."""
+    """The messages of this trial; its output pipe becomes this process's standard output."""
     nothing = os.open(os.devnull, os.O_RDONLY)
     for handle, number in ((nothing, 0), (ends.printed, 1), (ends.printed, 2)):
         os.dup2(handle, number)
@@ -97,7 +97,7 @@ def _taken(ends: GuestEnds) -> HostPipe:
 
 
 def namespaces() -> dict[str, str]:
-    """The namespaces of this process that isolation is about."""
+    """The namespaces of this process that isolation separates."""
     if sys.platform != "linux":
         return {}
     return {name: os.readlink(f"/proc/self/ns/{name}") for name in ("net", "pid")}
@@ -107,7 +107,7 @@ NAMESPACES = namespaces()
 
 
 def _tidy_numba(scratch: str) -> None:
-    """Let numba read its cache, which agents may not change, and write none of this trial's code."""
+    """Let numba read its cache, which agents may not change, but store nothing from this trial."""
     if "numba" not in sys.modules:
         os.environ["NUMBA_CACHE_DIR"] = scratch
         return
@@ -120,15 +120,15 @@ def _tidy_numba(scratch: str) -> None:
 def exec_program(words: Sequence[str], folder: str, pipes: tuple[int, int], shared: int, word: bytes) -> NoReturn:
     """Replace this confined process by the agent's program, in any language.
 
-    It reads messages from standard input and writes them to standard output; standard error is its log.
+    The program reads messages from standard input and writes them to standard output; standard error is its log.
 
     Args:
-        words: the program and its arguments. folder: its working folder.
+        words: the program and its arguments. folder: the working folder.
         pipes: from the host and to it. shared: the shared memory for pictures, -1 for none.
         word: the token that the system call filter demands, empty where there is no filter.
 
     Raises:
-        Refused: when it cannot be started.
+        Refused: when the program cannot be started.
     """
     env = {name: value for name, value in os.environ.items() if name not in (*_OURS, shared_frames.VARIABLE)}
     read, write = (os.dup(handle) for handle in pipes)
@@ -154,7 +154,7 @@ def exec_program(words: Sequence[str], folder: str, pipes: tuple[int, int], shar
 def _has_compiled(folder: str) -> bool:
     """Whether the folder has compiled modules, which a Python program would use even if their sources have changed.
 
-    Then the program must compile all that it imports itself, which takes libraries about a second.
+    If so, the program is made to compile all its imports itself, which takes about a second for libraries.
     """
     for count, (_, inner, _) in enumerate(os.walk(folder)):
         if "__pycache__" in inner or count > _MOST_FOLDERS:

@@ -1,6 +1,6 @@
 """Serves a Python agent over WebSocket, for evaluations elsewhere; runs in the process of ``hthor agent serve``.
 
-Every connection gets agents of its own, but all share this process. Nothing is confined here: a user who serves an
+Every connection gets its own agents, but all share this process. Nothing is confined here: a user who serves an
 agent trusts it.
 """
 
@@ -57,18 +57,18 @@ class WebSocketConnection:
 
     def fail(self) -> NoReturn:
         """The host has broken the protocol."""
-        raise HostGone("not what was asked for")
+        raise HostGone("the host sent an unexpected message")
 
 
 def serve(text: str, host: str, port: int, given: AgentInputs | None = None) -> Server:
     """A server for an agent; call its ``serve_forever``.
 
     Args:
-        text: the agent, a Python file or module. port: 0 for any free one.
-        given: its arguments, and files beyond its own folder that count as its own.
+        text: the agent, a Python file or module. port: 0 for any free port.
+        given: its arguments, and files outside its folder that count as its own.
 
     Raises:
-        UnknownName, AgentError: when it is not such an agent, or cannot be loaded.
+        UnknownName, AgentError: when it is not a Python agent, or cannot be loaded.
         OSError: when the port is not available.
     """
     agent = reference.parse_reference(text)

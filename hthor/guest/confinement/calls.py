@@ -1,7 +1,7 @@
 """System calls of Linux on x86_64 by number: which ones a guest is denied, and which only seem to succeed.
 
-The filter in `seccomp` is assembled from these tables. Calls that are not listed are allowed, except the commands of
-`fcntl` and `ioctl`: of those only the listed ones are.
+The filter in `seccomp` is assembled from these tables. Calls that are not listed are allowed; but of `fcntl` and
+`ioctl`, only the listed commands are.
 """
 
 import signal
@@ -13,9 +13,9 @@ def _numbers(text: str) -> dict[str, int]:
 
 
 DENIED = {
-    # the network; a pair of connected streams stays, asyncio needs one: see SOCKETPAIR
+    # the network; a pair of connected streams is allowed, as asyncio needs one: see SOCKETPAIR
     **_numbers("socket 41, connect 42, accept 43, bind 49, listen 50, accept4 288"),
-    # other processes: starting, leaving the group, signalling, looking into, slowing down
+    # other processes: starting, signalling, inspecting or slowing them, and leaving the process group
     # (timer_create sends any signal, and all processes of a user share one limit of how many there are)
     **_numbers(
         "fork 57, vfork 58, execveat 322, setsid 112, setpgid 109, tkill 200, rt_sigqueueinfo 129, "
@@ -52,24 +52,24 @@ DENIED = {
     ),
 }
 SUPERVISOR_CALLS = ("fork", "vfork", "pidfd_open", "sched_setaffinity")
-"""Calls that the supervisor needs to start and watch processes, which it is not denied."""
+"""Calls that the supervisor may make, because it starts and watches processes."""
 ABSENT = {"clone3": 435, "memfd_create": 319, "mincore": 27, "cachestat": 451}
 """Reported as missing, so that libraries fall back: clone3 hides its flags behind a pointer, and the last two reveal
 which parts of a shared file have been read."""
 UNSUPPORTED = {"fallocate": 285}
-"""Reported as unsupported: libraries then write instead, which the limits see as it happens."""
+"""Reported as unsupported: libraries then write to the file instead, which the limits notice."""
 IGNORED = _numbers(
     "chmod 90, fchmod 91, fchmodat 268, fchmodat2 452, utime 132, utimes 235, futimesat 261, utimensat 280, "
     "flock 73, sync 162, syncfs 306, fadvise64 221"
 )
-"""Reported as done, and not done. Programs call these in good faith, but Landlock cannot restrict them: modes and times
-would stay, a lock on a file that two guests can read would be a channel between them, and others may notice that a file
-was dropped from memory."""
+"""Reported as done, but not done. Normal programs make these calls, but Landlock cannot restrict them: new modes and
+times would last, a lock on a file that two guests can read would be a channel between them, and others may notice that
+a file was dropped from memory."""
 
 CLONE, KILL, TGKILL, PRLIMIT, EXECVE = 56, 62, 234, 302, 59
-"""Allowed: threads, signals to itself except `FROM_OUTSIDE`, its own limits except `CPU_LIMITS`, one program."""
+"""Allowed only for threads, signals to itself but `FROM_OUTSIDE`, its own limits but `CPU_LIMITS`, one program."""
 FROM_OUTSIDE = frozenset({signal.SIGHUP, signal.SIGINT, signal.SIGQUIT, signal.SIGKILL, signal.SIGTERM})
-"""Signals by which only the machine or a person ends a process; its trial may then be repeated, so no guest can use
+"""Signals by which the machine or a person ends a process. Its trial may then be repeated, so guests cannot send
 them."""
 CPU_LIMITS = (0, 15)
 """RLIMIT_CPU and RLIMIT_RTTIME end a process with SIGKILL."""
@@ -79,10 +79,10 @@ SOCKETPAIR, AF_UNIX, SOCK_TYPE, SOCK_STREAM = 53, 1, 0xF, 1
 
 PRCTL = 157
 PRCTLS = (1, 4, 67)
-"""Refused: PR_SET_PDEATHSIG (it would outlive its parent), PR_SET_DUMPABLE (it shows in /proc), PR_SET_MEMORY_MERGE."""
+"""Refused: PR_SET_PDEATHSIG (could outlive its parent), PR_SET_DUMPABLE (visible in /proc), PR_SET_MEMORY_MERGE."""
 
 PREADV2, READ_FLAGS = 327, 5
-"""Its flags reveal whether a part of a file is cached, or drop it from the cache."""
+"""This call's flags reveal whether a part of a file is cached, or drop it from the cache."""
 MADVISE, COLD = 28, (12, 20, 21)
 """Advice whose effect others could notice: MADV_MERGEABLE, MADV_COLD, MADV_PAGEOUT. Reported as done."""
 
@@ -90,7 +90,7 @@ FCNTL = 72
 FCNTLS = (0, 1, 2, 3, 4, 5, 9, 11, 16, 17, 36, 1025, 1027, 1028, 1030, 1032, 1034)
 """Allowed: F_DUPFD, F_GETFD, F_SETFD, F_GETFL, F_SETFL, F_GETLK, F_GETOWN, F_GETSIG, F_GETOWN_EX, F_GETOWNER_UIDS,
 F_OFD_GETLK, F_GETLEASE, F_DUPFD_QUERY, F_CREATED_QUERY, F_DUPFD_CLOEXEC, F_GETPIPE_SZ, F_GET_SEALS. The others send
-signals, take leases, watch folders, or set what stays with a file or a pipe."""
+signals, take leases, watch folders, or make lasting changes to a file or a pipe."""
 FCNTL_LOCKS = (6, 7, 37, 38)
 """F_SETLK, F_SETLKW, F_OFD_SETLK, F_OFD_SETLKW: reported as done, like `flock`."""
 
@@ -99,7 +99,7 @@ IOCTLS = (0x5401, 0x802C542A, 0x540F, 0x5411, 0x5413, 0x541B, 0x5421, 0x5450, 0x
 """Allowed: TCGETS, TCGETS2, TIOCGPGRP, TIOCOUTQ, TIOCGWINSZ, FIONREAD, FIONBIO, FIONCLEX, FIOCLEX, FIOQSIZE and
 SIOCATMARK."""
 FILE_IOCTLS = (0x58, 0x66, 0x76, 0x94)
-"""Families of commands (the second byte) that set what stays with a file: flags, generation, whole blocks; refused to a
-guest with a GPU too, to which all others but `TERMINAL_IOCTLS` are allowed, as drivers have commands of their own."""
+"""Families of commands (the second byte) that make lasting changes to a file: flags, generation, whole blocks. A guest
+with a GPU may use all commands except these and `TERMINAL_IOCTLS`, as drivers have their own commands."""
 TERMINAL_IOCTLS = (0x5412, 0x8901, 0x8902)
 """TIOCSTI types into a terminal; FIOSETOWN and SIOCSPGRP make the kernel send signals."""

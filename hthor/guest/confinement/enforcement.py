@@ -1,6 +1,6 @@
 """Puts a process under a policy before it runs any code of an agent.
 
-Each layer is tested once it is on: a filter that lets something through must not pass for one that works.
+Each layer is tested after it is applied, so that a filter with gaps is not taken for one that works.
 """
 
 import os
@@ -31,9 +31,9 @@ def make_ruleset(policy: Policy) -> Ruleset | None:
 
 
 def confine_supervisor(policy: Policy) -> None:
-    """Confine the supervisor for good, before it imports what an agent names.
+    """Confine the supervisor permanently, before it imports the libraries that an agent names.
 
-    It may do what its agents may, and what it needs to start them, to watch them and to clean up after them.
+    It may do what its agents may do, and what it needs to start, watch and clean up after them.
 
     Raises:
         Refused: when it cannot be confined.
@@ -48,10 +48,10 @@ def confine_supervisor(policy: Policy) -> None:
 
 
 def confine_trial(policy: Policy, held: Ruleset | None, word: bytes = b"") -> None:
-    """Confine this process, which has dropped its privileges, to a policy for good.
+    """Confine this process, which has dropped its privileges, to a policy permanently.
 
     Args:
-        word: the token that lets it start a program, once; see `seccomp`. Empty when it may start none.
+        word: the token that lets it start a program, once; see `seccomp`. Empty if it may start none.
 
     Raises:
         Refused: when a layer cannot be applied, or does not work.

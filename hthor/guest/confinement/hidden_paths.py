@@ -1,4 +1,4 @@
-"""Finds what an agent may not read in its own folder: runs, logs, suites, populations, boards and salts of hthor.
+"""Finds files that an agent may not read in its own folder: runs, logs, suites, populations, boards and salts of hthor.
 
 They are recognized by their content, whatever their names and places. The search is bounded: folders that it did not
 reach are hidden as well.
@@ -16,9 +16,9 @@ _RUN = ("run.json", "trials.jsonl", "sessions.jsonl")
 """Any of these files, if it is hthor's, marks a folder that is hidden with everything in it."""
 _FAULTS = "faults"
 _OURS = re.compile(rb'"schema":\s?"hthor\.|"floorPolygon"|"sha256":\s?"[0-9a-f]{64}",\s?"version":\s?\d+,\s?"tasks":')
-"""In a document of hthor: a schema, the rooms of a house, the head of a suite."""
+"""Marks of hthor's documents: a schema, the rooms of a house, the head of a suite."""
 _LINE = re.compile(rb'"(human_sha256|rules_sha256)"|"check":"[0-9a-f]{8}"\}\n')
-"""In a line of a log."""
+"""Marks of a log's lines."""
 _SALT = re.compile(rb"[0-9a-f]{64}\s*")
 _SALT_BYTES = range(64, 68)
 _READ_BYTES, _ENTRIES_MAX, _BYTES_MAX = 1 << 18, 250_000, 1 << 28
@@ -30,7 +30,7 @@ _known: dict[tuple[str, str], tuple[float, tuple[Path, ...]]] = {}
 def hidden_below(root: Path, agent: str = "") -> tuple[Path, ...]:
     """Files and folders below ``root`` that no agent may read.
 
-    In the folders that contain the file ``agent``, its own, only hthor's files are hidden.
+    In the folders that contain ``agent``, the agent's own file, only hthor's files are hidden.
     """
     key, now = (str(root), agent), time.monotonic()
     if key not in _known or now - _known[key][0] > _FRESH_S:
@@ -80,7 +80,7 @@ class _Walk:
                     left.append(Path(one.path))
 
     def _is_ours(self, entry: os.DirEntry[str]) -> bool:
-        """Whether a file is one of hthor that no agent may read."""
+        """Whether this is one of hthor's files that no agent may read."""
         try:
             if entry.name.endswith((".json", ".jsonl")):
                 pattern = _OURS if entry.name.endswith(".json") else _LINE

@@ -5,15 +5,15 @@ from msgspec import Struct
 from hthor.errors import HthorError, UnknownName
 
 LEVELS = ("L1", "L2", "L3")
-"""From weak to strong: a process; plus Landlock and seccomp; plus namespaces."""
+"""From weak to strong: a separate process; Landlock and seccomp too; namespaces too."""
 SERVED = "served"
-"""In place of a level: the agent runs elsewhere, where its confinement is unknown."""
+"""Stands for a level when the agent runs elsewhere, where its confinement is unknown."""
 AUTO = "auto"
 """The strongest level that starts on the machine."""
 
 
 class IsolationError(HthorError):
-    """A level of isolation that was asked for does not start on this machine."""
+    """The requested level of isolation does not start on this machine."""
 
     exit_code = 5
 
@@ -25,10 +25,10 @@ class Isolation(Struct, frozen=True, kw_only=True):
         level: one of `LEVELS`, or "served" for an agent that runs elsewhere.
         landlock_abi: version of Landlock in force, 0 for none.
         seccomp: whether system calls are filtered.
-        netns: whether it has a network of its own, an empty one.
-        pidns: whether it sees no processes but its own.
+        netns: whether it has its own, empty network.
+        pidns: whether it sees only its own processes.
         memory: how much memory it may use, and how that is enforced.
-        reason_not_higher: why the next level did not start, or that it was not asked for; empty at the highest.
+        reason_not_higher: why the next level did not start, or that this level was requested; empty at L3.
     """
 
     level: str
@@ -40,7 +40,7 @@ class Isolation(Struct, frozen=True, kw_only=True):
     reason_not_higher: str = ""
 
     def __post_init__(self) -> None:
-        """Refuse an unknown level, also one that is read from a file.
+        """Check the level, also of a record that is read from a file.
 
         Raises:
             ValueError: when there is no such level.
@@ -53,7 +53,7 @@ def check_level(level: str, *, auto: bool = True) -> str:
     """The level itself, if it exists.
 
     Raises:
-        UnknownName: when there is none.
+        UnknownName: when there is no such level.
     """
     valid = (AUTO, *LEVELS) if auto else LEVELS
     if level not in valid:
@@ -72,10 +72,10 @@ class Policy(Struct, frozen=True, kw_only=True):
 
     Attributes:
         level: one of `LEVELS`.
-        read: files and folders that it may read. listed: folders of which it may read the names only.
+        read: files and folders that it may read. listed: folders in which it may only list names.
         scratch: the folder that it may write to; emptied after each trial.
         memory_mb: memory that it may use. disk_mb: how much it may write in a trial.
-        execute: whether it is a program, which is started once it is confined; readable files may then be executed.
+        execute: whether it is a program, started after confinement; it may then execute readable files.
         devices: devices beyond the common ones, such as GPUs.
         compiled: folder where the supervisor keeps compiled code, which agents may only read; may be empty.
     """

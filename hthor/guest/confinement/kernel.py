@@ -29,7 +29,7 @@ def syscall(what: str, number: int, *values: Any) -> int:
 
 
 def prctl(what: str, option: int, *values: Any) -> None:
-    """Call prctl; like `syscall`."""
+    """Call prctl; ``what`` and errors as for `syscall`."""
     padded = (*values, 0, 0, 0, 0)[:4]
     if _library().prctl(ctypes.c_int(option), *(_wide(value) for value in padded)) < 0:
         raise Refused(f"{what}: {os.strerror(ctypes.get_errno())}")

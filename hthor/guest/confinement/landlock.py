@@ -1,8 +1,8 @@
-"""Which files a process may open, enforced by the kernel's Landlock.
+"""Restricts the files that a process may open, by the kernel's Landlock.
 
-What no rule allows is denied, for this process and all that it starts, permanently. From ABI version 4 on TCP is
-denied too, from version 6 on signals and abstract sockets to processes outside. Whether a file exists, and its size,
-can still be asked.
+Access that no rule allows is denied permanently to this process and all that it starts. From ABI version 4 on, TCP is
+denied too; from version 6 on, also signals and abstract sockets to processes outside. A process can still find out
+whether a file exists, and its size.
 """
 
 import ctypes
@@ -39,7 +39,7 @@ class Ruleset:
 
     Args:
         read: files and folders that may be read, folders with everything in them.
-        listed: folders of which only the names may be read.
+        listed: folders in which only names may be listed.
         write: folders that may be changed. devices: files that may be read and written.
         driven: devices that also take ioctl commands. execute: whether readable files may be executed.
 
@@ -75,7 +75,7 @@ class Ruleset:
                 self._allow(path, rights)
 
     def apply(self) -> None:
-        """Apply the rules to this process, which must have a single thread, for good."""
+        """Apply the rules permanently to this process, which must have a single thread."""
         kernel.syscall("putting on Landlock rules", _RESTRICT, self._handle, 0)
 
     def close(self) -> None:

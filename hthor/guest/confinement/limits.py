@@ -1,4 +1,4 @@
-"""Resource limits, dropped privileges, and what a process uses."""
+"""Resource limits, dropped privileges, and resource use of processes."""
 
 import contextlib
 import ctypes
@@ -19,7 +19,7 @@ _HELD = ("VmRSS", "VmPTE", "VmSwap")
 
 
 def die_with(parent: int) -> None:
-    """End when the parent ends; 0 if bubblewrap takes care of that."""
+    """Make this process end when ``parent`` ends; with 0, bubblewrap does that."""
     if sys.platform == "linux":
         kernel.prctl("dying with the parent", kernel.PR_SET_PDEATHSIG, int(signal.SIGKILL))
     if parent and os.getppid() != parent:
@@ -33,7 +33,7 @@ def make_undumpable() -> None:
 
 
 def drop_privileges() -> None:
-    """Give up every privilege for good, root's too; write no core files, and be the first to go for memory."""
+    """Give up every privilege permanently; write no core files, and be the first to be killed when memory runs out."""
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     if sys.platform != "linux":
         return
@@ -49,7 +49,7 @@ def drop_privileges() -> None:
 
 
 def set_limits(memory_mb: int, disk_mb: int, *, processes: bool) -> None:
-    """Limit memory (0: no limit, as a GPU maps more than any), files and, where it may start any, processes."""
+    """Limit memory (0: no limit, since a GPU maps more than any), files, and ``processes`` if it may start any."""
     if memory_mb:
         _lower(resource.RLIMIT_DATA, memory_mb << 20)
     _lower(resource.RLIMIT_FSIZE, disk_mb << 20)

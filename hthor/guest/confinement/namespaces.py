@@ -16,7 +16,7 @@ _OWN = ("/proc/", "/dev/")
 
 
 def unavailable() -> str:
-    """Why bubblewrap is not available, empty when it is."""
+    """Why bubblewrap is not available; empty if it is available."""
     return "" if shutil.which("bwrap") else f"bubblewrap is not installed. {_HELP}"
 
 

@@ -1,7 +1,7 @@
-"""Which files of the machine a guest may read, as a list.
+"""Lists the files of the machine that a guest may read.
 
-Landlock and bubblewrap only know rules that allow. So a folder that contains something hidden is not listed itself; its
-other members are, one by one.
+Landlock and bubblewrap only have rules that allow access. So a folder that contains something hidden is not listed
+itself; its other members are listed one by one.
 """
 
 import os
@@ -14,7 +14,7 @@ from hthor.guest.confinement import hidden_paths
 
 PACKAGE = Path(__file__).resolve().parents[2]
 _OURS = ("types", "geometry", "guest", "agents", "navigation", "comms", "catalog", "houses/space", "houses/checks")
-"""Parts of this package that agents are made with; tasks, humans, worlds, evaluation and the houses are hidden."""
+"""Parts of this package that agents may use; tasks, humans, worlds, evaluation and the houses are hidden."""
 _LIBRARIES = ("site-packages", "dist-packages")
 _SYSTEM = ("/usr", "/bin", "/lib", "/lib64", "/lib32", "/etc/ld.so.cache", "/etc/localtime", "/etc/ssl")
 _FACTS = ("/sys/devices/system/cpu", "/proc/cpuinfo", "/proc/meminfo")
@@ -69,7 +69,7 @@ def _ours() -> Iterable[Path]:
 
 
 def _open(root: Path, secret: Sequence[Path]) -> list[str]:
-    """The folder, or as much of it as can be listed without what is secret."""
+    """The folder, or its members that contain no ``secret`` path."""
     real = root.resolve()
     if any(real.is_relative_to(hidden) for hidden in secret):
         return []

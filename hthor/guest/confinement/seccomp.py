@@ -1,6 +1,6 @@
-"""Which system calls a process may make, as a seccomp filter assembled by hand.
+"""Restricts the system calls of a process, by a seccomp filter assembled by hand.
 
-Calls that are not listed are allowed, so a new kernel may have new ones. The numbers are those of x86_64; on another
+Calls that are not listed are allowed, also those of newer kernels. The numbers are those of x86_64; on another
 machine the filter refuses to be installed.
 
 A process can be allowed to start one program, which stays confined: `exec_with_token` passes a token that the filter
@@ -30,11 +30,11 @@ _UNREAD = 3
 _WORD = struct.Struct("<3Q")
 
 Line = tuple[int, int, int, int]
-"""An instruction: what to do, where to go on if so and if not, and a value."""
+"""An instruction: operation, lines to skip if it is true and if false, and a value."""
 
 
 def unavailable() -> str:
-    """Why there can be no filter on this machine, empty when there can."""
+    """Why a filter is impossible on this machine; empty if it is possible."""
     machine = platform.machine()
     return "" if machine == "x86_64" else f"the system call filter is written for x86_64, this machine is {machine}"
 
@@ -48,29 +48,29 @@ def exec_with_token(words: Sequence[str], env: Mapping[str, str], word: bytes) -
     """Replace this process by another program.
 
     Raises:
-        Refused: when it cannot be started.
+        Refused: when the program cannot be started.
     """
     argv = (ctypes.c_char_p * (len(words) + 1))(*map(os.fsencode, words), None)
     envp = (ctypes.c_char_p * (len(env) + 1))(*(os.fsencode(f"{name}={value}") for name, value in env.items()), None)
     kernel.syscall(f"starting {words[0]}", calls.EXECVE, os.fsencode(words[0]), argv, envp, *_WORD.unpack(word))
-    raise Refused(f"starting {words[0]}: nothing came of it")
+    raise Refused(f"starting {words[0]}: the kernel did not run it")
 
 
 def install_filter(me: int, word: bytes = b"", *, driven: bool = False) -> None:
-    """Filter this process's system calls for good. It needs no_new_privs, and a single thread.
+    """Filter this process's system calls permanently. It must have no_new_privs set, and a single thread.
 
     Args:
-        me: its process id, the only one that it may signal. word: what lets it start a program, empty for nothing.
-        driven: whether it talks to drivers, such as a GPU's, whose commands nobody can list.
+        me: its process id, the only one that it may signal. word: the token to start a program, or empty.
+        driven: whether it uses drivers, such as a GPU's, whose commands cannot be listed.
 
     Raises:
-        Refused: when it cannot be.
+        Refused: when the filter cannot be installed.
     """
     load_filter(filter_program(me, word, driven=driven))
 
 
 def install_supervisor_filter(*, execute: bool) -> None:
-    """Filter the supervisor's calls, as `install_filter`; it starts and watches confined processes, but no program."""
+    """Filter the supervisor's calls, as `install_filter`; it may also fork, and start programs if ``execute``."""
     needed = (*calls.SUPERVISOR_CALLS, *(["execve"] if execute else []))
     refused = {**calls.DENIED, "execve": calls.EXECVE}
     lines = [_on(number, [_no(errno.EPERM)]) for name, number in refused.items() if name not in needed]
@@ -78,7 +78,7 @@ def install_supervisor_filter(*, execute: bool) -> None:
 
 
 def load_filter(code: bytes) -> None:
-    """Put a filter's instructions on this process for good; errors as of `install_filter`."""
+    """Apply a filter's instructions to this process permanently; errors as for `install_filter`."""
     if reason := unavailable():
         raise Refused(reason)
     text = ctypes.create_string_buffer(code, len(code))
@@ -87,7 +87,7 @@ def load_filter(code: bytes) -> None:
 
 
 def filter_program(me: int, word: bytes = b"", *, driven: bool = False) -> bytes:
-    """The filter's instructions; arguments as `install_filter`."""
+    """The filter's instructions; arguments as for `install_filter`."""
     refuse = _no(errno.EPERM)
     answers = {
         errno.EPERM: calls.DENIED,
@@ -116,7 +116,7 @@ def filter_program(me: int, word: bytes = b"", *, driven: bool = False) -> bytes
 
 
 def _begin() -> list[Line]:
-    """End processes that call in another way than x86_64 programs do; then load the call's number."""
+    """End processes whose calls are not those of x86_64 programs; then load the call's number."""
     lines = [(_LOAD, 0, 0, _MACHINE), (_EQUAL, 1, 0, _ARCH), (_RETURN, 0, 0, _KILL)]
     return [*lines, (_LOAD, 0, 0, _NUMBER), (_AT_LEAST, 0, 1, _X32), (_RETURN, 0, 0, _KILL)]
 
@@ -148,7 +148,7 @@ def _commands(driven: bool) -> list[Line]:
 
 
 def _spoken(word: bytes, refuse: Line) -> list[Line]:
-    """Allow a call whose last three arguments are this word."""
+    """Allow a call whose last three arguments are this token."""
     lines: list[Line] = []
     for index, (half,) in enumerate(struct.iter_unpack("<I", word)):
         lines += [(_LOAD, 0, 0, 16 + 8 * _UNREAD + 4 * index), (_EQUAL, 1, 0, half), refuse]
@@ -168,10 +168,10 @@ def _argument(index: int) -> Line:
 
 
 def _on(value: int, lines: list[Line]) -> list[Line]:
-    """Lines that apply only where the loaded word has this value."""
+    """Instructions that apply only if the loaded word has this value."""
     return [(_EQUAL, 0, len(lines), value), *lines]
 
 
 def _any(values: Iterable[int], answer: Line) -> list[Line]:
-    """One answer wherever the loaded word has one of these values."""
+    """Give this answer if the loaded word has any of these values."""
     return [line for value in values for line in _on(value, [answer])]

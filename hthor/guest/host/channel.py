@@ -1,6 +1,6 @@
 """Messages to and from a guest, each with a deadline.
 
-Any failure ends the guest and is a `GuestFault`, which is explained where isolation caused it.
+Any failure ends the guest and raises a `GuestFault`, with an explanation if isolation caused it.
 """
 
 import os
@@ -32,7 +32,7 @@ class GuestFault(Exception):
             or not_finite.
         detail: what happened; for "raised" the traceback of the agent's own frames.
         traceback: the same traceback, empty for the other kinds.
-        log: the end of what the agent printed.
+        log: the last part of the agent's output.
     """
 
     def __init__(self, kind: str, detail: str, traceback: str = "", log: str = "") -> None:
@@ -54,17 +54,17 @@ class Transport(Protocol):
 
     @property
     def pid(self) -> int:
-        """The first of its processes on this machine, 0 when there is none."""
+        """The id of the guest's first process on this machine, 0 when there is none."""
 
     @property
     def log(self) -> str:
-        """The end of what it printed; empty where that is not known."""
+        """The last part of the guest's output; empty if unknown."""
 
     def write(self, body: bytes, end: float) -> None:
         """Send a message before a moment of the monotonic clock.
 
         Raises:
-            DeadlinePassed, PeerGone: when it cannot.
+            DeadlinePassed, PeerGone: when it cannot be sent.
         """
 
     def read(self, most: int, end: float) -> tuple[bool, bytes | int]:
@@ -74,14 +74,14 @@ class Transport(Protocol):
             Whether it comes from the supervisor, and its bytes, or only its size if that is more than ``most``.
 
         Raises:
-            DeadlinePassed, PeerGone: when there is none.
+            DeadlinePassed, PeerGone: when no message arrives.
         """
 
     def end_reason(self) -> tuple[str, str]:
-        """How it ended: a fault's kind and description."""
+        """How the guest ended: a fault's kind and description."""
 
     def kill(self) -> None:
-        """End it."""
+        """End the guest."""
 
 
 class MessageChannel:
@@ -89,7 +89,7 @@ class MessageChannel:
 
     Attributes:
         transport: None once the guest has ended.
-        loaded: whether the agent is loaded; from then on a message that it failed is a fault.
+        loaded: whether the agent is loaded; after that, a ``Failed`` message is a fault.
         opened: the files that the guest has reported as opened.
     """
 
@@ -107,10 +107,10 @@ class MessageChannel:
         """Send a message within ``seconds``; returns the seconds that are left.
 
         Args:
-            allowed: the whole time allowed, as a fault describes it, where ``seconds`` is only the rest of it.
+            allowed: the whole time allowed, in words for a fault, if ``seconds`` is only the rest of it.
 
         Raises:
-            GuestFault: when it is not received in time.
+            GuestFault: when the guest does not receive it in time.
         """
         body = wire.encode(message)
         end = time.monotonic() + seconds
@@ -153,13 +153,13 @@ class MessageChannel:
         return message, max(0.0, end - time.monotonic())
 
     def wrong(self, what: str, answer: object) -> GuestFault:
-        """End the guest; the fault of a message that is not expected here."""
+        """End the guest, and return the fault for an unexpected message."""
         if isinstance(answer, wire.Over):
             return self.fault("died", f"its process ended before it had answered {what}")
         return self.fault("garbage", f"{what} was answered by {type(answer).__name__}")
 
     def fault(self, kind: str, detail: str, traceback: str = "") -> GuestFault:
-        """End the guest; the fault to raise."""
+        """End the guest, and return the fault to raise."""
         log = self.log
         self.close()
         kind = kind if kind in wire.FAULTS else "garbage"
@@ -167,11 +167,11 @@ class MessageChannel:
 
     @property
     def log(self) -> str:
-        """The end of what the guest printed."""
+        """The last part of the guest's output."""
         return self._log if self.transport is None else self.transport.log
 
     def release(self) -> None:
-        """Let go of the transport without ending the guest, which is another's now."""
+        """Give up the transport without ending the guest, which has another user now."""
         if self.transport is not None:
             self._log, self.transport = self.transport.log, None
 
@@ -189,7 +189,7 @@ class MessageChannel:
 
 
 def explain_fault(fault: GuestFault, policy: Policy, root: str) -> GuestFault:
-    """The fault, with one more sentence where isolation is the reason."""
+    """The fault, with a sentence of explanation if isolation caused it."""
     more = isolation_reason(fault.detail, policy, root) if fault.kind == "raised" else ""
     if not more:
         return fault
@@ -197,7 +197,7 @@ def explain_fault(fault: GuestFault, policy: Policy, root: str) -> GuestFault:
 
 
 def isolation_reason(text: str, policy: Policy, root: str) -> str:
-    """One sentence on how isolation caused a failure; empty where it did not.
+    """One sentence on how isolation caused a failure; empty if it did not.
 
     Args:
         text: the error message, with its traceback if there is one. root: the agent's folder.
@@ -238,6 +238,6 @@ def _paths(said: str, root: str) -> Iterator[Path]:
 
 
 def _shown(path: Path, policy: Policy) -> bool:
-    """Whether the agent may read it."""
+    """Whether the agent may read this path."""
     real = path.resolve()
     return any(one.is_relative_to(place) for one in (path, real) for place in (*policy.read, policy.scratch))

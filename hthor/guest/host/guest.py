@@ -24,13 +24,13 @@ _IDLE_AGENT = paths.PACKAGE / "agents" / "silent.py"
 def load_info(
     path: str | Path, cls: str | None = None, *, config: GuestConfig | None = None, start_s: float = 60.0
 ) -> GuestInfo:
-    """Start an agent, and say what it is. Arguments and errors are those of `Guest` and `Guest.load`."""
+    """Start an agent, and return its description. Arguments and errors are those of `Guest` and `Guest.load`."""
     with Guest(path, cls, config=config, start_s=start_s) as guest:
         return guest.load()
 
 
 def in_force(level: str = AUTO) -> Isolation:
-    """What confines a guest on this machine, found out by starting an agent that does nothing.
+    """How a guest is confined on this machine, found by starting an agent that does nothing.
 
     Args:
         level: "L1", "L2", "L3", or "auto" for the strongest that starts.
@@ -49,19 +49,19 @@ class Guest:
     Args:
         path: the agent, as `reference.parse_reference` reads it: a file, a module, a command or an address.
         cls: the class to use when the file has several.
-        start_s: seconds to start, and again for every ``begin``.
-        step_s: seconds for each ``act``, without the time that the host takes to answer (rendering).
-        bank_s: seconds by which all the ``act`` of a trial together may take longer than that.
-        config: how it is isolated and what it is given. An agent that is served elsewhere is not isolated at all.
-        pool: idle processes to use, and where to leave this one's; without one it ends when the guest is closed.
-        memory_mb: the memory it may use. disk_mb: how much it may write in a trial.
+        start_s: seconds allowed to start the agent, and as many for every ``begin``.
+        step_s: seconds allowed for each ``act``, without the time that the host takes to answer it (rendering).
+        bank_s: extra seconds that all ``act`` calls of a trial may use together beyond ``step_s``.
+        config: how the agent is isolated, and its inputs. An agent that is served elsewhere is not isolated at all.
+        pool: keeps idle processes, also this guest's when it is closed; without a pool, that process ends then.
+        memory_mb: the memory that it may use. disk_mb: how much it may write in a trial.
 
     Attributes:
-        reference: which agent it is. inputs: what it is given. paths: where its own files are.
+        reference: which agent it is. inputs: the inputs it is given. paths: where its own files are.
 
     Raises:
         UnknownName, AgentError: when ``path`` names no agent.
-        HthorError: when it cannot be given that.
+        HthorError: when it cannot be given its inputs.
     """
 
     def __init__(
@@ -101,9 +101,9 @@ class Guest:
         """Start the agent, unless it runs already.
 
         Raises:
-            Unreachable: when it is served, and the server is not there.
+            Unreachable: when it is served elsewhere and the server does not answer.
             AgentError: when its file is missing, does not compile, cannot be imported in time, or has no agent class.
-            IsolationError: when the level that was asked for does not start.
+            IsolationError: when the requested level does not start.
         """
         if self._channel.transport is None or self._info is None:
             self._info = None
@@ -136,7 +136,7 @@ class Guest:
             answer, left = channel.receive(self._start_s)
         except GuestFault as fault:
             raise self._explained(fault) from None
-        if isinstance(answer, wire.Ready) and self.reference.words:  # a program says so whenever it is started
+        if isinstance(answer, wire.Ready) and self.reference.words:  # a program sends Ready whenever it is started
             answer, _ = channel.receive(left, f"{self._start_s:g} s")
         if not isinstance(answer, wire.Done):
             raise channel.wrong("begin", answer)
@@ -156,7 +156,7 @@ class Guest:
             raise self._explained(fault) from None
 
     def finish(self) -> None:
-        """End the trial; its process ends while the caller goes on. Calling this is optional."""
+        """End the trial; its process ends in the background. Calling this is optional."""
         self._unpin()
         exchange, self._exchange = self._exchange, None
         if exchange is not None and self._channel.transport is not None:
@@ -179,12 +179,12 @@ class Guest:
 
     @property
     def pid(self) -> int:
-        """The first of its processes, 0 when there is none."""
+        """The id of its first process, 0 when there is none."""
         return self._channel.transport.pid if self._channel.transport is not None else 0
 
     @property
     def log(self) -> str:
-        """The end of what the agent printed, 16 KiB at most."""
+        """The last 16 KiB, at most, of the agent's output."""
         return self._channel.log
 
     def __enter__(self) -> Guest:
@@ -195,12 +195,12 @@ class Guest:
 
     def __del__(self) -> None:
         if getattr(self, "_channel", None) is not None:
-            with contextlib.suppress(Exception):  # the interpreter may be half gone
+            with contextlib.suppress(Exception):  # the interpreter may be shutting down
                 self._unpin()
                 self._channel.close()
 
     def _explained(self, fault: GuestFault) -> GuestFault:
-        """The fault, with an explanation where isolation caused it."""
+        """The fault, with an explanation if isolation caused it."""
         policy = self._startup.policy
         return explain_fault(fault, policy, self.reference.root) if policy else fault
 

@@ -1,7 +1,7 @@
 """What the guests of one worker share: idle processes, and isolation levels that did not start on this machine.
 
-Starting a process takes longer than many trials. An idle one is reused only for the very same agent and settings, and
-only where each trial has a process of its own anyway, so that nothing is carried over.
+Starting a process takes longer than many trials. An idle process is reused only for the same agent and settings, and
+only if each trial gets its own process anyway, so that nothing is carried over.
 """
 
 import weakref
@@ -17,7 +17,7 @@ Key = tuple[object, ...]
 
 
 class IdleGuest(Struct, frozen=True, kw_only=True):
-    """A guest's process between two users, and what its agent said of itself."""
+    """A guest's process that waits for its next user, and its agent's description of itself."""
 
     process: GuestProcess
     info: GuestInfo
@@ -27,7 +27,7 @@ class IdleGuest(Struct, frozen=True, kw_only=True):
 class GuestPool:
     """Idle guests of one owner, ``most`` at most; they end with the pool.
 
-    ``unavailable`` holds levels of isolation that did not start, with the reason; they are not tried again.
+    ``unavailable`` maps levels of isolation that did not start to the reason; they are not tried again.
     """
 
     def __init__(self, most: int = _MOST) -> None:
@@ -37,7 +37,7 @@ class GuestPool:
         weakref.finalize(self, _end, self._idle)
 
     def put(self, key: Key, guest: IdleGuest) -> bool:
-        """Keep a guest that has no trial; False when it is not to be kept."""
+        """Keep a guest that has no trial; False when the pool does not keep it."""
         if not self._most or guest.info.persistent or not guest.process.lives:
             return False
         guest.process.count_cpu()

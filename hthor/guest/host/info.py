@@ -1,4 +1,4 @@
-"""What the agents of a run are given, and what an agent says it is, as records."""
+"""Records of what the agents of a run are given, and of how an agent describes itself."""
 
 import hashlib
 import math
@@ -16,7 +16,7 @@ from hthor.guest.protocol.wire import is_printable_name, sanitize_text
 
 
 class GuestConfig(Struct, frozen=True, kw_only=True):
-    """What holds for every guest of a run; it travels to the workers with everything else they need.
+    """Settings of every guest of a run; the workers receive them with everything else that they need.
 
     Attributes:
         isolation: "L1", "L2", "L3", or "auto" for the strongest level that starts on this machine.
@@ -38,14 +38,14 @@ class GuestConfig(Struct, frozen=True, kw_only=True):
 
 
 class GuestInfo(Struct, frozen=True, kw_only=True):
-    """What an agent says it is.
+    """An agent's description of itself.
 
     Attributes:
-        sha256: hash of its file alone (its `Manifest` lists the rest); of a served agent, hash of all that its server
+        sha256: hash of its file alone (its `Manifest` lists the rest); for a served agent, of all that its server
             says, ``manifest`` included.
-        robots: the bodies it is made for, empty for any. absent: whether there is no robot at all.
-        persistent: whether one process serves all its trials. gpus: the share of a GPU it asks for.
-        isolation: how it was confined while it was asked.
+        robots: the bodies that it is made for, empty for any. absent: whether there is no robot at all.
+        persistent: whether one process serves all its trials. gpus: the share of a GPU that it needs.
+        isolation: how it was confined when it gave this description.
     """
 
     name: str

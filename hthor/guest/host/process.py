@@ -1,4 +1,4 @@
-"""A guest's process as the host sees it: its pipes, what it prints, and its end."""
+"""A guest's process as the host sees it: its pipes, its output, and its end."""
 
 import contextlib
 import os
@@ -24,19 +24,19 @@ from hthor.guest.protocol.wire import sanitize_text
 _PASSED_ON = ("PATH", "LANG", "LC_ALL", "TZ", "LD_LIBRARY_PATH", "NUMBA_CACHE_DIR")
 _THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS")
 _MEMORY = f"glibc.malloc.mmap_threshold={64 << 20}:glibc.malloc.trim_threshold={256 << 20}"
-"""Keep memory that arrays have freed, as a long-lived process would: every trial has a new process, for which returning
-and requesting pages would cost more than its agent."""
+"""Makes a process keep memory that arrays have freed: every trial has a new process, for which returning and requesting
+pages would take longer than its agent."""
 _LOG_BYTES = 16 << 10
 _LAST_S = 10.0
-"""Longest wait for a process whose pipes are closed; on a busy machine cleaning up after it takes a while."""
+"""Longest wait for a process whose pipes are closed; on a busy machine its cleanup takes a while."""
 _INSIDE = "/tmp/hthor-guest"
 """The scratch folder of a guest with a file system of its own (L3)."""
 _HOME = "home"
-"""The scratch folder elsewhere, within a folder that is made for the guest: the supervisor may have to replace it."""
+"""The scratch folder at L1 and L2, inside a folder made for the guest, as the supervisor may have to replace it."""
 
 
 class GuestProcess:
-    """A running guest: a socket to its supervisor, a pipe for what that prints, and the pipes of the current trial.
+    """A running guest: a socket to its supervisor, a pipe for its output, and the pipes of the current trial.
 
     Its ``folder``, empty for none, was made for it and is removed at its end.
     """
@@ -78,7 +78,7 @@ class GuestProcess:
         self._open()
 
     def _open(self) -> None:
-        """Send the far ends of the new trial's pipes over, and listen to the near ends."""
+        """Send the guest's ends of the new trial's pipes to the supervisor, and listen to the host's ends."""
         ends = self._ends
         ends.send_far_ends(self._socket)
         self._buffers = {ends.words: b"", self._supervisor: self._buffers[self._supervisor]}
@@ -135,7 +135,7 @@ class GuestProcess:
                 self._buffers[handle] += chunk
 
     def next_trial(self) -> None:
-        """Make new pipes for the next trial; anything half sent goes with the old ones."""
+        """Make new pipes for the next trial; half-sent messages are lost with the old pipes."""
         self._drain()
         self._ends.close()
         self._ends = HostEnds()
@@ -154,29 +154,29 @@ class GuestProcess:
         return buffer[4 : 4 + size]
 
     def _wait(self, poll: select.poll, wanted: tuple[int, ...], end: float) -> list[int]:
-        """Which pipes are ready, in the order asked for; reads what is printed meanwhile."""
+        """The ``wanted`` pipes that are ready, in that order; while waiting, reads the guest's output."""
         while True:
             ready = [handle for handle, _ in poll.poll(max(0.0, end - time.monotonic()) * 1000.0)]
             if found := [handle for handle in wanted if handle in ready]:
                 return found
-            if not ready or time.monotonic() > end:  # a flood of output does not extend it
+            if not ready or time.monotonic() > end:  # much output does not extend the wait
                 raise DeadlinePassed
             if not self._drain():
                 time.sleep(0.001)  # a closed log pipe is always ready: do not spin
 
     @property
     def lives(self) -> bool:
-        """Whether it still runs."""
+        """Whether the process still runs."""
         return self._process.poll() is None
 
     @property
     def log(self) -> str:
-        """The end of what was printed, 16 KiB at most."""
+        """The last 16 KiB, at most, of the output."""
         self._drain()
         return sanitize_text(self._log.decode(errors="replace"))
 
     def _drain(self) -> bool:
-        """Read what has been printed by now; False when one of the pipes is closed."""
+        """Read the output so far; False when one of the pipes is closed."""
         from_supervisor, trials = self._taken_in(self._err), self._taken_in(self._ends.err)
         return from_supervisor and trials
 
@@ -265,7 +265,7 @@ def start_process(
 
 
 def _environment(ours: Mapping[str, str], policy: Policy) -> dict[str, str]:
-    """Only what an interpreter needs; one thread, and the same hash seed every time."""
+    """The guest's environment variables: only what an interpreter needs, one thread, and a fixed hash seed."""
     passed_on = (*_PASSED_ON, *(paths.GPU_VARIABLES if policy.devices else ()))
     env = {name: ours[name] for name in passed_on if name in ours}
     env.update(dict.fromkeys(_THREADS, "1"))

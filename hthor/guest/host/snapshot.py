@@ -1,4 +1,4 @@
-"""An agent's manifest, made when a run begins: its guest is started, and begins a trial that is never run."""
+"""Makes an agent's manifest when a run begins: its guest starts, and begins a trial that is never run."""
 
 import os
 from collections.abc import Iterable
@@ -13,7 +13,7 @@ from hthor.types import BodySpec, Briefing
 
 
 def take_manifest(guest: Guest, name: str) -> Manifest:
-    """The manifest of an agent that results call ``name``; its guest is started, and of no further use.
+    """The manifest of an agent that results call ``name``. This starts its guest, which is not to be used afterwards.
 
     Raises:
         AgentError: when it cannot be loaded, or a file cannot be read.

@@ -1,6 +1,6 @@
 """Starts a submitted agent: a process at a level of isolation, or a connection to a server.
 
-The level is the one asked for, or the strongest that starts. It counts only once a process has really come up on it.
+The level is the requested one, or the strongest that starts. It counts only after a process has started with it.
 """
 
 import os
@@ -24,13 +24,13 @@ _ENTER_S = 120.0
 _HINT = "'hthor eval --isolation auto' takes the strongest level that there is; see docs/isolation.md."
 _REFUSED = "operation not permitted"
 _ONE_PROGRAM = (
-    " A held program may start no other: name the one that runs in the end, such as an interpreter itself instead of "
+    " A confined program may start no other: name the program that runs in the end, such as an interpreter instead of "
     "a script that calls it."
 )
 
 
 class GuestStartup:
-    """Starts an agent, and again after it has failed. The arguments are those of `Guest`.
+    """Starts an agent, and restarts it after a failure. The arguments are those of `Guest`.
 
     Attributes:
         ahead: whether the agent accepts sensor data before it asks. policy: what its process may do.
@@ -57,7 +57,7 @@ class GuestStartup:
         self.policy: Policy | None = None
 
     def start(self) -> GuestInfo:
-        """Start the agent, and say what it is.
+        """Start the agent, and return its description.
 
         Raises:
             Unreachable, AgentError, IsolationError: as `Guest.load`.
@@ -94,7 +94,7 @@ class GuestStartup:
         return known
 
     def leave_idle(self, info: GuestInfo) -> bool:
-        """Leave the guest, which has no trial, in the pool; False when it is to end."""
+        """Leave the guest, which has no trial, in the pool; False when it must be ended instead."""
         process = self._channel.transport
         if not isinstance(process, GuestProcess):
             return False
@@ -114,10 +114,10 @@ class GuestStartup:
         return websocket_client.ISOLATION
 
     def _start_process(self) -> Isolation:
-        """Start its process at the level asked for, or the strongest that starts; how that confines it.
+        """Start its process at the requested level, or the strongest that starts; returns how it is confined.
 
         Raises:
-            IsolationError: when that level does not start.
+            IsolationError: when the level does not start.
         """
         level, unavailable = self._config.isolation, self._pool.unavailable
         ladder = tuple(reversed(LEVELS)) if level == AUTO else (level,)
@@ -136,7 +136,7 @@ class GuestStartup:
                         gpus=self._gpus > 0.0,
                         readable=self._paths.readable,
                     )
-                except OSError as error:  # such as too many files beside this agent to name one by one
+                except OSError as error:  # such as too many files next to the agent to list one by one
                     place = f": {error.filename}" if error.filename else ""
                     reason = f"its process could not be started: {error.strerror}{place}"
                     not_higher = not_higher or f"{rung}: {reason}"
@@ -180,7 +180,7 @@ class GuestStartup:
             self._channel.send(load, _ENTER_S)
             said, _ = self._channel.receive(_ENTER_S)
         except GuestFault as fault:
-            if fault.kind == KILLED:  # no evidence about what this machine can do
+            if fault.kind == KILLED:  # does not show what this machine supports
                 raise AgentKilled(f"{agent.text}: its process was {fault.detail} while it started.") from None
             return fault.log.strip() or str(fault)
         if isinstance(said, wire.Confined):

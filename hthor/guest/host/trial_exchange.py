@@ -25,8 +25,8 @@ class TrialExchange:
 
     Args:
         step_s: seconds for each action, without the time that the host takes to answer.
-        bank_s: seconds by which all actions together may take longer than that.
-        ahead: whether the guest accepts data that it is likely to read before it asks.
+        bank_s: extra seconds that all actions together may use beyond ``step_s``.
+        ahead: whether the guest accepts data that it will probably read, before it asks.
         window: shared memory for pictures, None for none.
     """
 
@@ -44,7 +44,7 @@ class TrialExchange:
         """The agent's action.
 
         Raises:
-            GuestFault: when there is none.
+            GuestFault: when it sends no valid action.
         """
         channel, read_ahead = self._channel, self._read_ahead
         slim = tuple(msgspec.structs.replace(message, image=None) for message in observation.inbox)
@@ -85,7 +85,7 @@ class TrialExchange:
             raise self._channel.fault("garbage", str(error)) from None
 
     def _sensed(self, sense: Callable[..., _T], *values: object) -> _T:
-        """The result of a sensing function. If that fails it is our fault: end the guest and raise."""
+        """The result of a sensing function. An error in it is not the agent's fault: end the guest and raise it."""
         try:
             return sense(*values)
         except UnknownSensor:
@@ -99,7 +99,7 @@ def make_reply(observation: Observation, ask: wire.Ask, window: FrameWriter | No
     """The reply to a sensor request.
 
     Args:
-        window: shared memory for pictures that are asked for there; None for none.
+        window: shared memory for pictures that the guest requests there; None for none.
 
     Raises:
         UnknownSensor: when there is no such sensor.
@@ -111,9 +111,9 @@ def make_reply(observation: Observation, ask: wire.Ask, window: FrameWriter | No
 
 
 class ReadAhead:
-    """Predicts what an agent reads next: what it has read in both of its last two steps.
+    """Predicts the sensor data that an agent reads next: those that it has read in both of its last two steps.
 
-    That is sent along with the next observation, since every request costs two switches between processes.
+    They are sent with the next observation, since every request costs two switches between processes.
     """
 
     def __init__(self) -> None:
@@ -121,7 +121,7 @@ class ReadAhead:
         self._now: set[str] = set()
 
     def read(self, *what: str) -> None:
-        """Note what it has read; pictures are too dear to be sent unasked."""
+        """Note what the agent has read, except pictures, which take too long to be sent unless requested."""
         self._now.update(name for name in what if READINGS.get(name, Any) is not Any)
 
     def ahead(self, observation: Observation) -> dict[str, msgspec.Raw]:

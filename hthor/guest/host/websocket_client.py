@@ -1,7 +1,7 @@
 """The connection to an agent that is served over WebSocket.
 
 Each message is one binary WebSocket message, without a length in front. How the agent is confined there is unknown,
-so its isolation is "served", which is less than any level.
+so its isolation is "served", which counts as less than any level.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from hthor.guest.protocol import load_websockets
 if TYPE_CHECKING:
     from websockets.sync.client import ClientConnection
 
-ISOLATION = Isolation(level=SERVED, reason_not_higher="it is served from elsewhere, where nothing of ours holds it")
+ISOLATION = Isolation(level=SERVED, reason_not_higher="it is served from elsewhere, where hthor cannot confine it")
 _CLOSING_S = 2.0
 """Longest time for a clean close."""
 _LOOK_S = 0.25
@@ -38,7 +38,7 @@ def connect(url: str, seconds: float) -> WebSocketTransport:
     """Connect to the agent at this address.
 
     Raises:
-        Unreachable: when nothing answers there, or it is no WebSocket server.
+        Unreachable: when nothing answers there, or it is not a WebSocket server.
     """
     from hthor.guest.protocol.wire import MOST_BYTES
 
@@ -50,7 +50,7 @@ def connect(url: str, seconds: float) -> WebSocketTransport:
         return WebSocketTransport(
             sockets.sync.client.connect(
                 url,
-                sock=near,  # the library follows no redirection with a socket that it was given
+                sock=near,  # given a socket, the library follows no redirection
                 open_timeout=seconds,
                 close_timeout=1.0,
                 ping_interval=None,
@@ -68,9 +68,9 @@ def connect(url: str, seconds: float) -> WebSocketTransport:
 
 
 class DeadlineTimer:
-    """Calls ``ring`` once when a deadline has passed; checked by a thread of its own.
+    """Calls ``ring`` once when a deadline has passed; a separate thread checks the time.
 
-    So a deadline holds even where a server makes the WebSocket library wait while it holds its locks.
+    So a deadline holds even if a server makes the WebSocket library wait while it keeps its locks.
     """
 
     def __init__(self, ring: Callable[[], None]) -> None:
@@ -83,7 +83,7 @@ class DeadlineTimer:
         self._end = end
 
     def stop(self) -> None:
-        """Never ring."""
+        """Stop: ``ring`` is not called any more."""
         self._stopped.set()
 
     def _look(self) -> None:
@@ -139,7 +139,7 @@ class WebSocketTransport:
         return "died", f"the server closed the connection: {self._end or 'without a word'}"
 
     def kill(self) -> None:
-        """As `Transport` says; the server goes on."""
+        """Close the connection; the server goes on."""
         self._alarm.set(time.monotonic() + _CLOSING_S)
         with contextlib.suppress(Exception):
             self._connection.__exit__(None, None, None)

@@ -31,7 +31,7 @@ def end_descendants(ancestor: int) -> None:
 
 
 def children_by_parent() -> dict[int, list[int]]:
-    """Living processes by their parents."""
+    """The ids of running processes by their parents' ids."""
     found: dict[int, list[int]] = {}
     for stat in Path("/proc").glob("[0-9]*/stat"):
         with contextlib.suppress(OSError, ValueError):
@@ -81,7 +81,7 @@ def _moved(name: str, at: int) -> int:
 
 
 def _emptied(at: int) -> list[str]:
-    """Remove everything from an open folder except folders that are not empty; the names of these."""
+    """Remove everything from an open folder except folders that are not empty; returns these folders' names."""
     with os.scandir(at) as entries:
         found = [(entry.name, entry.is_dir(follow_symlinks=False)) for entry in entries]
     full = []
@@ -96,8 +96,8 @@ def _emptied(at: int) -> list[str]:
 def describe_exit(code: int) -> tuple[str, str]:
     """A fault's kind and description for an exit code as `subprocess` reports it.
 
-    Some signals are sent only by a person or by a machine that runs out of memory or shuts down. What they end is
-    "killed" and may be tried again. From L2 on an agent cannot send itself such a signal.
+    Some signals are sent only by a person, or by a machine that runs out of memory or shuts down. Their kind of fault
+    is "killed", and the trial may be repeated. From L2 on, an agent cannot send itself such a signal.
     """
     if code >= 0:
         return "died", f"exited with status {code}"
@@ -105,12 +105,12 @@ def describe_exit(code: int) -> tuple[str, str]:
 
 
 def unwrap_bwrap(code: int) -> int:
-    """The exit code of what bubblewrap ran; bubblewrap reports a signal as shells do."""
+    """The exit code of the program that bubblewrap ran; bubblewrap reports a signal as shells do."""
     return _SHELLS - code if code > _SHELLS else code
 
 
 def _name(number: int) -> str:
     try:
         return signal.Signals(number).name
-    except ValueError:  # those of real time have none
+    except ValueError:  # real-time signals have no names
         return f"signal {number}"

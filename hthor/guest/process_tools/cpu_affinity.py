@@ -15,7 +15,7 @@ _BYTES = 2
 
 
 class _Here(threading.local):
-    """Of one thread of an evaluation: for how many guests it is pinned, and where it might run before."""
+    """State of one thread of an evaluation: for how many guests it is pinned, and the CPUs it could use before."""
 
     guests = 0
     before: frozenset[int] = frozenset()
@@ -25,7 +25,7 @@ _here = _Here()
 
 
 def pin_thread() -> int:
-    """Keep this thread on its current CPU until `unpin_thread` is called as often; the CPU, or -1 if that fails."""
+    """Keep this thread on its current CPU until `unpin_thread` is called as often; returns the CPU, -1 on failure."""
     if sys.platform != "linux":
         return -1
     if not _here.guests:
@@ -49,7 +49,7 @@ def unpin_thread() -> None:
 
 @contextlib.contextmanager
 def unpinned() -> Iterator[None]:
-    """Let processes that are started meanwhile run on every CPU that this thread may use when it is not pinned."""
+    """Let processes that are started in this context run on every CPU that this thread may use when not pinned."""
     if not _here.guests:
         yield
         return
@@ -82,7 +82,7 @@ class PinnedProcess:
         self._near = len(self._threads()) == 1 and _move(pid, {cpu})
 
     def release_if_threaded(self) -> None:
-        """Let it run everywhere again if it has several threads by now."""
+        """Let it run on every CPU again if it now has several threads."""
         if self._near and len(threads := self._threads()) > 1:
             self._near = False
             for thread in threads:

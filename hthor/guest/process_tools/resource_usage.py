@@ -15,13 +15,13 @@ _PAGE = os.sysconf("SC_PAGE_SIZE")
 
 
 class _Total:
-    """Over the life of this process [s], like `os.times`."""
+    """Processor time over the life of this process [s], like `os.times`."""
 
     uncollected = 0.0
 
 
 def uncollected_cpu_s() -> float:
-    """Processor time of this process's guests that `os.times` does not have among the children's [s].
+    """Processor time of this process's guests that `os.times` does not count as its children's [s].
 
     Guests that are in use are counted when they end, or when they become idle.
     """
@@ -35,14 +35,14 @@ class CpuMeter:
         self._pid, self._counted_s = pid, 0.0
 
     def count(self) -> None:
-        """Add what the guest has taken since this was called last."""
+        """Add the time that the guest has used since the last call."""
         now = cpu_s(self._pid)
         _Total.uncollected += max(0.0, now - self._counted_s)
         self._counted_s = max(now, self._counted_s)
 
     @contextmanager
     def ending(self) -> Iterator[None]:
-        """Around the end of the guest: count what would be lost, without what the kernel gives to `os.times`."""
+        """Context in which the guest is ended: counts the time that `os.times` will not count."""
         self.count()
         before = _collected_s()
         yield

@@ -1,6 +1,6 @@
 """Shared memory for pictures: the host writes, the guest can only read.
 
-The memory has no name and a fixed size; seals keep all but the host's own mapping from changing it. A picture stays
+The memory has no name and a fixed size; seals allow changes only through the host's own mapping. A picture stays
 until the next step, so the guest takes a copy.
 """
 
@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 
 SIZE = 4 << 20
-"""Size of the memory [bytes]; what does not fit is sent in a message."""
+"""Size of the memory [bytes]; a picture that does not fit is sent in a message."""
 VARIABLE = "HTHOR_FRAMES"
-"""Environment variable with the number of the guest's open file."""
+"""Environment variable with the number of the guest's file descriptor for this memory."""
 _ADD_SEALS, _SEAL, _SHRINK, _GROW, _FUTURE_WRITE = 1033, 1, 2, 4, 16
 _ALIGN = 64
 _KINDS = "biuf"

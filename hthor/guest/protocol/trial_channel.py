@@ -23,7 +23,7 @@ class HostEnds:
     """The host's ends.
 
     Attributes:
-        out: pipe to the trial's process. words: pipe with its messages. err: pipe with what it prints.
+        out: pipe to the trial's process. words: pipe with its messages. err: pipe with its output.
         frames: shared memory for pictures.
     """
 
@@ -39,7 +39,7 @@ class HostEnds:
             fcntl.fcntl(self.out, _F_SETPIPE_SZ, _PIPE_BYTES)
 
     def send_far_ends(self, line: socket.socket) -> None:
-        """Send the guest's ends to the supervisor; if that has ended, it is noticed elsewhere."""
+        """Send the guest's ends to the supervisor; if it has ended, another function notices that."""
         shared = (self.frames.handle,) if self.frames is not None else ()
         with contextlib.suppress(OSError):
             socket.send_fds(line, [_SIGN], [*self._far, *shared])
@@ -69,7 +69,7 @@ class GuestEnds(NamedTuple):
 
     @property
     def handles(self) -> tuple[int, ...]:
-        """All of them that there are."""
+        """The file descriptors of all ends that exist."""
         return tuple(handle for handle in self if handle >= 0)
 
     def send_copies(self, line: socket.socket) -> None:
@@ -77,7 +77,7 @@ class GuestEnds(NamedTuple):
         socket.send_fds(line, [_SIGN], self.handles)
 
     def close(self) -> None:
-        """Close them."""
+        """Close the guest's ends."""
         for handle in self.handles:
             os.close(handle)
 

@@ -18,15 +18,15 @@ from hthor.guest.confinement import Policy
 from hthor.types import Action, Briefing, Observation
 
 MOST_BYTES = 64 << 10
-"""Longest frame that a guest may send."""
+"""Longest frame that a guest may send [bytes]."""
 NAME_MAX = 200
-"""Longest id, seat or thing's name in an action, in characters."""
+"""Longest id, seat or name of a thing in an action, in characters."""
 NUMBER_MAX = 1e12
 """Largest magnitude of a number in an action: beyond it the next multiplication may overflow."""
 TEXT_MAX = 8000
 """Longest description of an agent or of a failure, in characters."""
 PRIVILEGES = ("house_map", "ideal_detector", "object_poses")
-"""What an agent may declare in order to get more than its robot senses."""
+"""Privileges that an agent may declare to get more information than its robot senses."""
 VERSION = 1
 """Version of this protocol; guests with another one are refused."""
 FAULTS = ("raised", "timeout", "died", KILLED, "memory", "disk", "garbage", "wrong_type", "oversized", "not_finite")
@@ -73,7 +73,7 @@ class Begin(Struct, tag="begin", frozen=True, kw_only=True):
 
 
 class Look(Struct, tag="look", frozen=True, kw_only=True):
-    """Host: act. The observation's ``senses`` and the images of its messages are left out; the guest asks for them.
+    """Host: act. The observation lacks its ``senses`` and its messages' images, which the guest can request.
 
     ``ahead`` holds the sensor data that the guest has read in both of its last two steps, if it accepts that.
     """
@@ -83,7 +83,7 @@ class Look(Struct, tag="look", frozen=True, kw_only=True):
 
 
 class Given(Struct, tag="given", frozen=True, kw_only=True):
-    """Host: what was asked for, encoded."""
+    """Host: the requested data, encoded."""
 
     value: msgspec.Raw
 
@@ -104,8 +104,8 @@ class Ready(Struct, tag="ready", frozen=True, kw_only=True):
     """Guest: loaded; the agent's description of itself.
 
     ``version`` distinguishes versions of a served agent; ``ahead`` says that it accepts sensor data before it asks;
-    ``gpus`` is the share of a GPU it asks for; ``files`` are its own files that it has opened, relative to its folder;
-    ``manifest`` is what a served agent says that it consists of.
+    ``gpus`` is the share of a GPU it needs; ``files`` are its own files that it has opened, relative to its folder;
+    ``manifest`` lists the files of a served agent, as its server reports them.
     """
 
     name: str = ""
@@ -140,7 +140,7 @@ class Ask(Struct, tag="ask", frozen=True, kw_only=True):
 
 
 class Acted(Struct, tag="acted", frozen=True, kw_only=True):
-    """Guest: its action, and what it has read of the data sent ahead; ``files`` as in `Done`."""
+    """Guest: its action, and which of the data sent ahead it has read; ``files`` as in `Done`."""
 
     action: Action
     read: tuple[str, ...] = ()
@@ -194,7 +194,7 @@ def to_plain_action(action: Action) -> Action:
 
 
 def decode_array(value: dict[str, Any]) -> Any:
-    """The array that a plain dictionary with its bytes stands for."""
+    """The array that a dictionary in a message encodes."""
     return np.frombuffer(value["d"], dtype=np.dtype(value["__nd__"])).reshape(value["s"])
 
 
@@ -219,7 +219,7 @@ def add_length(body: bytes) -> bytes:
 
 
 def find_action_fault(action: Action) -> tuple[str, str] | None:
-    """What is wrong with an action, as a fault's kind and detail; None when it is valid."""
+    """The error in an action, as a fault's kind and detail; None when the action is valid."""
     for part in (action.motion, action.say):
         if part is None:
             continue
@@ -244,5 +244,5 @@ def sanitize_text(text: str) -> str:
 
 
 def is_printable_name(text: str, most: int) -> bool:
-    """Whether this fits in a table or a file's name."""
+    """Whether a text can stand in a table or a file's name: printable, ``most`` characters at most."""
     return text.isprintable() and len(text) <= most

@@ -1,4 +1,4 @@
-"""Forks the process of a trial, when the trial begins or before, waits for its end, and ends it early at a limit."""
+"""Forks the process of a trial, when or before the trial begins, and waits for its end or ends it at a limit."""
 
 import os
 import select
@@ -17,7 +17,7 @@ _LOOK_MS = 50
 
 
 def fork_trial(ends: GuestEnds, tell: int, order: wire.Load, held: Ruleset | None, *, first: bool = False) -> int:
-    """Fork a process that runs one trial, as `trial_process.run_trials`; its process id.
+    """Fork a process that runs one trial by `trial_process.run_trials`; returns its process id.
 
     ``tell`` is the supervisor's own socket, which no child may have.
     """
@@ -25,10 +25,10 @@ def fork_trial(ends: GuestEnds, tell: int, order: wire.Load, held: Ruleset | Non
 
 
 class SpareProcess:
-    """A child that is confined already, and waits for its trial; it saves the time to fork and confine one.
+    """A child process, already confined, that waits for its trial; this saves the time to fork and confine one then.
 
-    It has seen nothing of the agent, so that nothing of one trial can reach the next through it; nor does it have the
-    pipes of the trial that is ``playing`` meanwhile.
+    It has read nothing of the agent, so nothing can pass from one trial to the next through it; nor does it have the
+    pipes of the trial that is ``playing`` while it waits.
     """
 
     def __init__(self, playing: GuestEnds, tell: int, order: wire.Load, held: Ruleset | None) -> None:
@@ -38,7 +38,7 @@ class SpareProcess:
         wait.close()
 
     def start(self, ends: GuestEnds) -> int:
-        """Let it run a trial with these pipes; its process id, or 0 if it has ended."""
+        """Let it run a trial with these pipes; returns its process id, or 0 if it has ended."""
         try:
             ends.send_copies(self._go)
         except BrokenPipeError:
@@ -81,9 +81,9 @@ def _forked(
 
 
 def watch_trial(pid: int, order: wire.Load, tell: int) -> wire.SupervisorToHost:
-    """Wait for a trial's process to end, or end it when it exceeds a limit; the message to the host.
+    """Wait for a trial's process to end, or end it when it exceeds a limit; returns the message to the host.
 
-    Meanwhile the host may say by the socket ``tell`` on which CPU it waits.
+    During the wait, the host may send the number of the CPU on which it waits through the socket ``tell``.
     """
     policy = order.policy
     found = _excess(pid, policy, tell) if hasattr(os, "pidfd_open") else None
@@ -102,7 +102,7 @@ def watch_trial(pid: int, order: wire.Load, tell: int) -> wire.SupervisorToHost:
 
 
 def _excess(pid: int, policy: Policy, tell: int) -> tuple[str, str] | None:
-    """The limit that a process exceeds, as a fault's kind and detail; None when it ends before."""
+    """The limit that a process exceeds, as a fault's kind and detail; None when the process ends first."""
     ended, joined, found = os.pidfd_open(pid), None, None
     poll = select.poll()
     for handle in (ended, tell):

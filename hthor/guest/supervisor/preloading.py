@@ -1,7 +1,7 @@
 """Imports the libraries that an agent's file names, once for all its trials; never the file itself.
 
-Only installed libraries and the parts of this package that agents are made with are imported. Errors are ignored here:
-the file's own import will meet them.
+Only installed libraries and the parts of this package that agents may use are imported. Errors are ignored here: the
+file's own import will raise them again.
 """
 
 import ast
@@ -15,9 +15,9 @@ from hthor.guest.confinement import paths
 
 _MINDS = "hthor.agents"
 _MOST_BYTES = 1 << 20
-"""Longest file that is parsed."""
+"""Longest file that is parsed [bytes]."""
 _SIDE_EFFECTS = ("__main__", "antigravity", "idlelib", "lib2to3", "this", "turtledemo")
-"""Modules, or parts of their names, whose import has side effects; so have all tests."""
+"""Parts of the names of modules whose import has side effects; parts that begin with "test" count too."""
 _OURS = ("hthor.types", "hthor.navigation", "hthor.agents", "hthor.geometry", "hthor.catalog", "hthor.rules")
 
 
@@ -43,7 +43,7 @@ def preload(path: Path, module: str = "") -> None:
 
 
 def _behind() -> list[str]:
-    """What built-in agents import only when they begin, which would cost time in every trial."""
+    """Modules that built-in agents import only when they begin, which would cost time in every trial."""
     files = [path for part in ("agents", "navigation") for path in sorted((paths.PACKAGE / part).rglob("*.py"))]
     return [
         f"hthor.{path.parent.name}.{path.stem}" for path in files if path.parent.name != "agents" or path.stem[0] == "_"
@@ -51,12 +51,12 @@ def _behind() -> list[str]:
 
 
 def _quiet(name: str) -> bool:
-    """Whether importing a module has no side effects, as far as its name says."""
+    """Whether importing a module has no side effects, judged by its name."""
     return not any(part in _SIDE_EFFECTS or part.startswith("test") for part in name.split("."))
 
 
 def _installed(name: str) -> bool:
-    """Whether a module comes with Python or from where libraries are installed."""
+    """Whether a module comes with Python or is in a folder of installed libraries."""
     spec = importlib.util.find_spec(name)
     if spec is None or name == "hthor":
         return False

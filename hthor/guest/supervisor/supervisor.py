@@ -1,8 +1,8 @@
-"""The trusted process of a guest: forks one process per trial, watches it and cleans up; runs no agent's code.
+"""The trusted process of a guest: forks one process per trial, watches it and cleans up; runs no agent code.
 
 It is confined too, before it imports libraries for an agent, so that no library does what an agent may not. It has its
-own socket to the host, which no trial's process ever holds: an agent can neither speak for it nor keep it from
-reporting how the agent ended. It never reads what a trial is about.
+own socket to the host, which trial processes never have: an agent can neither speak for it nor keep it from reporting
+how the agent ended. It never reads the messages of a trial.
 """
 
 import contextlib
@@ -26,11 +26,11 @@ _SUBREAPER = 36
 
 
 def main(tell: int, parent: int) -> None:
-    """Serve the host until it hangs up.
+    """Serve the host until it closes the connection.
 
     Args:
-        tell: the supervisor's own socket to the host, by which the pipes of each trial come too.
-        parent: the host's process id, to end with it; 0 where bubblewrap takes care of that.
+        tell: the supervisor's own socket to the host, which also brings the pipes of each trial.
+        parent: the host's process id, to end when the host ends; 0 if bubblewrap takes care of that.
     """
     limits.die_with(parent)
     os.set_inheritable(tell, False)
@@ -80,7 +80,7 @@ def main(tell: int, parent: int) -> None:
 
 
 class ScratchFolder:
-    """The folder that an agent may write to, which every trial finds as the first one did.
+    """The folder that an agent may write to; every trial finds it in the state of the first trial.
 
     It lies in a folder that this process may change.
     """
@@ -93,7 +93,7 @@ class ScratchFolder:
     def reset(self) -> bool:
         """Empty it, and reset its times; True when it was replaced by a new folder.
 
-        A folder that had many files can stay large without them, which would reveal them.
+        An emptied folder can stay large, which would reveal that it had many files.
         """
         cleanup.empty_folder(self._folder)
         outgrown = os.stat(self._folder).st_size != self._size
@@ -114,7 +114,7 @@ def _called(read: int) -> bool:
 
 
 def _leave_guard(pipes: tuple[int, ...], ground: str) -> None:
-    """Become the guard, which outlives the host until all processes of the guest have ended; go on in a child.
+    """Become the guard, which outlives the host until all processes of the guest have ended; return in a child.
 
     Processes that lose their parent become children of the guard, even if they have left the group.
     """
