@@ -1,5 +1,5 @@
-"""The hashes of code that a result depends on: of trials, agents, robots, pictures, and of what makes tasks; and the
-folder in which numba caches compiled functions of exactly this code.
+"""The hashes of code that a result depends on: of trials, agents, robots, pictures, and of making tasks; and the folder
+in which numba caches compiled functions of exactly this code.
 """
 
 import contextlib
@@ -13,7 +13,7 @@ from hthor.code_identity.syntax import PICTURES, SIMULATION, TOOLS
 
 _TRIAL, _MAKERS = "trial", "makers"
 _HEX = 64
-"""Letters of a hash."""
+"""Number of letters of a hash."""
 
 
 def code_sha256(model: str, kinds: Iterable[str]) -> str:
@@ -22,8 +22,8 @@ def code_sha256(model: str, kinds: Iterable[str]) -> str:
     Robots have hashes of their own: `agent_sha256`, `robot_sha256`, `pictures_sha256`.
 
     Args:
-        model: the human model; a user's own may use every one of ours, and so may a task kind.
-        kinds: the task kinds.
+        model: the human model; a user's own model counts as all built-in ones, which it may use.
+        kinds: the task kinds, with the same rule.
     """
     own = [*_modules("human model", model), *(name for kind in set(kinds) for name in _modules("task kind", kind))]
     metrics = [plugins.module_name("metric", name) for name in plugins.names("metric")]
@@ -36,12 +36,12 @@ def agent_sha256(name: str) -> str:
 
 
 def robot_sha256(name: str) -> str:
-    """Hash of a robot's body that ships with hthor."""
+    """Hash of the code of a robot's body that ships with hthor."""
     return modules_sha256([plugins.module_name("robot", name)])
 
 
 def pictures_sha256(pack: str = "") -> str:
-    """Hash of the code that draws what robots' cameras show, and of a furniture pack (by its own hash)."""
+    """Hash of the code that draws robots' camera images, and of a furniture pack (by its own hash ``pack``)."""
     code = modules_sha256(roots(_TRIAL), (SIMULATION, PICTURES))
     return jsonio.sha256([pack, code]) if pack else code
 
@@ -76,7 +76,7 @@ def modules_sha256(names: Sequence[str], parts: Sequence[str] = (SIMULATION,)) -
 
 
 def _modules(sort: str, name: str) -> list[str]:
-    """The module of a built-in plug-in; for a user's own, all built-in ones of its sort, which it may build on."""
+    """The module of a built-in plug-in; for a user's own plug-in, all built-in ones of its sort, which it may use."""
     names = [name] if plugins.is_built_in(sort, name) else plugins.names(sort)
     return [plugins.module_name(sort, one) for one in names]
 

@@ -26,7 +26,7 @@ class Sources:
         return self._read[name]
 
     def part(self, name: str) -> str:
-        """The part that a module belongs to, as it or the nearest package above it says."""
+        """The part that a module belongs to, as it or the nearest package above it declares."""
         while name:
             found = self.module(name)
             if found is not None and found.part:
@@ -52,7 +52,7 @@ class Sources:
         Args:
             roots: names of modules.
             parts: the parts that count; a module of another part counts only if it is a root.
-            files: files outside the package, of which only what they import from it counts.
+            files: files outside the package; only the modules that they import from it count.
 
         Raises:
             ValueError: when the package has no such module.
@@ -96,7 +96,7 @@ def ours() -> Sources:
 
 
 def _rings(roots: Sequence[str], needed: Callable[[str], Iterable[str]]) -> list[tuple[str, ...]]:
-    """The modules that these need, in groups that import one another in a circle, dependencies first.
+    """These modules and those that they need, dependencies first, in groups that import one another in a circle.
 
     Tarjan's algorithm for strongly connected components; most groups are a single module.
     """
@@ -128,8 +128,8 @@ def _rings(roots: Sequence[str], needed: Callable[[str], Iterable[str]]) -> list
 def _hashes(ring: Sequence[Module], known: Mapping[str, str]) -> dict[str, str]:
     """Hashes of modules that import one another, from the hashes of all others that they import.
 
-    An imported module that does not count appears as "apart", one of the same circle as "here"; within a circle,
-    modules are told apart by the rest of their syntax.
+    An imported module that does not count appears as "apart", a module of the same circle as "here"; within a circle,
+    modules are distinguished by the rest of their syntax.
     """
     inside = {module.name for module in ring}
 

@@ -22,7 +22,7 @@ class Module(Struct, frozen=True, kw_only=True):
     Attributes:
         tokens: its syntax, with a ``Bound`` for each name that an import from the package binds.
         imports: the modules of the package that it imports anywhere, except for type checkers only.
-        data: hashes of the data files beside it, if it uses its own ``__file__``.
+        data: hashes of the data files in its folder, if it uses its own ``__file__``.
         part: its ``CODE_PART``, and ``root`` its ``CODE_ROOT``; empty where it has none.
     """
 
@@ -69,7 +69,7 @@ def parse(name: str, path: Path, find: Callable[[str], Path | None], text: bytes
 
 
 def _bindings(tree: ast.Module, find: Callable[[str], Path | None]) -> dict[str, Bound]:
-    """What the names that a file's imports bind stand for, except for type checkers only."""
+    """What each name that a file imports stands for, without imports for type checkers only."""
     targets_of: dict[str, set[tuple[str, str]]] = {}
     for node in _executed(tree):
         if isinstance(node, ast.Import):
@@ -87,7 +87,7 @@ def _bindings(tree: ast.Module, find: Callable[[str], Path | None]) -> dict[str,
 
 
 def _executed(tree: ast.AST) -> Iterator[ast.AST]:
-    """Every node below, except what only type checkers read."""
+    """Every node below, except code that only type checkers read."""
     for node in ast.iter_child_nodes(tree):
         if isinstance(node, ast.If) and isinstance(node.test, ast.Name) and node.test.id == "TYPE_CHECKING":
             continue
@@ -148,7 +148,7 @@ class _Reader:
 
 
 def _statements(body: Sequence[ast.stmt]) -> list[ast.stmt]:
-    """Without docstrings, and without what only type checkers read."""
+    """The statements without docstrings and without code that only type checkers read."""
     return [
         one
         for one in body
