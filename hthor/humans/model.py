@@ -1,17 +1,17 @@
 """The contract of a human model, simulated or live.
 
-A human model is one file in ``hthor/humans/models``, or a file of your own, that defines ``class Model``; its name or
-path is what `hthor eval --humans` takes. ``Model(participant)`` is made once a session; it goes through the session's
-trials in order: ``begin``, ``act`` until the trial ends, ``rate``. ``Model(participant, state)`` continues a session in
-another process.
+A human model is a file that defines ``class Model``, in ``hthor/humans/models`` or anywhere else; `hthor eval --humans`
+takes its name or path. ``Model(participant)`` is made once per session and goes through the session's trials in order:
+``begin``, then ``act`` until the trial ends, then ``rate``. ``Model(participant, state)`` continues a session in a new
+process.
 
 Optional parts of the file and the class:
 
-- ``ingredients(source: str) -> dict``, a function of the file: plain JSON values that say what else decides how the
-  model behaves, such as the hash of its weights. They become part of the run's identity.
-- ``Model(participant, source="/path")``: a model named with a source (``replay:runs/demo``) is made with its path.
-- ``alike = True`` in the class: participants do not differ; each is given the population's mean traits.
-- ``journal``, a property of the class: what a recorder holds of the trial (`hthor.humans.core.behaviour_log`).
+- ``ingredients(source: str) -> dict``, a function in the file: plain JSON values of everything else that decides how
+  the model behaves, such as the hash of its weights. They become part of the run's identity.
+- ``Model(participant, source="/path")``: a model named with a source (``replay:runs/demo``) is made with that path.
+- ``alike = True`` in the class: participants do not differ; all get the population's mean traits.
+- ``journal``, a property of the class: the trial's events for a recorder (`hthor.humans.core.behaviour_log`).
 """
 
 from collections.abc import Mapping
@@ -24,7 +24,7 @@ State = Mapping[str, bool | int | float | str | None]
 
 
 class HumanModel(Protocol):
-    """One participant through one session.
+    """One participant during one session.
 
     The same participant must give the same actions on the same observations: draw random numbers by name
     (`hthor.seeds`) from ``participant.trial_root(index)``, never from a global generator or the clock.
@@ -49,7 +49,7 @@ class HumanModel(Protocol):
             A motion, which is carried out only when ``observation.idle``, and at most one answer to a message.
 
         Raises:
-            HthorError: if the model cannot go on, such as a replay of another task. The run then stops.
+            HthorError: if the model cannot go on, for example a replay of another task. The run then stops.
         """
         ...
 

@@ -21,21 +21,21 @@ from hthor.humans.search.option_choice import OptionChoice
 from hthor.types import Detection, Pick, Vec3
 
 _FOUND_M = 1.3
-"""[m] People who only have to find an object stop this near to it. Our choice."""
+"""[m] Distance from an object at which people stop when they only have to find it. Our choice."""
 _SLACK_M = 0.04
-"""[m] They come nearer than the rule of finding asks by this. Our choice."""
+"""[m] How much nearer people come than the rule of finding requires. Our choice."""
 _LEAST_FOUND_M2 = 0.25
-"""[m^2] Squared distance on the floor that is always near enough to have found something. Our choice: half a metre."""
+"""[m^2] Squared distance on the floor within which an object always counts as found. Our choice: half a metre."""
 _CHECK_S = 0.4
-"""[s] A look at an object before it is handled. Our choice."""
+"""[s] Duration of the look at an object before it is handled. Our choice."""
 _PATIENCE_MANY = 3
-"""[count] Failed tries after which an object is taken for gone, with several things to do. Our choice."""
+"""[count] Failed tries after which people believe that an object is gone, in tasks with several jobs. Our choice."""
 _REST_S = 4.0
-"""[s] From one look round to the next when all is done. Our choice."""
+"""[s] Time between two looks round when all jobs are done. Our choice."""
 
 
 class Behaviours:
-    """Everything that the participant can set out to do."""
+    """All behaviours that the participant can begin."""
 
     def __init__(
         self, human: HumanContext, eyes: Eyes, memory: SpatialMemory, walker: Walker, subgoals: SubgoalTracker
@@ -52,14 +52,14 @@ class Behaviours:
         self.expect(tuple(subgoals.all.values()))
 
     def reset(self, subgoal: Subgoal | None = None) -> None:
-        """Forget what was tried: another behaviour begins, about this subgoal."""
+        """Forget earlier tries, because a new behaviour begins; ``subgoal`` is the job that it works on."""
         self.approach.reset()
         self.eyes.attention = None
         if subgoal is not None:
             self.eyes.current = subgoal.known
 
     def expect(self, missing: Sequence[Subgoal]) -> None:
-        """Set what is searched for: belief is shared among these objects, little of it in their destinations."""
+        """Search for the ``missing`` objects: divide the belief among them, with little of it at their destinations."""
         search, w_prior = self._target_search, self.human.traits.w_prior
         search.belief, search.knowledge, search.uniform = (self._belief(missing, w) for w in (w_prior, 1.0, 0.0))
 
@@ -74,7 +74,7 @@ class Behaviours:
         return belief
 
     def search_spared_by(self, request: str) -> OptionChoice:
-        """The search that a message would spare: for where to "bring" what is in hand, or for the target."""
+        """The search that a message makes unnecessary: for the destination (``request`` "bring") or for the target."""
         return self.delivery.search if request == "bring" else self._target_search
 
     def begin(self) -> Behaviour:
@@ -84,18 +84,18 @@ class Behaviours:
         return True
 
     def search(self) -> Behaviour:
-        """Look for what is missing, without end."""
+        """Search for the missing objects, without end."""
         yield from self.exploration.look_for(self._target_search, never)
         return True
 
     def rest(self) -> Behaviour:
-        """All is done: look round now and then."""
+        """Look round now and then, because all jobs are done."""
         yield from self.human.rest(_REST_S)
         yield from self.exploration.look_round(self.human.traits.scan)
         return True
 
     def fetch(self, subgoal: Subgoal) -> Behaviour:
-        """Go to an object where it was noticed; pick it up unless finding it is all. False when that failed."""
+        """Go to a noticed object, and pick it up unless the task is only to find it; False when that failed."""
         target = subgoal.known.lies
         if target is None:
             return False
@@ -116,11 +116,11 @@ class Behaviours:
         return not reason
 
     def follow(self, position: Vec3) -> Behaviour:
-        """Go where a robot says something is, and look there; True when done, with or without success."""
+        """Go to the ``position`` [m] named by a robot and look there; True when done, with or without success."""
         return (yield from self.following.follow(position))
 
     def look_into(self, position: Vec3) -> Behaviour:
-        """Go to the furniture that a robot wants looked into, open it and look; find it first if in another room."""
+        """Go to furniture that a robot asks to search, open it and look; if it is in another room, find it first."""
 
         def is_known() -> bool:
             return self.memory.at(position) is not None
@@ -143,7 +143,7 @@ class Behaviours:
         return False
 
     def _give_up_if_tried(self, subgoal: Subgoal) -> None:
-        """After several tries the object is taken for gone, or for a mistake."""
+        """After several tries, forget the object: it is gone, or it was a mistake."""
         if self.approach.tries > self._patience:
             self.reset()
             self.eyes.lose(subgoal.known)

@@ -1,6 +1,6 @@
-"""Carrying what is too heavy for one: take hold, wait for another, follow or lead.
+"""Carrying an object that is too heavy for one person: take hold, wait for a helper, follow or lead.
 
-Once several hold it by its handles, it rises, and whoever walks pulls the others along; whoever lets go puts it down.
+The object rises once several carriers hold it. A walking carrier pulls the others along; one who lets go puts it down.
 """
 
 import math
@@ -15,25 +15,25 @@ from hthor.humans.search.option_choice import OptionChoice
 from hthor.types import Detection, Drop, Pick, Vec2, Vec3, Wait
 
 _WATCH_S = 0.5
-"""[s] From one look at the load to the next. Our choice."""
+"""[s] Time between two looks at the load. Our choice."""
 _LEAVE_S = 3.0
-"""[s] So long people stay at a load that they have put down. Our choice."""
+"""[s] How long people stay at a load that they have put down. Our choice."""
 _STILL_M = 0.02
-"""[m] Who moved less than this between two looks stands still. Our choice."""
+"""[m] A person who moved less than this between two looks is standing still. Our choice."""
 _NEAR_M = 0.45
-"""[m] A load this near to its spot may be put down. Our choice."""
+"""[m] Distance from its spot within which a load may be put down. Our choice."""
 _BESIDE_M = 1.5
-"""[m] A robot this near to the load holds it, or is about to. Our choice."""
+"""[m] A robot within this distance of the load is assumed to hold it or to be about to. Our choice."""
 _AHEAD_M = (0.7, 0.4, 0.0)
-"""[m] How far past the spot to go, so that the load comes to lie there; the first that is free. Our choice."""
+"""[m] How far past the spot to walk, so that the load ends up on it; the first free value is used. Our choice."""
 _INSIDE_M = 1.9
-"""[m] How deep into a room to go, so that the load is in it too. Our choice: farther than the load is long."""
+"""[m] How deep into a room to walk, so that the load is inside it too. Our choice: more than the length of the load."""
 _DIRECTIONS = 16
-"""[count] Directions tried for that. Our choice."""
+"""[count] Directions in which a spot deep inside a room is looked for. Our choice."""
 
 
 class JointCarrying:
-    """Helps to carry one heavy thing."""
+    """Helps to carry one heavy object."""
 
     def __init__(self, approach: Approach, exploration: Exploration, subgoals: SubgoalTracker) -> None:
         self.approach, self.exploration, self.subgoals, self.hands = approach, exploration, subgoals, exploration.hands
@@ -41,7 +41,7 @@ class JointCarrying:
         self._search = OptionChoice(self.human, self.memory, self.walker, "room")
 
     def carry(self, subgoal: Subgoal) -> Behaviour:
-        """Take hold, and bring the load where it belongs; the participant leads when nobody has moved for a while."""
+        """Take hold and bring the load to where it belongs; the participant leads when nobody has moved for a while."""
         if not self._holds(subgoal) and not (yield from self._take_hold(subgoal)):
             return False
         alone, still, here = 0.0, 0.0, self.human.here
@@ -86,7 +86,7 @@ class JointCarrying:
         return not reason
 
     def _is_up(self, subgoal: Subgoal) -> Behaviour:
-        """Look at the load: whether it is off the floor."""
+        """Look at the load; True when it is off the floor."""
         seen = subgoal.known.seen
         if seen is not None:
             yield from self.human.look_at(seen.position)
@@ -94,7 +94,7 @@ class JointCarrying:
         return seen is not None and bool(seen.held_by)
 
     def _is_there(self, subgoal: Subgoal) -> bool:
-        """Whether the load may be put down, as far as one sees."""
+        """Whether the load may be put down here, as far as the participant sees."""
         seen = subgoal.known.seen
         if seen is None:
             return False
@@ -103,7 +103,7 @@ class JointCarrying:
         return self.subgoals.room_of(seen.position) in subgoal.job.destinations
 
     def _lead(self, subgoal: Subgoal) -> Behaviour:
-        """Pull the load to where it belongs; False when there is no way."""
+        """Pull the load to where it belongs; False when there is no path."""
         if subgoal.spot is not None:
             return (yield from self._pull_to(subgoal, subgoal.spot))
         rooms = subgoal.job.destinations
@@ -130,7 +130,7 @@ class JointCarrying:
         return (yield from self.walker.go(goal, stop=lambda: not self._holds(subgoal)))
 
     def _deep_inside(self) -> Vec2 | None:
-        """A spot inside this room, farther from where it was entered than the load is long."""
+        """A spot in this room whose distance from the entrance is more than the length of the load."""
         door = self.memory.entered.get(self.human.now.room)
         if door is None:
             return None

@@ -1,4 +1,4 @@
-"""Bringing what is in hand to where it belongs: which place, which spot on it."""
+"""Bringing the object in hand to where it belongs: the choice of a place and of a spot on it."""
 
 from functools import partial
 
@@ -17,13 +17,13 @@ _EDGE_M = 0.12
 _REACHABLE_Z_M = (0.25, 1.4)
 """[m] Heights of the surfaces that people use first. Our choice."""
 _SHIFTS_M = (0.0, 0.3, -0.3)
-"""[m] How far along the surface later tries move the point, in turn. Our choice."""
+"""[m] Shifts of the point along the surface, one per try in turn. Our choice."""
 _BESIDE_M = 0.5
-"""[m] How near to a place's outline the estimated way to it ends. Our choice."""
+"""[m] Distance from a place's outline at which the estimated path to it ends. Our choice."""
 
 
 class Delivery:
-    """Brings things where they belong."""
+    """Brings objects to where they belong."""
 
     def __init__(self, approach: Approach, exploration: Exploration, subgoals: SubgoalTracker) -> None:
         self.approach, self.exploration, self.subgoals, self.hands = approach, exploration, subgoals, exploration.hands
@@ -31,11 +31,11 @@ class Delivery:
         self.search = OptionChoice(self.human, self.memory, self.walker, "destination")
 
     def deliver(self, subgoal: Subgoal, advised: Vec3 | None = None) -> Behaviour:
-        """Bring what is held where it belongs, where a robot ``advised`` [m], or to what is found by searching."""
+        """Bring the object in hand to where it belongs: its spot, a place ``advised`` [m] by a robot, or one found."""
         if subgoal.spot is not None:
             if self.approach.tries <= PATIENCE or not subgoal.job.destinations:
                 return (yield from self._restore(subgoal, subgoal.spot))
-            subgoal.spot = None  # anywhere on it will do
+            subgoal.spot = None  # any spot on the place is good enough
         is_known = partial(self.subgoals.knows_destination, subgoal)
         if advised is not None:
             yield from self.exploration.make_for(advised, is_known, self.search)
@@ -56,7 +56,7 @@ class Delivery:
         return not reason
 
     def _restore(self, subgoal: Subgoal, spot: Vec3) -> Behaviour:
-        """Put it back exactly: on or in what it was on or in, which has to be recognised first."""
+        """Put the object back exactly, on or in its old support, which has to be recognised first."""
         support = subgoal.job.destinations[0] if subgoal.job.destinations else ""
         known = partial(self._recognises, support)
         yield from self.exploration.make_for(spot, known, self.search)
@@ -76,7 +76,7 @@ class Delivery:
         return not support or support in self.memory.places
 
     def _destination(self, subgoal: Subgoal) -> KnownPlace | None:
-        """The nearest place known where the object belongs; after several refusals, another one."""
+        """The nearest known place where the object belongs; after several refusals, the next nearest."""
         known = self.subgoals.known_destinations(subgoal)
         if not known:
             return None

@@ -1,7 +1,7 @@
-"""Going where a robot says that something is, and looking for it there from several sides.
+"""Going to the place that a robot's message names, and looking there from several sides.
 
-The map in the headset shows the place all the time, so nobody misses it by the 20 to 40 degrees by which people point
-wrong from memory; what reading the map costs is in the pace (``k_map``) and in ways that end at a wall.
+The map in the headset shows the place all the time, so there is no error of 20 to 40 degrees, as there is when people
+point from memory. Reading the map has two costs: a slower pace (``k_map``), and paths that end at a wall.
 """
 
 import math
@@ -19,37 +19,37 @@ from hthor.navigation.grid_map import CELL_M, FREE, GridMap
 from hthor.types import Vec2, Vec3
 
 _REACH_M = 1.14
-"""[m] Farthest spots around a position of which nothing is known. Our choice."""
+"""[m] Greatest distance to stand from a position about which nothing is known. Our choice."""
 _NEAR_M = 1.5
-"""[m] From so near to the place, or to the spot to stand at, people look again where to stand. Our choice."""
+"""[m] Within this distance of the place, or of the chosen spot, people choose again where to stand. Our choice."""
 _MAX_VIEWS = 3
 """[count] Sides from which people look at furniture that a message named. Our choice: a door or a shelf may hide it."""
 _ASIDE_RAD = math.radians(50.0)
-"""[rad] A new side is at least this far round from the old ones. Our choice: 50 degrees."""
+"""[rad] Least angle between a new side and the sides already used. Our choice: 50 degrees."""
 _FURTHER_M = 3.0
-"""[m] So far people go for another look, when the first showed nothing. Our choice."""
+"""[m] Farthest walk to another side when the first look showed nothing. Our choice."""
 _MAX_TRIES = 12
 """[count] Choices of a spot after which the message is given up. Our choice."""
 _GLANCE_S = 0.6
-"""[s] A glance that recognises what stands at the position. Our choice."""
+"""[s] Duration of a glance that recognises the furniture at the position. Our choice."""
 _THICK_M = 0.6 * CELL_M
 """[m] Half the thickness of a wall on the map. Our choice: a little more than half a cell."""
 _SHORT_M = 0.02
-"""[m] Walls this close to either end of the line do not count. Our choice."""
+"""[m] Walls this close to either end of a line of sight are ignored. Our choice."""
 
 
 class MessageFollowing:
-    """Walks to where the named place can be looked at, not only to where it is near on the map."""
+    """Walks to a spot from which the named place can be seen, not only to one that is near it on the map."""
 
     def __init__(self, exploration: Exploration) -> None:
         self.exploration, self.human, self.eyes = exploration, exploration.human, exploration.eyes
         self.memory, self.walker = exploration.memory, exploration.walker
 
     def follow(self, position: Vec3) -> Behaviour:
-        """Go where something is said to be [m], and look there; True when done, with or without success.
+        """Go to the ``position`` [m] named by a message and look there; True when done, with or without success.
 
-        The map in the headset shows how far off and in which direction the place is, not how to get there. A wall in
-        between is walked around; when one side shows nothing, others are tried.
+        The map in the headset shows the distance and direction of the place, but no path to it. The participant walks
+        around walls in between; when one side shows nothing, others are tried.
         """
         self.eyes.attention = position
         looked: list[Vec2] = []
@@ -59,7 +59,7 @@ class MessageFollowing:
             place = self.memory.at(position)
             spot = self._viewpoint(position, place, [*looked, *hidden], failed, _FURTHER_M if looked else math.inf)
             if spot is None and failed and not looked:
-                failed.clear()  # by now the map shows more
+                failed.clear()  # they may work now that the map shows more
                 continue
             if spot is None:
                 break
@@ -92,7 +92,7 @@ class MessageFollowing:
         return True
 
     def _faces(self, position: Vec3) -> Behaviour:
-        """Turn to the position; whether it is in view, with no wall and nothing else in between."""
+        """Turn to the position; True when it is in view, with neither a wall nor anything else in between."""
         yield from self.human.look_at(position)
         if self.memory.at(position) is None:
             yield from self.human.rest(_GLANCE_S)
@@ -120,7 +120,7 @@ class MessageFollowing:
     def _viewpoint(
         self, position: Vec3, place: KnownPlace | None, seen: list[Vec2], failed: list[Vec2], most: float
     ) -> Vec2 | None:
-        """The nearest spot on foot, within ``most`` metres, from which the place may be looked at from a new side."""
+        """The spot nearest on foot, within ``most`` metres, from which a new side of the place may be seen."""
         point = position[:2]
         opens = place is not None and bool(place.state)
         spots = approach.viewpoints_of_place(place, self.walker, front=True) if place is not None and opens else []
@@ -141,7 +141,7 @@ class MessageFollowing:
 
 
 class Walls:
-    """The walls on the map within ``reach`` metres of ``point`` [m]: what reaches higher than any furniture.
+    """Walls on the map within ``reach`` metres of ``point`` [m]: obstacles that are higher than any furniture.
 
     People look over a counter and past a lamp, but not through a wall.
     """
@@ -153,7 +153,7 @@ class Walls:
         self._offsets = walls[np.abs(walls).max(axis=1) <= reach] if len(walls) else walls
 
     def hide(self, spot: Vec2) -> bool:
-        """Whether one of them is between the point and ``spot`` [m]."""
+        """Whether a wall is between the point and ``spot`` [m]."""
         dx, dy = spot[0] - self.point[0], spot[1] - self.point[1]
         apart = math.hypot(dx, dy)
         if apart <= _SHORT_M or not len(self._offsets):

@@ -1,12 +1,12 @@
 """Whether a participant accepts a message that was read, and how much time it would save.
 
-Acceptance is likelier with trust in the robots and with the time that it is expected to save, and less likely with work
-in hand or after refusals of the same offer: a logit, as in Trust-POMDP (Chen et al. 2018, 2020), lowered by workload
-(Mangalindan et al. 2024). Sometimes a finger slips. Nobody confirms on purpose what has nothing to do with the task.
-What is not confirmed is declined, or left without an answer.
+People accept more often when they trust the robots and when they expect to save time, and less often with work in hand
+or after refusals of the same offer: a logit, as in Trust-POMDP (Chen et al. 2018, 2020), lowered by workload
+(Mangalindan et al. 2024). Sometimes they press the wrong button. Nobody confirms a message on purpose that has nothing
+to do with the task. A message that is not confirmed is declined, or left without an answer.
 
-Without the message they would search on, option by option, the most promising first; with it they walk to the place
-that it names and look there.
+The time saved compares two plans: without the message people search on, option by option, the most promising first;
+with it they walk to the place that it names and look there.
 """
 
 import math
@@ -21,13 +21,13 @@ from hthor.humans.search.option_description import Option
 from hthor.types import HUMAN, Event, Vec3
 
 NEUTRAL_TRUST = 0.5
-"""[share] Mean trust at which ``a0`` is the whole logit of a plain offer. Our choice: the middle of the scale."""
+"""[share] Mean trust that adds nothing to the logit of an offer. Our choice: the middle of the scale."""
 _BESIDE_M = 1.0
-"""[m] The estimated way ends this near to the named place. Our choice."""
+"""[m] Distance from the named place at which the estimated path to it ends. Our choice."""
 
 
 def acceptance_terms(traits: Parameters, offer: Offer) -> dict[str, float]:
-    """The parts of the logit of confirming, by name; they add up."""
+    """The terms of the logit of confirming, by name; the logit is their sum."""
     return {
         "a0": traits.a0,
         "trust": traits.a_trust * (offer.trust - NEUTRAL_TRUST),
@@ -38,7 +38,7 @@ def acceptance_terms(traits: Parameters, offer: Offer) -> dict[str, float]:
 
 
 def decide_answer(human: HumanContext, offer: Offer, relevant: bool = True) -> Answer:
-    """The participant's answer, or that of the policy that decides in their place; ``relevant``: about the task."""
+    """The answer of the participant, or of the policy in their place; ``relevant``: the offer is about the task."""
     if human.policy is not None:
         return human.policy.answer(offer)
     traits, number = human.traits, offer.number
@@ -58,7 +58,7 @@ def decide_answer(human: HumanContext, offer: Offer, relevant: bool = True) -> A
 
 
 def expected_search_time(options: list[Option], left: float, kappa: float) -> float:
-    """Seconds that a search is expected to take, the best option first, at most ``left``, as when it finds nothing."""
+    """Expected duration of a search [s], best option first; at most ``left``, which it takes if it finds nothing."""
     expected, elapsed, remaining = 0.0, 0.0, 1.0
     beliefs = [option.value * option.seconds**kappa for option in options]
     total = max(1.0, sum(beliefs))
@@ -73,7 +73,7 @@ def expected_search_time(options: list[Option], left: float, kappa: float) -> fl
 
 
 def walk_to_message(human: HumanContext, walker: Walker, position: Vec3) -> tuple[float, float]:
-    """Metres to the named place as far as the house is known, and seconds to go there and look."""
+    """Path length [m] to the named place as far as the house is known, and time [s] to go there and look."""
     point = (position[0], position[1])
     metres = walker.planner.distance(human.here, point, _BESIDE_M)
     if not math.isfinite(metres):
@@ -84,7 +84,7 @@ def walk_to_message(human: HumanContext, walker: Walker, position: Vec3) -> tupl
 def time_saved(
     human: HumanContext, walker: Walker, search: OptionChoice, position: Vec3 | None
 ) -> tuple[float, float | None]:
-    """Seconds that following is expected to save, never negative, and the metres to the place, None without one."""
+    """Time [s] that following is expected to save, never negative, and path length [m], None without a place."""
     if position is None:
         return 0.0, None
     metres, seconds = walk_to_message(human, walker, position)

@@ -1,6 +1,6 @@
 """What a robot's message means to the participant, and which accepted messages are still to be followed.
 
-A message names an object, or something to look into, or where to bring what is in hand.
+A message names an object, furniture to look into, or a destination for the object in hand.
 """
 
 import math
@@ -15,14 +15,14 @@ from hthor.humans.memory.subgoals import Subgoal, SubgoalTracker, object_kind
 from hthor.types import Message, Vec3
 
 _SAME_OBJECT_M = 1.0
-"""[m] A message about an object within this distance of a known one of its kind is about that one. Our choice."""
+"""[m] A position this near to a known object of the named kind means that object. Our choice."""
 
 
 class Advice(Struct, frozen=True, kw_only=True):
-    """What message number ``number`` advises: to go to ``position`` [m], None when it does not say where.
+    """The advice in message number ``number``: to go to ``position`` [m], None when the message names no place.
 
-    It is about the object of ``subgoal``; without one, ``request`` says whether to look into something ("look") or
-    where to bring what is held ("bring").
+    It is about the object of ``subgoal``; without a subgoal, ``request`` says whether the position is furniture to look
+    into ("look") or the destination of the object in hand ("bring").
     """
 
     number: int
@@ -32,12 +32,12 @@ class Advice(Struct, frozen=True, kw_only=True):
 
     @property
     def topic(self) -> str:
-        """What it is about; later advice on the same topic replaces it."""
+        """The subject of the advice; later advice on the same topic replaces it."""
         return self.subgoal.target if self.subgoal is not None else f"{self.request} {self.position}"
 
 
 class AdviceTracker:
-    """Interprets messages, and keeps the accepted ones until they were followed. ``changes`` counts updates."""
+    """Interprets messages, and keeps accepted advice until it was followed. ``changes`` counts updates."""
 
     def __init__(self, human: HumanContext, memory: SpatialMemory, subgoals: SubgoalTracker) -> None:
         self.human, self.memory, self.subgoals = human, memory, subgoals
@@ -45,7 +45,7 @@ class AdviceTracker:
         self.changes = 0
 
     def interpret(self, message: Message) -> Advice | None:
-        """What a message can still be of use for, None for nothing."""
+        """The advice in a message, None when the message is of no use any more."""
         in_hand = self.subgoals.all.get(self.human.now.holding)
         name = message.object
         names_home = in_hand is not None and self._names_destination(in_hand, name)
@@ -59,9 +59,9 @@ class AdviceTracker:
         return self._look_request(message) if self.subgoals.many else None
 
     def is_relevant(self, message: Message) -> bool:
-        """Whether a message is about anything in the task, even if it is known already.
+        """Whether a message is about anything in the task, even if the participant knows that already.
 
-        What is said of the object in hand is out of date; `interpret` judges places without a name.
+        A message about the object in hand is out of date; `interpret` judges messages without an object's name.
         """
         name, holding = message.object, self.human.now.holding
         if not name:
@@ -75,12 +75,12 @@ class AdviceTracker:
 
     @property
     def destination(self) -> Vec3 | None:
-        """Where a robot says that what is held may be put [m]."""
+        """The destination [m] that a robot advised for the object in hand."""
         positions = [advice.position for advice in self.kept.values() if advice.request == "bring"]
         return positions[-1] if positions else None
 
     def accept(self, advice: Advice) -> None:
-        """Keep advice to follow it, or take a subgoal for done."""
+        """Keep advice to follow it, or believe that its subgoal is done."""
         position, subgoal = advice.position, advice.subgoal
         if position is None:
             return
@@ -98,7 +98,7 @@ class AdviceTracker:
             self.changes += 1
 
     def drop_about(self, subgoal: Subgoal) -> None:
-        """Discard advice about an object that is now known, and about where to bring the last one."""
+        """Discard advice about an object that is now known, and about the destination of the previous object."""
         for advice in tuple(self.kept.values()):
             if advice.subgoal is subgoal or advice.request == "bring":
                 self.drop(advice)
@@ -107,7 +107,7 @@ class AdviceTracker:
         return any(name.startswith(home) for home in subgoal.job.destinations)
 
     def _meant_subgoal(self, name: str, position: Vec3 | None) -> Subgoal | None:
-        """The subgoal that a name is about: of an object that is missing, the first of its kind."""
+        """The subgoal that a message means: of the missing object with this id, else the first of its kind."""
         if not name and position is None:
             return None
         missing = [subgoal for subgoal in self.subgoals.unfinished() if subgoal.known.lies is None]
@@ -124,12 +124,12 @@ class AdviceTracker:
         )
 
     def _joint(self, name: str) -> Subgoal | None:
-        """The unfinished subgoal of this name that takes several to carry, even if its object is known."""
+        """The unfinished subgoal of this name whose object takes several carriers, even if the object is known."""
         unfinished = self.subgoals.unfinished()
         return next((one for one in unfinished if one.job.hands > 1 and name in (one.target, one.kind)), None)
 
     def _is_known(self, name: str, position: Vec3) -> bool:
-        """Whether an object of this kind was seen just there."""
+        """Whether an object of this kind was seen at this position."""
         return any(
             subgoal.known.lies is not None and math.dist(subgoal.known.lies.position, position) < _SAME_OBJECT_M
             for subgoal in self.subgoals.all.values()
@@ -137,7 +137,7 @@ class AdviceTracker:
         )
 
     def _look_request(self, message: Message) -> Advice | None:
-        """A request to look into or at a piece of furniture, while anything is missing."""
+        """A request to search a piece of furniture, None when no object is missing."""
         if all(subgoal.known.lies is not None for subgoal in self.subgoals.unfinished()):
             return None
         if object_kind(message.object) not in receptacle_kinds():
@@ -151,7 +151,7 @@ class AdviceTracker:
         return Advice(number=message.id, position=position, request="look")
 
     def _named_place(self, message: Message) -> KnownPlace | None:
-        """The known place that a message names by its id, or by its kind if there is one only, else by its position."""
+        """The known place that a message means: by its id, by its kind if only one is known, else by its position."""
         named = self.memory.places.get(message.object)
         if named is not None or message.position is None:
             alike = [place for place in self.memory.places.values() if place.kind == message.object]

@@ -9,20 +9,20 @@ from hthor.humans.population.parameters import Parameters
 from hthor.types import Message
 
 REFERENCE_WORDS = 12
-"""[words] Length of the message that ``t_read`` is for. Our choice."""
+"""[words] Length of a message that takes ``t_read`` to read. Our choice."""
 LEAST_WORDS = 4
-"""[words] Shorter messages take as long as one of this length. Our choice: a glance takes its time."""
+"""[words] Shorter messages take as long as one of this length. Our choice: even a glance takes time."""
 REREADING_SHARE = 0.5
-"""[share] Of the reading time, for a text read before. Our choice: people recognise it, and look for what is new."""
+"""[share] Part of the reading time for a text read before. Our choice: people recognise it, and look for changes."""
 _SAME_M = 0.5
 """[m] Messages about the same object at positions this close say the same. Our choice."""
 
 
 class Reading(Struct, kw_only=True):
-    """A message and its progress.
+    """A message, and how far the participant is with it.
 
     ``number`` counts the trial's messages from 1; ``since`` is the tick when it was shown, ``noticed`` and ``until``
-    when reading begins and ends. ``again`` counts how often the same was refused before.
+    when reading begins and ends. ``again`` counts how often the same message was refused before.
     """
 
     message: Message
@@ -35,17 +35,17 @@ class Reading(Struct, kw_only=True):
 
     @property
     def words(self) -> int:
-        """Its length."""
+        """Length of the message [words]."""
         return len(self.message.text.split())
 
 
 class MessageReader:
     """Notices and reads messages.
 
-    The times of noticing and reading are log-normal, drawn for each message. A message that replaces an equal one is
-    read on; one that was read before is read faster.
+    The times of noticing and reading are log-normal, drawn for each message. When an equal message replaces a message,
+    reading goes on; a message that was read before is read faster.
 
-    ``now`` is the message that is shown, None without one; ``offered`` says whether any came.
+    ``now`` is the message on display, None when there is none; ``offered`` says whether any message came.
     """
 
     def __init__(self, traits: Parameters, root: int, tick_s: float) -> None:
@@ -79,7 +79,7 @@ class MessageReader:
         return now if now is not None and not now.answered and tick >= now.until else None
 
     def mark_answered(self, reading: Reading, accepted: bool) -> None:
-        """The message was answered or ignored, and is not new any more."""
+        """Note that a message was answered or ignored, so that it is not new any more."""
         reading.answered = True
         self._read.append(reading.message)
         if not accepted:

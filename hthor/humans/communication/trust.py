@@ -1,9 +1,9 @@
 """A participant's trust in the robots: a Beta distribution, updated by trials.
 
-The law is Guo and Yang's (2021): experience adds to one of two counts, firmer trust moves less, and bad experience may
-weigh more than good. The worth of an experience follows the outcome too, whoever caused it (outcome bias: Yang,
-Schemanske and Searle 2021). Their contrast effect, that help counts for more where one would have failed alone, is left
-out: no data say how a participant would have done alone.
+The law is from Guo and Yang (2021): experience adds to two counts, trust with large counts changes less, and bad
+experience may weigh more than good. The worth of an experience also depends on the trial's outcome, whoever caused it
+(outcome bias: Yang, Schemanske and Searle 2021). Their contrast effect (help counts for more if the participant would
+have failed alone) is left out: no data say how a participant would have done alone.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from hthor import rules
 from hthor.humans.population.parameters import Parameters
 
 LATE_HELP = 0.5
-"""[share] Signal of help that comes very late in a trial; help at once is worth 1. Our choice."""
+"""[share] Worth of help that comes very late in a trial; immediate help is worth 1. Our choice."""
 
 
 class Trust(Struct, frozen=True, kw_only=True):
@@ -27,7 +27,7 @@ class Trust(Struct, frozen=True, kw_only=True):
 
     @property
     def mean(self) -> float:
-        """Between 0 and 1."""
+        """Mean trust, between 0 and 1."""
         return self.alpha / (self.alpha + self.beta)
 
     def after(self, signal: float, traits: Parameters) -> Trust:
@@ -36,7 +36,7 @@ class Trust(Struct, frozen=True, kw_only=True):
         return Trust(alpha=self.alpha + traits.w_s * worth, beta=self.beta + traits.w_f * (1.0 - worth))
 
     def report(self, noise: float, traits: Parameters) -> int:
-        """The answer on the 1 to 7 scale, with a standard normal ``noise``."""
+        """The rating on the scale from 1 to 7; ``noise`` is a standard normal number."""
         span = rules.TRUST_MAX - rules.TRUST_MIN
         rating = math.floor(rules.TRUST_MIN + span * self.mean + traits.sd_report * noise + 0.5)
         return min(rules.TRUST_MAX, max(rules.TRUST_MIN, rating))
@@ -48,7 +48,7 @@ def initial_trust(traits: Parameters) -> Trust:
 
 
 class Experience(Struct, kw_only=True):
-    """What the robots did in one trial; ``helped`` [s] is when the first good message was accepted, if any."""
+    """What the robots did in one trial; ``helped`` [s] is when the first useful message was accepted, if any."""
 
     offered: bool = False
     helped: float | None = None

@@ -1,22 +1,22 @@
-"""The journal of a trial: what a headset's recorder holds besides the paths.
+"""The journal of a trial: what a headset's recorder stores in addition to the paths.
 
 The trial's log has what the system sees: poses (x, y and yaw at 5 Hz), messages, picks and places, the rating. The
 journal adds what a recorder at the participant's side sees, as events of these kinds:
 
-- ``stick``, once a trial: ``full`` [m/s], the speed of the stick pushed all the way, and ``runs``, flat pairs of a tick
-  and the deflection from then on, in thousandths of ``full``. The direction is in the path.
-- ``head``, once a trial: ``pitch``, flat pairs of a tick and the pitch [mrad] from then on, up positive; ``fastest``
-  [rad/s], the body's limit of turning.
-- ``attempt``, under the tick at which it began: ``what`` was tried ("pick", "place", "open", "close", "drop"), the
-  ``seconds`` that it took, whether it was ``ok`` and ``why`` not ("missed" when the hand closed on nothing, else the
-  world's reason); ``at`` [m], where on the furniture, for a "place". An attempt cut off by the end of the trial has
-  neither ``seconds`` nor ``ok``.
-- ``exposure``: glimpses at an object that is wanted, see `hthor.humans.perception.exposure_log`.
-- ``choice``: what could be searched next, and what was, see `hthor.humans.search.option_description`.
+- ``stick``, once per trial: ``full`` [m/s], the speed at full deflection of the stick, and ``runs``, a flat list of
+  pairs (tick, deflection from that tick on in thousandths of ``full``). The direction is in the path.
+- ``head``, once per trial: ``pitch``, a flat list of pairs (tick, pitch [mrad] from that tick on, up positive);
+  ``fastest`` [rad/s], the body's limit of turning.
+- ``attempt``, with the tick at which it began: ``what`` was tried ("pick", "place", "open", "close", "drop"), how many
+  ``seconds`` it took, whether it succeeded (``ok``), and if not ``why`` ("missed" when the hand closed on nothing, else
+  the world's reason); for a "place" also ``at`` [m], the position on the furniture. An attempt cut off by the end of
+  the trial has neither ``seconds`` nor ``ok``.
+- ``exposure``: glimpses at an object that is searched for, see `hthor.humans.perception.exposure_log`.
+- ``choice``: the options to search next, and the chosen one, see `hthor.humans.search.option_description`.
 - ``offer``: a message that was read, and the answer, see `hthor.humans.models._dialogue`.
-- ``misled``: the place named by a confirmed message was left without success.
+- ``misled``: the participant left the place named by a confirmed message without success.
 
-The episode records stick and head for every human model; the rest is written by models that have such notions.
+The episode records stick and head for every human model; only some human models record the other kinds.
 """
 
 import math
@@ -27,13 +27,13 @@ import msgspec
 from hthor.types import HUMAN, BodySpec, Event, Motion, Move
 
 _THOUSAND = 1000
-"""[count] Steps of the stick's deflection, and of the pitch's radian. Our choice."""
+"""[count] Steps per full deflection of the stick, and per radian of pitch. Our choice."""
 _DONE = {"pick": "picked", "place": "placed", "open": "opened", "close": "closed", "drop": "dropped"}
 """The event of the trial's log for each attempt that succeeds."""
 
 
 class BehaviourRecorder:
-    """Stick and pitch of one trial, as run lengths; the body's speed is that of the stick pushed all the way."""
+    """Records stick and pitch of one trial as run lengths; full deflection of the stick gives the body's speed."""
 
     def __init__(self, body: BodySpec, tick_s: float) -> None:
         self.body, self.tick_s, self._step = body, tick_s, body.speed * tick_s
@@ -41,7 +41,7 @@ class BehaviourRecorder:
         self._pitch: list[int] = []
 
     def motion(self, tick: int, motion: Motion) -> None:
-        """The participant begins a motion at ``tick``."""
+        """Record a motion that begins at ``tick``."""
         deflection = 0
         if isinstance(motion, Move):
             share = math.hypot(motion.forward, motion.left) / self._step
@@ -51,13 +51,13 @@ class BehaviourRecorder:
             stick += (tick, deflection)
 
     def head(self, tick: int, pitch: float) -> None:
-        """The head is tilted by ``pitch`` [rad]."""
+        """Record the ``pitch`` [rad] of the head."""
         tilt = round(_THOUSAND * pitch)
         if not self._pitch or self._pitch[-1] != tilt:
             self._pitch += (tick, tilt)
 
     def journal(self, own: Iterable[Event], events: Iterable[Event]) -> tuple[Event, ...]:
-        """The whole journal: what the human model recorded (``own``), with the successes that the trial's log has."""
+        """The whole journal: the human model's own events, with successes from the trial's log (``events``)."""
         stick = Event(tick=0, seat=HUMAN, kind="stick", data={"full": self.body.speed, "runs": self._stick})
         pitch = {"fastest": self.body.turn_rate, "pitch": self._pitch}
         done = [event for event in events if event.seat == HUMAN and event.kind in _DONE.values()]
@@ -67,7 +67,7 @@ class BehaviourRecorder:
         return (stick, Event(tick=0, seat=HUMAN, kind="head", data=pitch), *ended)
 
     def _completed(self, attempt: Event, done: Sequence[Event], tried: Sequence[int]) -> Event:
-        """The attempt with its success, if it succeeded before the next was ``tried``."""
+        """The attempt, with its success if that is in ``done`` before the next attempt (``tried``: all ticks)."""
         last = min((tick for tick in tried if tick > attempt.tick), default=math.inf)
         kind = _DONE.get(attempt.data["what"])
         ends = (event.tick for event in done if event.kind == kind and attempt.tick <= event.tick <= last)

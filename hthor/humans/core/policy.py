@@ -1,7 +1,7 @@
-"""The interface through which something else decides in a participant's place: which option to take, what to answer.
+"""The interface of a policy, which decides in a participant's place which option to take and what to answer.
 
-Eyes, memory, legs and hands stay the proxy's. A language model, a policy learnt from logs or a rule of thumb chooses
-among options that are described to it, and answers messages.
+Eyes, memory, legs and hands remain those of the proxy. A language model, a policy learnt from logs or a rule of thumb
+chooses among options that are described to it, and answers messages.
 """
 
 from typing import Literal, Protocol
@@ -15,17 +15,17 @@ class OptionDescription(Struct, frozen=True, kw_only=True):
     """One thing that a participant could do next while searching.
 
     Attributes:
-        name: unique in its situation, such as "Bed|1" or "door Door|2".
-        text: in words, such as "search the bed, 3 m away".
+        name: unique among the options of a situation, such as "Bed|1" or "door Door|2".
+        text: the option in words, such as "search the bed, 3 m away".
         verb: "search" a place or "pass" a doorway.
         kind: the kind of furniture, empty for a doorway.
         knowledge: probability by common knowledge alone that the object is at this place, before any search, 0 to 1;
-            for a doorway, an equal part of what remains for everything behind doorways.
-        uniform: the same for somebody without common knowledge.
+            for a doorway, an equal part of the probability that remains for everything behind doorways.
+        uniform: the same probability for a person without common knowledge.
         metres: walking distance [m]. seconds: time to go there and search it [s].
-        exposure: how thoroughly it was searched already, after forgetting.
-        closed: whether it must be opened first.
-        value: what the proxy's own law makes of it; larger is better.
+        exposure: how thoroughly the place was searched already, after forgetting.
+        closed: whether the place must be opened first.
+        value: how good the option is by the proxy's own law; larger is better.
     """
 
     name: str
@@ -48,10 +48,10 @@ class Situation(Struct, frozen=True, kw_only=True):
         instruction: the task in words.
         aim: what is searched for, "target" or "destination".
         number: counts the choices of a trial, from 0.
-        left: time that is left [s].
+        left: time until the trial ends [s].
         room: name of the current room.
         holding: id of the object in hand, empty for none.
-        options: never empty.
+        options: what the participant could do next; never empty.
     """
 
     instruction: str
@@ -64,12 +64,12 @@ class Situation(Struct, frozen=True, kw_only=True):
 
 
 class Offer(Struct, frozen=True, kw_only=True):
-    """A message as the participant who has read it sees it.
+    """A message as a participant sees it after reading it.
 
     Attributes:
         number: counts the messages read in a trial, from 1.
         trust: mean trust, 0 to 1.
-        useful: whether it could still help.
+        useful: whether following it could still help.
         gain: time that following it is expected to save [s], never negative.
         load: work in hand, 0 to 1.
         again: how often the same offer was refused before.

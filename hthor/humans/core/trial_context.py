@@ -1,4 +1,4 @@
-"""What all parts of a human model share in one trial: traits, body, the observation of now, chance and the journal."""
+"""What all parts of a human model share in one trial: traits, body, current observation, random numbers and journal."""
 
 from collections.abc import Callable, Generator, Iterator
 from typing import Any
@@ -21,9 +21,9 @@ _AIMED_RAD = 0.05
 _MAX_TURNS = 100
 """[count] Ticks after which people stop turning towards a point. Our choice."""
 _LEVEL_RAD = 0.5
-"""[rad] While more than this of a look round is left, the head returns to `GAZE_PITCH`. Our choice."""
+"""[rad] The head returns to `GAZE_PITCH` while more than this angle of a look round is left. Our choice."""
 _LEFT_CHANCE = 0.5
-"""[chance] That a look round goes to the left. Our choice: no side is preferred."""
+"""[chance] Probability that a look round goes to the left. Our choice: no side is preferred."""
 
 
 class HumanContext:
@@ -31,7 +31,7 @@ class HumanContext:
 
     Attributes:
         policy: decides in the participant's place; None for the model's own way of deciding.
-        journal: what a headset's recorder would hold of this trial.
+        journal: events that a headset's recorder would store of this trial.
         listener: called with beliefs and choices (`hthor.types.Event`); None when nobody asks for them.
     """
 
@@ -77,7 +77,7 @@ class HumanContext:
             yield Wait(seconds=ticks * self.tick_s)
 
     def turn(self, yaw: float, pitch: float = 0.0) -> Rotate:
-        """The part of a turn that fits into one tick; both angles [rad] end together."""
+        """The part of a turn that fits into one tick; both angles [rad] are completed at the same time."""
         most = min(self.traits.omega, self.body.turn_rate) * self.tick_s
         share = min(1.0, most / max(abs(yaw), abs(pitch), 1e-9))
         return Rotate(yaw=yaw * share, pitch=pitch * share)
@@ -91,7 +91,7 @@ class HumanContext:
             yield self.turn(error.yaw, error.pitch)
 
     def look_round(self, angle: float, name: str, number: int) -> Iterator[Motion]:
-        """Turn by ``angle`` [rad] in one go, to a random side."""
+        """Turn by ``angle`` [rad] without stopping, to a random side."""
         left = angle if self.draw("side", name, number) < _LEFT_CHANCE else -angle
         while abs(left) > _AIMED_RAD:
             step = self.turn(left, GAZE_PITCH - self.now.pose.pitch if abs(left) > _LEVEL_RAD else 0.0)

@@ -16,17 +16,17 @@ from hthor.humans.llm import policy
 from hthor.humans.population.participant import Participant
 
 STUB = "stub"
-"""The word for a rule in place of a model."""
+"""The word that selects a rule instead of a language model."""
 URL, MODEL, KEY, CACHE = "HTHOR_LLM_URL", "HTHOR_LLM_MODEL", "HTHOR_LLM_KEY", "HTHOR_LLM_CACHE"
-"""Variables of the environment that say what to ask."""
+"""Environment variables with the settings of the language model."""
 _TIMEOUT_S = 120.0
 """[s] Longest wait for an answer of the endpoint. Our choice."""
 _SHOWN = 200
-"""[bytes] Of an endpoint's error message that are shown. Our choice."""
+"""[bytes] Length to which an endpoint's error message is cut. Our choice."""
 
 
 class Settings(Struct, frozen=True, kw_only=True):
-    """Which model: ``url`` of an OpenAI-compatible chat endpoint, or `STUB`; ``key`` is sent as a bearer token."""
+    """A language model: ``url`` of an OpenAI-compatible chat endpoint, or `STUB`; ``key`` is sent as a bearer token."""
 
     url: str = ""
     model: str = ""
@@ -35,12 +35,12 @@ class Settings(Struct, frozen=True, kw_only=True):
 
     @property
     def name(self) -> str:
-        """What the model is called in the cache and in hashes; where it runs is no part of it."""
+        """The model's name in the cache and in hashes; it does not depend on where the model runs."""
         return STUB if self.url == STUB else self.model
 
 
 def settings() -> Settings:
-    """As the environment says."""
+    """The settings in the environment variables."""
     given = {"url": URL, "model": MODEL, "key": KEY, "cache": CACHE}
     return Settings(**{field: os.environ[name] for field, name in given.items() if os.environ.get(name)})
 
@@ -49,7 +49,7 @@ def model_name(chosen: Settings) -> str:
     """The model's name.
 
     Raises:
-        HthorError: when the settings name none.
+        HthorError: when the settings do not name a model.
     """
     if not chosen.name:
         raise HthorError(
@@ -64,7 +64,7 @@ def make_policy(participant: Participant, chosen: Settings) -> policy.LanguageMo
     """A policy that asks the language model in this participant's place.
 
     Raises:
-        HthorError: when the settings name no model.
+        HthorError: when the settings do not name a model.
     """
     temperature, seed = policy.temperature(participant), policy.seed(participant)
     backend = answer_by_rule if chosen.url == STUB else Endpoint(chosen, temperature, seed)
@@ -72,7 +72,7 @@ def make_policy(participant: Participant, chosen: Settings) -> policy.LanguageMo
 
 
 def answer_by_rule(question: str) -> str:
-    """A rule in place of a model: the nearest option, and yes to what is said to save time."""
+    """Answer by a rule instead of a model: choose the nearest option, and confirm messages said to save time."""
     options = re.findall(r"^(\d+)\. (.*)$", question, re.MULTILINE)
     if not options:
         return "confirm" if "would save you" in question else "decline"
@@ -93,7 +93,7 @@ class Endpoint:
         self._chosen, self._temperature, self._seed = chosen, temperature, seed
 
     def __call__(self, question: str) -> str:
-        """Ask; the first choice's text.
+        """Send the question, and return the text of the reply's first choice.
 
         Raises:
             HthorError: when no answer came. The run can be continued by the same command.
@@ -122,7 +122,7 @@ class Endpoint:
             text = error.read(_SHOWN).decode("utf-8", "replace")
             error.close()
             raise self._failed(f"HTTP {error.code}: {text}") from None
-        except (OSError, ValueError) as error:  # Unreadable is a ValueError
+        except (OSError, ValueError) as error:  # an unreadable reply is a ValueError
             raise self._failed(str(error)) from None
 
     def _failed(self, why: str) -> HthorError:

@@ -1,8 +1,8 @@
-"""A language model in a participant's place: it is asked what to do next and what to say to messages.
+"""A language model in a participant's place: it is asked what to do next and how to answer messages.
 
-Eyes, memory, legs, hands and reading times stay the proxy's; the time that the model takes to answer is no part of the
-simulated time. An answer that cannot be read is asked for once more; if that fails too, the participant goes to the
-nearest option, or leaves the message alone.
+Eyes, memory, legs, hands and reading times remain those of the proxy; the time that the model takes to answer does not
+count as simulated time. If an answer cannot be read, the question is repeated once; if that fails too, the participant
+goes to the nearest option, or ignores the message.
 """
 
 import fcntl
@@ -20,26 +20,26 @@ from hthor.humans.llm import prompts
 from hthor.humans.population.participant import Participant
 
 MAX_TOKENS = 16
-"""[tokens] Most of an answer. Our choice."""
+"""[tokens] Greatest length of an answer. Our choice."""
 _MAX_CHARACTERS = 200
-"""[characters] Of an answer that are kept. Our choice."""
+"""[characters] Length to which an answer is cut. Our choice."""
 _SEED_BITS = 31
-"""[bits] Of a participant's root that are the model's seed. Our choice."""
+"""[bits] Part of a participant's root that is the model's seed. Our choice."""
 _COOLEST = 0.2
-"""[temperature] Least of a model. Our choice."""
+"""[temperature] Lowest temperature of a model. Our choice."""
 _HOTTEST = 1.5
-"""[temperature] Greatest of a model. Our choice."""
+"""[temperature] Highest temperature of a model. Our choice."""
 _T = TypeVar("_T")
 
 Backend = Callable[[str], str]
-"""Takes a question, gives an answer."""
+"""A function that takes a question and returns an answer."""
 
 
 class LanguageModelPolicy:
     """Choices and answers of a language model: a `hthor.humans.core.policy.Policy`.
 
-    The traits are given to the model in words, and set its temperature and seed; the backend is asked only for what the
-    file of answers does not hold.
+    The traits are described to the model in words, and set its temperature and seed. The backend is asked only for
+    answers that are not in the file of answers yet.
     """
 
     def __init__(self, participant: Participant, backend: Backend, cache: Path, model: str) -> None:
@@ -50,7 +50,7 @@ class LanguageModelPolicy:
         self.questions = self.fallbacks = 0
 
     def choose(self, situation: Situation) -> int:
-        """The option that the model names; the nearest if its answers cannot be read."""
+        """The option that the model names; the nearest option if its answers cannot be read."""
         question = prompts.choice_question(self._who, situation)
         result = self._ask(question, lambda reply: prompts.read_choice(reply, situation))
         options = situation.options
@@ -85,7 +85,7 @@ def seed(participant: Participant) -> int:
 
 
 class CachedResponse(Struct, frozen=True, kw_only=True):
-    """One answer: ``key`` hashes everything that it depends on."""
+    """One answer; ``key`` is the hash of everything that the answer depends on."""
 
     key: str
     model: str
@@ -100,11 +100,11 @@ _decoder = msgspec.json.Decoder(CachedResponse)
 
 
 class ResponseCache:
-    """The answers of one model to one person, kept in a file so that nothing is asked twice.
+    """The answers of one model to one person, kept in a file so that no question is asked twice.
 
-    One line of JSON per answer, append-only, safe for several processes at once; its key hashes the model and its
-    settings too. A run whose answers are all there needs no model and gives the same bytes again; publish the file with
-    the run.
+    One line of JSON per answer, append-only, safe for several processes at once; the key covers the model and its
+    settings too. A run whose answers are all in the file needs no model and gives the same bytes again; publish the
+    file with the run.
     """
 
     def __init__(self, path: Path, *, model: str, temperature: float, seed: int, tokens: int) -> None:
@@ -114,7 +114,7 @@ class ResponseCache:
         self._read = 0
 
     def answer(self, prompt: str, ask: Callable[[str], str], most: int) -> str:
-        """The answer to a question: from the file, or asked, cut to ``most`` characters and kept."""
+        """The answer from the file, or else from ``ask``, cut to ``most`` characters and added to the file."""
         key = jsonio.sha256({**self._about, "prompt": prompt})
         self._catch_up()
         if key not in self._known:
@@ -138,7 +138,7 @@ class ResponseCache:
             os.close(handle)
 
     def _catch_up(self) -> None:
-        """Read what was appended since; torn or damaged lines are skipped."""
+        """Read the lines appended since the last reading; torn or damaged lines are skipped."""
         if not self.path.exists():
             return
         with self.path.open("rb") as file:

@@ -7,9 +7,9 @@ from hthor.humans.core.policy import Answer, Offer, Situation
 from hthor.humans.population.parameters import Parameters
 
 MAX_OPTIONS = 24
-"""[count] Options that are listed, the nearest. Our choice."""
+"""[count] Greatest number of options in a question; the nearest are listed. Our choice."""
 _TEXT_MAX = 400
-"""[characters] Of an instruction or a message that are quoted. Our choice."""
+"""[characters] Length to which a quoted instruction or message is cut. Our choice."""
 _PACE_M_S = (0.45, 0.75)
 """[m/s] Limits of v_pace between slow, ordinary and brisk. Our choice."""
 _PLANNING = (1.0, 3.0)
@@ -36,14 +36,14 @@ def persona(traits: Parameters) -> str:
 
 
 def listed_options(situation: Situation) -> list[int]:
-    """Indices of the options that are put to the model: at most `MAX_OPTIONS`, the nearest, in their own order."""
+    """Indices of the options that the model is asked about: the `MAX_OPTIONS` nearest, in their original order."""
     options = situation.options
     nearest = sorted(range(len(options)), key=lambda k: (options[k].metres, k))[:MAX_OPTIONS]
     return sorted(nearest)
 
 
 def choice_question(who: str, situation: Situation) -> str:
-    """The question what to do next; its answer is a number from 1."""
+    """The question of what to do next; its answer is a number from 1."""
     options = [f"{n}. {situation.options[k].text}" for n, k in enumerate(listed_options(situation), 1)]
     looked_for = (
         "You do not know yet where the thing is that you need."
@@ -65,7 +65,7 @@ def choice_question(who: str, situation: Situation) -> str:
 
 
 def offer_question(who: str, message: Offer) -> str:
-    """The question what to say to a message; its answer is one of three words."""
+    """The question of how to answer a message; its answer is one of three words."""
     there = "" if message.metres is None else f" The place that it names is {message.metres:.0f} m of walking from you."
     use = (
         f" You think that following it would save you about {message.gain:.0f} seconds."
@@ -103,7 +103,7 @@ def repeated_question(question: str, reply: str, limit: int) -> str:
 
 
 def read_choice(reply: str, situation: Situation) -> int | None:
-    """The index of the option that an answer names; None for anything but one number that is listed."""
+    """The index of the option that an answer names; None unless the answer is one of the listed numbers."""
     match = re.fullmatch(r"[\s\"'*(]*(?:option\s+)?(\d{1,3})[\s\"'*).:]*", reply, re.IGNORECASE)
     shown = listed_options(situation)
     number = int(match[1]) if match else 0
@@ -111,7 +111,7 @@ def read_choice(reply: str, situation: Situation) -> int | None:
 
 
 def read_answer(reply: str) -> Answer | None:
-    """The one word of an answer; None for anything else."""
+    """The answer as one of the three words; None if it is anything else."""
     return _ANSWERS.get(re.sub(r"^\W+|\W+$", "", reply).lower())
 
 

@@ -1,7 +1,7 @@
 """Where a participant expects an object: common knowledge mixed with ignorance.
 
-Common knowledge are the scene priors of `hthor.catalog.priors`; ignorance is the same belief in every kind of
-furniture. People weigh the two, and fresh evidence against both ("Why are the batteries in the microwave?", Cognitive
+Common knowledge means the scene priors of `hthor.catalog.priors`; ignorance means equal belief in every kind of
+furniture. People weigh the two, and new evidence against both ("Why are the batteries in the microwave?", Cognitive
 Research 2021): a place searched in vain loses belief by its exposure, see `hthor.humans.search.option_choice`.
 """
 
@@ -13,7 +13,7 @@ from hthor.catalog import priors
 
 @cache
 def receptacle_kinds() -> tuple[str, ...]:
-    """Kinds of furniture that things are put on or in, in the catalogue's order; no crockery."""
+    """Kinds of furniture that things are put on or in, in the catalogue's order; without crockery."""
     return tuple(name for name in catalog.names() if catalog.kind(name).rests() and not catalog.kind(name).pickable)
 
 
@@ -21,8 +21,8 @@ def receptacle_kinds() -> tuple[str, ...]:
 def prior_shares(target: str) -> dict[str, float]:
     """Common knowledge: the probability of each of `receptacle_kinds`; adds up to 1, uniform for an unknown target.
 
-    A target *near* another object is where that object would be, or at the furniture it is near to; references that
-    are neither are left out.
+    A target *near* another object is expected where that object is expected, and a target near furniture at that
+    furniture; other references are left out.
     """
     mass = dict.fromkeys(receptacle_kinds(), 0.0)
     for (relation, reference), weight in _weights(target).items():
@@ -46,7 +46,7 @@ def _weights(target: str) -> dict[tuple[str, str], float]:
 
 
 def _direct(target: str) -> dict[str, float]:
-    """Shares of the furniture that a target lies on or in; empty for what is no target."""
+    """Shares of the furniture that a target lies on or in; empty for an object that is not a target."""
     weights = {ref: weight for (_, ref), weight in _weights(target).items() if ref in receptacle_kinds()}
     total = sum(weights.values())
     return {ref: weight / total for ref, weight in weights.items()}

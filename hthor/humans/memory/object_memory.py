@@ -1,9 +1,9 @@
-"""What a participant knows of the objects of the task, and how things out of view are forgotten.
+"""What a participant knows about the objects of the task, and how things out of view are forgotten.
 
-The probability that something is still remembered falls to 1/e in ``tau_seen`` seconds, as searches do in
-`SpatialMemory`. An exponential is the simplest law, coarser than ACT-R's power law; the published numbers cannot tell
-them apart. The objects of the task are forgotten, and the furniture that something must be brought to. The layout
-(rooms, doorways, where furniture stands) is learnt fast and kept (Li, Aivar, Tong and Hayhoe 2018).
+The probability that a thing is still remembered falls to 1/e in ``tau_seen`` seconds; `SpatialMemory` forgets searches
+in the same way. An exponential is the simplest law, coarser than ACT-R's power law; the published numbers cannot tell
+them apart. People forget the objects of the task, and the furniture that is a destination. The layout (rooms, doorways,
+where furniture stands) is learnt fast and kept (Li, Aivar, Tong and Hayhoe 2018).
 """
 
 import math
@@ -16,15 +16,15 @@ from hthor.humans.memory.spatial_memory import KnownPlace, SpatialMemory
 from hthor.types import HUMAN, Detection, Vec2
 
 _MOVED_M = 0.02
-"""[m] An object seen this far from where it was has been moved. Our choice."""
+"""[m] An object seen farther than this from its last position has been moved. Our choice."""
 _EVERY_S = 1.5
 """[s] How often the model checks what was forgotten. Our choice: every second or two is enough."""
 
 
 class KnownObject(Struct, kw_only=True):
-    """One object: ``seen`` is how it was noticed last, at tick ``at`` and from ``spot`` [m]; None while not known.
+    """One object: ``seen`` is its last detection, at tick ``at`` and from ``spot`` [m]; None while it is not known.
 
-    ``views`` counts how often it came into view, ``lost`` how often it was forgotten or not where it had been seen.
+    ``views`` counts how often it came into view, ``lost`` how often it was forgotten or was not where it had been seen.
     """
 
     id: str
@@ -36,7 +36,7 @@ class KnownObject(Struct, kw_only=True):
 
     @property
     def taken(self) -> bool:
-        """Whether a robot was seen with it."""
+        """Whether a robot was seen holding it."""
         return self.seen is not None and self.seen.held_by not in ("", HUMAN)
 
     @property
@@ -46,21 +46,21 @@ class KnownObject(Struct, kw_only=True):
 
 
 class ObjectMemory:
-    """All objects of the task. ``changes`` counts how often the knowledge of one of them changed."""
+    """All objects of the task. ``changes`` counts changes of what is known about them."""
 
     def __init__(self, ids: Iterable[str]) -> None:
         self.known = {id: KnownObject(id=id) for id in ids}
         self.changes = 0
 
     def see(self, known: KnownObject, seen: Detection, tick: int, spot: Vec2) -> None:
-        """An object that is known, or was noticed just now, is in view."""
+        """Update an object in view that is known, or was noticed just now, from its detection ``seen``."""
         before = known.seen
         if before is not seen and (before is None or _differs(before, seen)):
             self.changes += 1
         known.seen, known.at, known.spot = seen, tick, spot
 
     def lose(self, known: KnownObject) -> None:
-        """The object is forgotten, or not where it was; it must be noticed again."""
+        """Note that an object was forgotten or is not where it was; it must be noticed again."""
         known.lost += 1
         known.seen = None
         self.changes += 1
@@ -73,10 +73,10 @@ def _differs(a: Detection, b: Detection) -> bool:
 
 
 class Forgetting:
-    """Says what is forgotten by now.
+    """Decides which objects and places are forgotten by now.
 
     A memory lasts for a random span, drawn by the thing's name and how often it came into view, so that the order of
-    questions makes no difference.
+    the checks makes no difference.
     """
 
     def __init__(self, human: HumanContext, objects: ObjectMemory, memory: SpatialMemory) -> None:
@@ -88,7 +88,7 @@ class Forgetting:
         self._spans: dict[tuple[str, int], float] = {}
 
     def forgotten_objects(self, current: KnownObject) -> Iterable[KnownObject]:
-        """Objects forgotten just now; never the ``current`` one, nor what is in hand."""
+        """Objects forgotten just now; never the ``current`` object or the object in hand."""
         holding = self.human.now.holding
         return [
             known

@@ -10,7 +10,7 @@ from hthor.geometry.plane import distance_to_rectangle, turn
 from hthor.types import Detection, Vec2, Vec3
 
 _BEYOND_M = 0.6
-"""[m] How far behind a doorway the spot lies that people walk to when they go through. Our choice."""
+"""[m] How far behind a doorway people walk when they go through it. Our choice."""
 _TOUCH_M = 0.1
 """[m] A point this close to furniture's outline counts as on it. Our choice."""
 
@@ -18,9 +18,9 @@ _TOUCH_M = 0.1
 class KnownPlace(Struct, kw_only=True):
     """A piece of furniture as last seen, and how well it was searched.
 
-    ``exposure`` is the detection rate added up there, as it stood at tick ``since``; it fades. ``at`` is the last tick
-    in view, ``views`` how often it came into view. ``recalled`` says whether its position is remembered, ``lost`` how
-    often it was forgotten.
+    ``exposure`` is the detection rate added up there, as of tick ``since``; it fades. ``at`` is the last tick at which
+    it was in view, ``views`` how often it came into view. ``recalled`` says whether its position is remembered,
+    ``lost`` how often it was forgotten.
     """
 
     id: str
@@ -41,15 +41,15 @@ class KnownPlace(Struct, kw_only=True):
         return self.distance((point[0], point[1])) <= _TOUCH_M
 
     def distance(self, point: Vec2) -> float:
-        """From a point to its outline [m], zero inside."""
+        """Distance from a point to the outline [m], zero inside."""
         return distance_to_rectangle(point, (self.centre[0], self.centre[1]), (self.size[0], self.size[1]), self.yaw)
 
 
 class KnownDoorway(Struct, kw_only=True):
     """A doorway as seen: ``across`` is the direction through it, ``width`` [m] its opening.
 
-    ``sides`` are the rooms from which it was seen with nothing between; with two of them, it leads nowhere new.
-    ``beyond`` [m] is a spot just behind it as seen from the first of them.
+    ``sides`` are the rooms from which it was seen directly; a doorway with two sides leads nowhere new. ``beyond`` [m]
+    is a spot just behind it as seen from the first of these rooms.
     """
 
     id: str
@@ -117,7 +117,7 @@ class SpatialMemory:
         return place
 
     def lose(self, place: KnownPlace) -> None:
-        """Forget where a place is; searches of it are kept for when it is seen again."""
+        """Forget where a place is; how well it was searched is kept for when it is seen again."""
         place.recalled, place.lost = False, place.lost + 1
 
     def keep_doorway(self, seen: Detection, here: Vec2, room: str) -> None:
@@ -166,7 +166,7 @@ def _hides(kind: str) -> bool:
 
 
 def _doorway(seen: Detection) -> KnownDoorway:
-    """A doorway by its detection; the opening runs along the longer side."""
+    """A doorway from its detection; the opening runs along the longer side."""
     wide = seen.size[0] >= seen.size[1]
     across = turn((0.0, 1.0) if wide else (1.0, 0.0), seen.yaw)
     centre = (seen.position[0], seen.position[1])

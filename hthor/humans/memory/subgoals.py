@@ -1,4 +1,4 @@
-"""What there is to do in a trial, and what of it is done as far as the participant knows."""
+"""The jobs of a trial, and which of them are done as far as the participant knows."""
 
 import math
 import re
@@ -12,18 +12,18 @@ from hthor.humans.memory.spatial_memory import KnownPlace, SpatialMemory
 from hthor.types import Job, Vec3
 
 _SPOT_M = 0.2
-"""[m] An object this near to its remembered spot is in its place. Our choice."""
+"""[m] An object this near to its remembered spot is where it belongs. Our choice."""
 _JOINT_SPOT_M = 0.6
-"""[m] The same for an object that several carry. Our choice."""
+"""[m] The same distance for an object that several people carry. Our choice."""
 _ENOUGH_TRIES = 2
-"""[count] After so many times of putting an object down where it belongs, people leave it where it is. Our choice."""
+"""[count] How often people put an object down where it belongs, before they leave it where it is. Our choice."""
 
 
 class Subgoal(Struct, kw_only=True):
     """One job as the participant sees it, about the object ``known`` of this ``kind``.
 
     ``spot`` [m] is the exact place where the object belongs, as remembered. ``done`` says how the participant knows
-    that it is done, empty while it is not; ``tries`` counts how often they put the object down there.
+    that the job is done, empty while it is not; ``tries`` counts how often they put the object down where it belongs.
     """
 
     job: Job
@@ -40,12 +40,12 @@ class Subgoal(Struct, kw_only=True):
 
     @property
     def by_room(self) -> bool:
-        """Whether it belongs in a room, anywhere there."""
+        """Whether the object belongs in a room, at any place there."""
         return self.job.relation == "at" and bool(self.job.destinations)
 
 
 class SubgoalTracker:
-    """All jobs of a trial, by their objects' ids. ``many``: several objects, or one that takes several to carry."""
+    """All jobs of a trial, by their objects' ids. ``many``: there are several, or one takes several carriers."""
 
     def __init__(self, human: HumanContext, memory: SpatialMemory, known: dict[str, KnownObject]) -> None:
         self.human, self.memory = human, memory
@@ -54,11 +54,11 @@ class SubgoalTracker:
         self.all = {job.target: self._subgoal(job, known[job.target]) for job in jobs}
 
     def unfinished(self) -> list[Subgoal]:
-        """Those not known to be done, in the order of the briefing."""
+        """Jobs not known to be done, in the order of the briefing."""
         return [subgoal for subgoal in self.all.values() if not subgoal.done]
 
     def update(self) -> None:
-        """Mark as done what was seen where it belongs, and as not done what was seen elsewhere since."""
+        """Mark jobs as done if their object was seen where it belongs, as not done if it was seen elsewhere since."""
         for subgoal in self.all.values():
             seen = subgoal.known.seen
             if seen is None or subgoal.known.at < 0 or (subgoal.by_room and subgoal.known.at != self.human.now.tick):
@@ -85,7 +85,7 @@ class SubgoalTracker:
         return support in job.destinations or (place is not None and place.kind in job.destinations)
 
     def room_of(self, position: Vec3) -> str:
-        """The room of something in view at ``position`` [m]: the current one, empty when a doorway is between."""
+        """The room of a thing in view at ``position`` [m]: the current room, empty if it is seen through a doorway."""
         here, there = self.human.here, (position[0], position[1])
         through = any(doorway.is_crossed(here, there) for doorway in self.memory.doorways.values())
         return "" if through else self.human.now.room
@@ -110,7 +110,7 @@ class SubgoalTracker:
         return Subgoal(job=job, kind=object_kind(job.target), known=known, spot=self._remembered(job))
 
     def _remembered(self, job: Job) -> Vec3 | None:
-        """The exact place of an object as remembered from a tour of the house: somewhat off, or not at all."""
+        """The exact place of an object as remembered from a tour of the house: with an error, or None if forgotten."""
         if job.place is None or job.hands > 1:
             return job.place
         human, off = self.human, self.human.traits.tour_sd

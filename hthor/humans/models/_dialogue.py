@@ -13,21 +13,21 @@ from hthor.humans.core.trial_context import HumanContext
 from hthor.types import Observation, Reply
 
 Saving = Callable[[Advice], tuple[float, float | None]]
-"""Estimates the seconds that advice saves, and the metres to its place, None without one."""
+"""Estimates the seconds that advice saves, and the metres to its place, None without a place."""
 
 
 class MessageDecision(Struct, frozen=True, kw_only=True):
-    """What became of a message: the ``reply``, None when it was ignored, and the accepted ``advice``."""
+    """The decision on a message: the ``reply``, None when it was ignored, and the ``advice``, None unless accepted."""
 
     reply: Reply | None = None
     advice: Advice | None = None
 
 
 class Dialogue:
-    """Reads messages, one at a time, and keeps what the robots did for the participant (``experience``).
+    """Reads messages, one at a time, and keeps the participant's ``experience`` of the robots.
 
-    Every answer is recorded in the journal as "offer": the fields of `Offer`, ``relevant`` when it was about the task,
-    ``words``, its length, and ``read_s``, the seconds from when it was shown to the answer.
+    Every answer is recorded in the journal as "offer": fields of `Offer`, whether the message was about the task
+    (``relevant``), its length in ``words``, and ``read_s``, the seconds from when it was shown to the answer.
     """
 
     def __init__(self, human: HumanContext, advice: AdviceTracker) -> None:
@@ -36,7 +36,7 @@ class Dialogue:
         self.experience = Experience()
 
     def read(self, now: Observation, trust: float, busy: bool, saving: Saving) -> MessageDecision | None:
-        """Look at the inbox, ``busy`` or not with something in hand; None while there is nothing to answer."""
+        """Look at the inbox; None while there is nothing to answer. ``busy``: the participant has work in hand."""
         reader, human = self.reader, self.human
         reader.receive(now.tick, now.inbox)
         self.experience.offered = reader.offered
@@ -69,7 +69,7 @@ class Dialogue:
         return MessageDecision(reply=reply, advice=advice if accepted else None)
 
     def record_misled(self) -> None:
-        """The accepted advice led nowhere."""
+        """Record that the accepted advice was of no help."""
         self.experience.misled, self.experience.helped = True, None
         self.human.record("misled")
 

@@ -1,4 +1,4 @@
-"""Which of all possible goals a participant pursues now."""
+"""The choice of the goal that a participant pursues now."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -17,7 +17,7 @@ Activity = Literal["begin", "deliver", "fetch", "haul", "follow", "search", "res
 
 
 class Goal(Struct, frozen=True, kw_only=True):
-    """What a participant sets out to do, with which object or by whose advice; goals are compared by identity."""
+    """An activity of a participant, and the object or advice that it is about; goals are compared by identity."""
 
     activity: Activity
     subgoal: Subgoal | None = None
@@ -25,7 +25,7 @@ class Goal(Struct, frozen=True, kw_only=True):
 
     @property
     def position(self) -> Vec3:
-        """Where it leads to [m]."""
+        """Where the goal leads [m]."""
         if self.advice is not None and self.advice.position is not None:
             return self.advice.position
         seen = self.subgoal.known.seen if self.subgoal is not None else None
@@ -34,7 +34,7 @@ class Goal(Struct, frozen=True, kw_only=True):
 
     @property
     def words(self) -> str:
-        """Such as "fetch apple", or "search"."""
+        """The goal in words, such as "fetch apple" or "search"."""
         if self.subgoal is not None:
             return f"{self.activity} {self.subgoal.known.id}"
         return self.activity if self.advice is None else f"{self.activity} message {self.advice.number}"
@@ -44,7 +44,7 @@ BEGIN, SEARCH, REST = Goal(activity="begin"), Goal(activity="search"), Goal(acti
 
 
 class GoalArbiter:
-    """Chooses the goal: first what is in hand, then the nearest on foot of what is known or advised, then searching.
+    """Chooses the goal: first the object in hand, then the known or advised object nearest on foot, then search.
 
     A choice stands until something changes. ``missing`` are the subgoals whose objects must be searched for.
     """
@@ -73,7 +73,7 @@ class GoalArbiter:
         self._choice: Goal | None = None
 
     def goal(self) -> Goal | None:
-        """The goal to pursue now, None when there is nothing better than to search."""
+        """The goal to pursue now, None when nothing is better than to search."""
         holding = self.human.now.holding
         if holding:
             delivery = self._deliveries.get(holding)
@@ -88,12 +88,12 @@ class GoalArbiter:
         return self._choice
 
     def _changes(self) -> int:
-        """Grows with everything that could change the choice."""
+        """A number that grows with everything that could change the choice."""
         places = len(self.memory.places) if self.subgoals.many else 0
         return self.objects.changes + self.advice.changes + places
 
     def _put_down(self, subgoal: Subgoal) -> None:
-        """What was in hand was put down, where it belongs or elsewhere."""
+        """Note that the object in hand was put down, where it belongs or elsewhere."""
         self._in_hand, outcome = None, self.human.now.outcome
         self.objects.changes += 1
         if self.subgoals.many and outcome is not None and outcome.ok and outcome.motion == "place":

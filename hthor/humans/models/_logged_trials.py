@@ -1,4 +1,4 @@
-"""The trials of a participant in a run's log, as far as `replay` needs them: ways, looks, hands, answers."""
+"""The trials of a participant in a run's log, as far as `replay` needs them: paths, looks, hand actions, answers."""
 
 import hashlib
 import math
@@ -14,7 +14,7 @@ from hthor.errors import HthorError
 from hthor.types import HUMAN, Briefing, Close, Drop, Event, Motion, Open, Pick, Place, Pose, TrialSpec
 
 _START_M = 0.002
-"""[m] A trial begins at a logged pose if it is this near. Our choice: poses are logged to a millimetre."""
+"""[m] Distance within which a trial begins at a logged pose. Our choice: poses are logged to a millimetre."""
 _MILLI = 1000.0
 """[1/unit] Poses and pitches are logged in thousandths. Source: docs/files.md."""
 _HAND_ACTIONS: dict[str, Callable[[dict[str, str]], Motion]] = {
@@ -41,19 +41,19 @@ class LoggedTrial(Struct, frozen=True, kw_only=True):
     journal: tuple[Event, ...] = ()
 
     def is_of(self, briefing: Briefing) -> bool:
-        """Whether it is the task of this briefing."""
+        """Whether this trial has the task of the briefing."""
         task = self.spec.task
         words = (briefing.instruction, briefing.target, briefing.relation, briefing.time_limit)
         logged = (task.instruction, task.goal.target, task.goal.relation, task.time_limit)
         return words == logged and briefing.todo == task.goal.todo
 
     def begins_at(self, pose: Pose) -> bool:
-        """Whether the participant stood here at its start."""
+        """Whether the participant stood at ``pose`` when this trial began."""
         start = self.spec.task.human_start
         return math.dist((start.x, start.y), (pose.x, pose.y)) < _START_M
 
     def hand_actions(self) -> Iterator[tuple[int, Motion]]:
-        """What the hands did, with the tick of the effect."""
+        """The actions of the hands, each with the tick at which it took effect."""
         for event in self.events:
             if event.seat == HUMAN and event.kind in _HAND_ACTIONS:
                 yield event.tick, _where(_HAND_ACTIONS[event.kind](event.data), event.tick, self.journal)
@@ -108,7 +108,7 @@ def _read(path: str) -> dict[int, list[LoggedTrial]]:
     trials: dict[int, list[LoggedTrial]] = {}
     for number, line in enumerate(_bytes(Path(path)).splitlines(keepends=True), 1):
         if not line.endswith(b"\n"):
-            break  # a run that was stopped
+            break  # the run was stopped while it wrote this line
         try:
             with documents.reading_errors():
                 trial = decoder.decode(line)
@@ -128,7 +128,7 @@ def _bytes(path: Path) -> bytes:
 
 
 def _where(motion: Motion, tick: int, journal: tuple[Event, ...]) -> Motion:
-    """The same motion, with where exactly something was put when the journal has it."""
+    """The same motion; if the journal has the exact position of something put down, with that position."""
     if not isinstance(motion, Place):
         return motion
     tried = [e for e in journal if e.kind == "attempt" and e.data.get("what") == "place" and e.tick <= tick]

@@ -1,12 +1,12 @@
 """A human without doubts, mistakes or chance: the nearest unvisited option next, and every message is believed.
 
-With `hthor.humans.models.random` it brackets what real people may do: a robot that does not help it is of no use.
+With `hthor.humans.models.random` it brackets what real people may do: a robot that does not help it is useless.
 It has the mean body of its population, and differs from the proxy in that it
 
 - notices what it looks for at once and for certain within `SIGHT_M`, never beyond, and furniture and doorways at once
   wherever they are in view; it forgets nothing;
-- has no common knowledge: it goes to the nearest option, unseen rooms and furniture alike, and returns to a piece only
-  when it has searched them all;
+- has no common knowledge: it goes to the nearest option, be it an unseen room or furniture, and returns to a piece of
+  furniture only when it has searched them all;
 - confirms every message as soon as it is read, useful or not, and follows it;
 - never misses with its hands, does not get better with practice, and keeps its trust.
 
@@ -31,7 +31,7 @@ from hthor.types import Detection
 SIGHT_M = 3.0
 """[m] Distance within which the greedy human notices objects for certain. Our choice."""
 _VISITED = 0.5
-"""[exposure] From here a place counts as visited. Our choice."""
+"""[exposure] Least exposure of a place that counts as visited. Our choice."""
 _NOISELESS: dict[str, float] = {
     **dict.fromkeys(("stop_every", "tau_mem", "tau_seen"), math.inf),  # no stops to look, no forgetting
     **dict.fromkeys(("lam0", "manip_sd", "p_fail", "read_sd", "p_slip", "p_ignore", "tour_sd", "tour_forget"), 0.0),
@@ -40,7 +40,7 @@ _NOISELESS: dict[str, float] = {
 
 
 class Model(proxy.Model):
-    """The greedy human, with the population's mean traits; seed and number make no difference."""
+    """The greedy human, with the population's mean traits; the participant's seed and number make no difference."""
 
     alike = True
 
@@ -61,7 +61,7 @@ class NearestFirst:
     """Takes the nearest option that was not visited, and confirms everything."""
 
     def choose(self, situation: Situation) -> int:
-        """The nearest; visited options come last."""
+        """The nearest option; visited options come last."""
         options = situation.options
         return min(range(len(options)), key=lambda k: (options[k].exposure > _VISITED, options[k].metres, k))
 

@@ -22,9 +22,9 @@ from hthor.types import Action, Briefing, Event, Motion, Observation, Reply, Vec
 _RESTARTS = 2
 """[count] Behaviours that may end without a motion in one decision. Our choice."""
 _PAUSE_S = 0.5
-"""[s] A pause after that, before the next decision. Our choice."""
+"""[s] Pause before the next decision after so many behaviours without a motion. Our choice."""
 _BUSY = ("fetch", "deliver", "haul")
-"""Activities with something in hand, or about to be."""
+"""Activities in which something is in hand, or about to be."""
 
 
 class Model:
@@ -34,14 +34,14 @@ class Model:
     next motion of the behaviour that pursues it (`Behaviours`).
 
     Args:
-        participant: who it is; the same participant behaves the same on the same observations.
+        participant: number, seed and traits; the same participant behaves the same on the same observations.
         state: from `state` after an earlier trial, to continue from there.
     """
 
     policy: Policy | None = None
-    """Decides in the participant's place; for models that are this one with other decisions."""
+    """Decides in the participant's place; set by models that change only the decisions."""
     eyes: type[Eyes] = Eyes
-    """How what is in view is noticed; for models with other eyes."""
+    """How things in view are noticed; set by models that change only the eyes."""
     listener: Callable[[Event], None] | None = None
     """Called with beliefs and choices, from the next trial on."""
 
@@ -85,7 +85,7 @@ class Model:
         walker.haste, walker.looking = self._haste(), self._is_looking()
         return Action(motion=self._next_motion(), say=reply)
 
-    def rate(self, met: bool, tick: int) -> int | None:  # noqa: ARG002  the time of help counts, not of the end
+    def rate(self, met: bool, tick: int) -> int | None:  # noqa: ARG002  the time of help counts, not the end
         """Update trust by the trial's outcome, and report it."""
         traits = self.traits
         self._eyes.end()
@@ -97,7 +97,7 @@ class Model:
 
     @property
     def journal(self) -> Sequence[Event]:
-        """What a headset's recorder holds of the trial so far."""
+        """The events that a headset's recorder would store of the trial so far."""
         return self._human.journal
 
     @property
@@ -106,13 +106,13 @@ class Model:
         return self._goal.words
 
     def state(self) -> dict[str, Any]:
-        """Practice and trust."""
+        """The number of trials done, for practice, and trust."""
         return {"trials": self.trials, "alpha": self.trust.alpha, "beta": self.trust.beta}
 
     # ------------------------------------------------------------------------------------------------- what to do next
 
     def _start_walking(self, observation: Observation) -> Walker:
-        """Legs and behaviours, at the first observation: the mental map begins there."""
+        """Make legs and behaviours at the first observation, where the mental map begins."""
         self._walker = Walker(self._human, self._memory, observation.pose.x, observation.pose.y)
         self._behaviours = Behaviours(self._human, self._eyes, self._memory, self._walker, self._subgoals)
         self._expected = self._arbiter.missing
@@ -141,7 +141,7 @@ class Model:
         return Wait(seconds=_PAUSE_S)
 
     def _wanted_goal(self) -> Goal:
-        """The arbiter's goal, else the first look round, else searching."""
+        """The arbiter's goal, else the first look round, else a search."""
         goal = self._arbiter.goal()
         if goal is not None:
             return goal
@@ -163,7 +163,7 @@ class Model:
         return behaviours.fetch(goal.subgoal) if goal.activity == "fetch" else behaviours.carrying.carry(goal.subgoal)
 
     def _finish(self) -> None:
-        """The behaviour has ended. Advice that led nowhere is not believed again."""
+        """Handle the end of a behaviour; advice that was of no help is not believed again."""
         self._behaviour, advice = None, self._goal.advice
         if advice is not None:
             self._advice.drop(advice)
@@ -178,7 +178,7 @@ class Model:
     # ---------------------------------------------------------------------------------------------------------- robots
 
     def _read_messages(self) -> Reply | None:
-        """Read what came, answer what was read, and keep the advice that was accepted."""
+        """Read new messages, answer those that were read, and keep accepted advice."""
         now = self._human.now
         busy = bool(now.holding) or self._goal.activity in _BUSY
         decision = self._dialogue.read(now, self.trust.mean, busy, self._time_saved)
@@ -198,14 +198,14 @@ class Model:
         return time_saved(self._human, self._walker, search, advice.position)
 
     def _haste(self) -> float:
-        """Share of the pace that is left while reading, or while following the map to an unknown place."""
+        """Factor of the pace, below 1 while reading or while following the map to an unknown place."""
         if self._dialogue.reader.is_reading(self._human.now.tick):
             return 1.0 / self._human.traits.k_read
         by_map = self._advice.destination is not None and self._lacks_destination()
         return 1.0 / self._human.traits.k_map if by_map or self._goal.activity == "follow" else 1.0
 
     def _is_looking(self) -> bool:
-        """Whether the participant searches, rather than going to a place that is known or advised."""
+        """Whether the participant is searching, not on the way to a place that is known or advised."""
         return self._goal.activity == "search" or (self._advice.destination is None and self._lacks_destination())
 
     def _lacks_destination(self) -> bool:

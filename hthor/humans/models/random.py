@@ -2,7 +2,7 @@
 
 With `hthor.humans.models.greedy` it brackets what real people may do: no robot can help such a human by messages, so
 robots differ only in how much they stand in the way. Eyes, memory, legs and hands are the proxy's, with the
-population's differences; messages are read, and declined.
+population's differences between people; messages are read, and declined.
 """
 
 from hthor import seeds

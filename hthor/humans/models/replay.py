@@ -1,15 +1,15 @@
-"""Repeats what a logged participant did: the same ways, looks, hand actions and answers; decides nothing.
+"""Repeats what a logged participant did: the same paths, looks, hand actions and answers; decides nothing.
 
     hthor eval --agent my_robot.py --suite paper --humans replay:runs/oracle-paper-seed0
 
-It is defined for the trials of that log only: the same suite, seed and participants. The robot may be another one. Then
-simple rules hold, which no real person would follow:
+It is defined for the trials of that log only: the same suite, seed and participants. The robot may differ. Then simple
+rules apply, which no real person would follow:
 
 - A message that is shown at the tick of a logged answer gets that answer; if none is shown, the answer lapses. The
   content of messages changes nothing.
-- Where a robot blocks the way, the replay stands and tries again every half second, and never goes around it. Then it
-  catches up as fast as stick and body allow. Hand actions happen at their places, so they come later too.
-- Where anything else blocks it (a door that was shut), that part of the way is skipped after three tries.
+- If a robot blocks the path, the replay stands and tries again every half second, and never goes around it. Afterwards
+  it catches up as fast as stick and body allow. Hand actions happen at their places, so they come later too.
+- If anything else blocks the path (a door that was shut), that part of the path is skipped after three tries.
 - After the end of the log it stands still. The rating is the logged one.
 """
 
@@ -29,23 +29,23 @@ from hthor.types import Action, Briefing, Motion, Move, Observation, Pose, Reply
 
 _EVERY = rules.LOG_EVERY_TICKS
 _THERE_M = 0.003
-"""[m] A logged position is reached within this. Our choice: poses are logged to a millimetre."""
+"""[m] Distance within which a logged position is reached. Our choice: poses are logged to a millimetre."""
 _THERE_RAD = 0.003
-"""[rad] A logged direction is reached within this. Our choice: angles are logged to a milliradian."""
+"""[rad] Angle within which a logged direction is reached. Our choice: angles are logged to a milliradian."""
 _PAUSE_S = 0.5
-"""[s] From one try to the next while a robot blocks the way. Our choice."""
+"""[s] Time between two tries while a robot blocks the path. Our choice."""
 _TRIES = 3
-"""[count] Tries after which a blocked part of the way is skipped. Our choice."""
+"""[count] Tries after which a blocked part of the path is skipped. Our choice."""
 _LAPSE_TICKS = 10
-"""[ticks] So late an answer may come that is due while the hands are busy. Our choice: one second."""
+"""[ticks] Greatest delay of an answer that is due while the hands are busy. Our choice: one second."""
 
 
 class Model:
     """A logged participant.
 
     Args:
-        participant: its number says which participant of the log.
-        state: how many trials were done.
+        participant: its number selects the participant of the log.
+        state: the number of trials done.
         source: the run folder or log.
     """
 
@@ -67,7 +67,7 @@ class Model:
         """Look up the task in the log.
 
         Raises:
-            HthorError: when this participant has no such task.
+            HthorError: when the log has no such task of this participant.
         """
         self._brief, self._again = briefing, None
         self._fitting = [one for one in self._logged if one.is_of(briefing)]
@@ -86,7 +86,7 @@ class Model:
         return self._again.trial.trust if self._again is not None and self._brief.teammates else None
 
     def state(self) -> dict[str, Any]:
-        """How many trials were done."""
+        """The number of trials done."""
         return {"trials": self.trials}
 
     def _find(self, observation: Observation) -> Reenactment:
@@ -107,12 +107,12 @@ class Model:
 
 
 def ingredients(source: str = "") -> dict[str, Any]:
-    """What decides how this model behaves: the log's bytes."""
+    """Everything that decides how this model behaves: the log's bytes."""
     return {"log_sha256": _logged_trials.log_sha256(source)} if source else {}
 
 
 class Reenactment:
-    """Repeats one logged trial. ``clock`` is the logged tick that was reached; it never runs ahead of time."""
+    """Repeats one logged trial. ``clock`` is the logged tick reached so far; it is never ahead of the trial."""
 
     def __init__(self, trial: LoggedTrial, briefing: Briefing) -> None:
         self.trial, self.body, self.clock = trial, briefing.body, 0
@@ -125,7 +125,7 @@ class Reenactment:
         self._tries = 0
 
     def say(self, now: Observation) -> Reply | None:
-        """The logged answer when it is due and anything is shown."""
+        """The logged answer when it is due and a message is shown."""
         while self._answers and now.tick - self._answers[0][0] > _LAPSE_TICKS:
             self._answers.pop(0)
         if not self._answers or now.tick < self._answers[0][0]:
@@ -153,7 +153,7 @@ class Reenactment:
         return min(self.clock // _EVERY + 1, len(self._poses) - 1)
 
     def _arrive(self, now: Observation) -> None:
-        """Move the clock on to what was reached, at most to now."""
+        """Advance the clock to the logged pose that was reached, at most to the current tick."""
         while self.clock < min(now.tick, self._end):
             after = self._next()
             if not self._is_there(now.pose, self._poses[after]):
@@ -197,7 +197,7 @@ class Reenactment:
         return near and max(abs(wrap(goal.yaw - pose.yaw)), abs(goal.pitch - pose.pitch)) <= _THERE_RAD
 
     def _is_stuck(self, now: Observation) -> bool:
-        """Whether a robot stands in the way; other obstacles are skipped after some tries."""
+        """Whether a robot blocks the path; other obstacles are skipped after some tries."""
         outcome = now.outcome
         if outcome is None or outcome.ok or outcome.motion != "move":
             return False
@@ -211,7 +211,7 @@ class Reenactment:
 
 
 def _extrapolated(poses: list[Pose], ticks: int) -> list[Pose]:
-    """The poses, and one more by the last velocity for the ticks after the last of them."""
+    """The poses, and one more by the last velocity if the trial ends after the last pose."""
     if (len(poses) - 1) * _EVERY >= ticks or len(poses) < 2:
         return poses
     a, b = poses[-2:]

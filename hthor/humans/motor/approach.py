@@ -1,4 +1,4 @@
-"""Where to stand to see or reach something, and getting there, from another side when one side failed."""
+"""Choosing where to stand to see or reach something, and walking there; after a failure, to another side."""
 
 import functools
 import math
@@ -15,9 +15,9 @@ from hthor.navigation.waiting_spots import MAYBE, YES, usable
 from hthor.types import Vec2, Vec3
 
 GAP_M = 0.42
-"""[m] From the edge of furniture to the middle of the body of who stands at it. Our choice."""
+"""[m] Distance from the edge of furniture to the middle of the body of a person who stands at it. Our choice."""
 _SPACING_M = 0.6
-"""[m] Between the spots that are considered along a side of furniture. Our choice."""
+"""[m] Distance between the spots that are considered along a side of furniture. Our choice."""
 _FRONT_SPACING = 0.6
 """[ratio] Spots in front of furniture that opens are closer together by this factor. Our choice."""
 _RING_M = (0.6, 0.75, 0.9, 1.0, 1.14)
@@ -25,7 +25,7 @@ _RING_M = (0.6, 0.75, 0.9, 1.0, 1.14)
 _DIRECTIONS = 20
 """[count] Spots on each ring. Our choice."""
 _UNKNOWN_SIZE_M = 0.5
-"""[m] Side of the furniture that is assumed under an object of unknown support. Our choice."""
+"""[m] Side length of the furniture that is assumed under an object of unknown support. Our choice."""
 PATIENCE = 6
 """[count] Failed tries after which people do something else. Our choice."""
 REACH = 0.96
@@ -33,23 +33,23 @@ REACH = 0.96
 TRIED_M = 0.35
 """[m] Spots nearer to each other than this count as the same spot. Our choice."""
 _STRAIGHT_EVERY = 3
-"""[count] Every so many tries people walk straight up to the thing instead of to a chosen spot. Our choice."""
+"""[count] One try in this many goes straight to the object instead of to a chosen spot. Our choice."""
 _GLIMPSE_M = 1.5
-"""[m] From so near people see whether there is room to stand at a spot. Our choice."""
+"""[m] Distance from which people see whether there is room to stand at a spot. Our choice."""
 
 
 def viewpoints_of_place(place: KnownPlace, walker: Walker, front: bool = False) -> list[Vec2]:
-    """Spots [m] along the edges of a place, ``front`` only or all round, where one could stand and see it."""
+    """Spots [m] along the edges of a place, ``front`` only or all round, to stand at and see it."""
     return _usable(_beside(place.centre, place.size, place.yaw, front), place, walker)
 
 
 def viewpoints_of_object(point: Vec3, support: KnownPlace | None, walker: Walker, reach: float) -> list[Vec2]:
-    """Spots [m] within ``reach`` metres of an object that lies on ``support``, if anything."""
+    """Spots [m] within ``reach`` metres of an object; ``support`` is the furniture that it lies on, if known."""
     return _usable(rings(point, reach), support or _assumed_place(point), walker)
 
 
 def rings(point: Vec3, reach: float) -> list[Vec2]:
-    """Spots [m] in rings about an object, within ``reach`` metres, free or not."""
+    """Spots [m] in rings around an object, within ``reach`` metres, free or not."""
     x, y = point[0], point[1]
     return [
         (x + r * math.cos(a), y + r * math.sin(a))
@@ -60,7 +60,7 @@ def rings(point: Vec3, reach: float) -> list[Vec2]:
 
 
 def within_reach(spots: list[Vec2], point: Vec3, reach: float) -> list[Vec2]:
-    """Those from which an object is at most ``reach`` metres away."""
+    """The spots from which an object is at most ``reach`` metres away."""
     return [spot for spot in spots if math.dist(spot, point[:2]) <= reach]
 
 
@@ -76,13 +76,13 @@ def _beside(centre: Vec3, size: Vec3, yaw: float, front: bool) -> tuple[Vec2, ..
 
 
 def _spread(half: float, wide: bool) -> list[float]:
-    """Positions along a side, the middle among them; ``wide`` adds some past its ends."""
+    """Positions along a side, including its middle; ``wide`` adds some past its ends."""
     count = max(0, math.floor(half / _SPACING_M)) + (1 if wide else 0)
     return [k * _SPACING_M * (_FRONT_SPACING if wide else 1.0) for k in range(-count, count + 1)]
 
 
 def _usable(spots: Sequence[Vec2], place: KnownPlace, walker: Walker) -> list[Vec2]:
-    """Spots known to be free; when there is none, those that might be."""
+    """Spots known to be free; when there are none, spots that might be free."""
     ranks = usable(walker.grid, walker.planner, spots, [_edge(spot, place) for spot in spots], walker.margin)
     best = YES if YES in ranks else MAYBE
     return [spot for spot, rank in zip(spots, ranks, strict=True) if rank == best]
@@ -108,20 +108,20 @@ def _assumed_place(point: Vec3) -> KnownPlace:
 
 
 class Approach:
-    """Walks up to things and remembers which spots were tried. ``tries`` counts them."""
+    """Walks up to things and remembers which spots were tried; ``tries`` counts the tries."""
 
     def __init__(self, human: HumanContext, eyes: Eyes, memory: SpatialMemory, walker: Walker) -> None:
         self.human, self.eyes, self.memory, self.walker = human, eyes, memory, walker
         self.reset()
 
     def reset(self) -> None:
-        """Forget what was tried."""
+        """Forget the tried spots."""
         self.tries = 0
         self._tried: list[Vec2] = []
 
     @property
     def arm(self) -> float:
-        """How far [m] people stretch out for things."""
+        """How far [m] people reach for things."""
         return self.human.body.reach * REACH
 
     def to_object(self, point: Vec3, support: str, reach: float, stop: Callable[[], bool] = never) -> Behaviour:
@@ -150,7 +150,7 @@ class Approach:
         return (yield from self._stand(spots, place.centre, self.arm + min(place.size[:2]) / 2.0, never))
 
     def _stand(self, spots: Callable[[], list[Vec2]], point: Vec3, reach: float, stop: Callable[[], bool]) -> Behaviour:
-        """Walk to the best of the spots; choose again once near enough to see whether one can stand there."""
+        """Walk to the best of the spots; choose again when near enough to see whether there is room to stand."""
         for _ in range(PATIENCE):
             spot = None if self.tries % _STRAIGHT_EVERY == 0 else self._nearest(spots(), point)
             if spot is None:
@@ -166,7 +166,7 @@ class Approach:
         return stop() or (guess is not None and math.dist(self.human.here, guess) < _GLIMPSE_M)
 
     def _nearest(self, spots: list[Vec2], point: Vec3) -> Vec2 | None:
-        """The nearest spot on foot; after failures one from which the object was seen, if possible."""
+        """The spot nearest on foot; after failures, spots on the side from which the object was seen are preferred."""
         new = [spot for spot in spots if all(math.dist(spot, old) > TRIED_M for old in self._tried)]
         if not new:
             new, self._tried = spots, []

@@ -1,4 +1,4 @@
-"""How a participant walks: on a map of what was seen, at their own pace, optimistic about the rest."""
+"""How a participant walks: at their own pace, on a map of what was seen, assuming that unseen floor is free."""
 
 import copy
 import math
@@ -16,43 +16,43 @@ from hthor.navigation.planner import Planner, path_length
 from hthor.types import Motion, Move, Rotate, Vec2, Wait
 
 _TURN_RAD = math.radians(12.0)
-"""[rad] Larger direction errors are turned away standing, smaller ones while walking. Our choice: 12 degrees."""
+"""[rad] Larger direction errors are corrected while standing, smaller errors while walking. Our choice: 12 degrees."""
 _MAP_EVERY_M = 0.4
-"""[m] After walking so far, what is in view is added to the map. Our choice."""
+"""[m] Distance walked after which the view is added to the map. Our choice."""
 _MAP_EVERY_RAD = 0.6
-"""[rad] After turning so far, what is in view is added to the map. Our choice."""
+"""[rad] Angle turned after which the view is added to the map. Our choice."""
 _ARRIVED_M = 0.03
 """[m] A point of the path this near has been reached. Our choice."""
 _CHECK_TICKS = 5
 """[ticks] How often people check that the way ahead is free and that they advance. Our choice: twice a second."""
 _CREEP = 0.3
-"""[ratio] Below this share of their pace people take themselves to be blocked. Our choice."""
+"""[ratio] Share of their pace below which people believe that they are blocked. Our choice."""
 _DETOUR = 1.4
-"""[ratio] A new way that is longer than this times the first, plus `_DETOUR_M`, is not taken. Our choice."""
+"""[ratio] A new path that is longer than this times the first, plus `_DETOUR_M`, is not taken. Our choice."""
 _DETOUR_M = 1.5
-"""[m] Part of a permitted detour that does not depend on the way's length. Our choice."""
+"""[m] Part of a permitted detour that does not depend on the path's length. Our choice."""
 _FAMILIAR = 1.5
-"""[ratio] Seen floor is preferred up to this times the shortest hopeful way, plus `_FAMILIAR_M`. Our choice."""
+"""[ratio] A path over seen floor may be this times as long as one over unseen floor, plus `_FAMILIAR_M`. Our choice."""
 _FAMILIAR_M = 2.0
-"""[m] Part of that preference that does not depend on the way's length. Our choice."""
+"""[m] Part of that permitted length that does not depend on the path's length. Our choice."""
 _DOORWAY_M = 1.0
-"""[m] A way by a known doorway may be longer than the straight guess by this. Our choice."""
+"""[m] How much longer a path through a known doorway may be than one over unseen floor. Our choice."""
 _GIVE_UP = 12
 """[count] Bumps after which a walk is given up. Our choice."""
 _REPLANS = 100
-"""[count] Plans after which a walk is given up. Our choice."""
+"""[count] Plans of a path after which a walk is given up. Our choice."""
 _POLITE_S = 0.5
 """[s] How long people wait for a robot in their way. Our choice."""
 _AVOID_S = 6.0
-"""[s] How long they plan around a robot that did not move. Our choice."""
+"""[s] How long people plan around a robot that did not move. Our choice."""
 _TRUSTED_S = 10.0
-"""[s] A map younger than this is not thrown away even if it shows no way. Our choice."""
+"""[s] A map younger than this is not thrown away even if it shows no path. Our choice."""
 _ASIDE_RAD = math.radians(60.0)
 """[rad] Largest turn aside at a stop to look. Our choice: 60 degrees."""
 _FELT_M = 0.05
-"""[m] How far beyond the body's edge something lies that was bumped into. Our choice."""
+"""[m] Distance beyond the body's edge at which a bump marks an obstacle. Our choice."""
 MARGIN_M = 0.06
-"""[m] What is nearer to furniture on the map belongs to it. Our choice: walls are thicker."""
+"""[m] Obstacles this near to the end of a line to furniture belong to the furniture. Our choice: walls are thicker."""
 
 
 class Route(Struct, frozen=True, kw_only=True):
@@ -69,10 +69,10 @@ def never() -> bool:
 
 
 class Walker:
-    """Legs and a mental map. The stick gives the pace directly, one short move a tick; larger turns are made standing.
+    """Legs and a mental map. The stick sets the pace directly, one short move per tick; larger turns are made standing.
 
-    ``haste`` scales the pace, below 1 while reading or following a map; ``looking``: something is searched for, so that
-    people stop now and then to look aside.
+    ``haste`` scales the pace, below 1 while reading or following a map; ``looking``: the participant is searching, and
+    stops now and then to look aside.
     """
 
     margin = MARGIN_M
@@ -103,9 +103,9 @@ class Walker:
         self.grid.integrate(self.human.now.scan)
 
     def go(self, goal: Vec2, within: float = 0.0, stop: Callable[[], bool] = never) -> Behaviour:
-        """Walk to ``goal`` [m], or to where it is within ``within`` metres; False when there is no way.
+        """Walk to ``goal`` [m], or to within ``within`` metres of it; False when there is no path.
 
-        A way that turns out to be blocked, so that the next one is much longer, does not count: time to choose again.
+        Also False when the path turns out to be blocked and the next one is much longer: the caller may choose again.
 
         Args:
             stop: checked before each motion; the walk ends successfully when it returns True.
@@ -129,7 +129,7 @@ class Walker:
         return False
 
     def _way(self, goal: Vec2, within: float) -> Route | None:
-        """The way to the goal: over seen floor if not much farther, else by a doorway, else straight on, if at all."""
+        """The path to the goal: over seen floor if not much longer, else by a doorway, else over unseen floor."""
         if self._robot is not None and self.human.now.tick <= self._robot_until:
             x, y, radius = self._robot
             if math.dist((x, y), goal) <= radius + self.human.body.radius + within:
@@ -148,7 +148,7 @@ class Walker:
         return self._by_doorway(goal, hopeful.metres + _DOORWAY_M) or hopeful
 
     def _known(self, goal: Vec2, within: float) -> Route | None:
-        """A way over floor that was seen."""
+        """A path over floor that was seen."""
         if within <= 0.0 and self.grid.at(*goal) != FREE:
             return None
         self.planner.optimistic = False
@@ -158,7 +158,7 @@ class Walker:
             self.planner.optimistic = True
 
     def _by_doorway(self, goal: Vec2, most: float) -> Route | None:
-        """The shortest way through an unexplored doorway, if it is below ``most`` metres in all."""
+        """The shortest path through an unexplored doorway, if its length is below ``most`` metres."""
         doors = self.memory.unexplored_doorways()
         here, best = self.human.here, None
         least = {door.id: math.dist(here, door.beyond) + math.dist(door.beyond, goal) for door in doors}
@@ -185,7 +185,7 @@ class Walker:
                 return True
             if now.tick - checked >= _CHECK_TICKS:
                 checked = now.tick
-                if not self.planner.clear((self.human.here, *ahead)):  # the rest of the way is free no more
+                if not self.planner.clear((self.human.here, *ahead)):  # the rest of the path is not free any more
                     return False
                 was, left = left, path_length((here, *ahead))
                 if moves >= _CHECK_TICKS and left > was - _CREEP * moves * self._pace() * human.tick_s:
@@ -213,7 +213,7 @@ class Walker:
         return min(self.human.traits.v_pace * self.haste, self.human.body.speed)
 
     def _stretch(self) -> float:
-        """Seconds under way until the next stop to look."""
+        """Walking time [s] until the next stop to look."""
         return -self.human.traits.stop_every * math.log(self.human.draw("stop", self._stops))
 
     def _look_aside(self) -> Behaviour:
@@ -246,20 +246,20 @@ class Walker:
         return True
 
     def _felt(self, ahead: Vec2) -> tuple[float, float, float]:
-        """Middle and radius [m] of what stands in the way: taken to be as large as oneself, and to touch the body."""
+        """Middle and radius [m] of the obstacle ahead: assumed to be as large as the participant, and to touch them."""
         (x, y), radius = self.human.here, self.human.body.radius
         share = 2.0 * radius / max(math.dist((x, y), ahead), 1e-9)
         return (x + share * (ahead[0] - x), y + share * (ahead[1] - y), radius)
 
     def _mark(self, point: Vec2) -> None:
-        """Put something that no scan showed on the map, in the direction of ``point`` [m], just beyond the body."""
+        """Put an obstacle that no scan showed on the map, in the direction of ``point`` [m], just beyond the body."""
         (x, y), apart = self.human.here, math.dist(self.human.here, point)
         if apart > 0.0:
             share = (self.human.body.radius + _FELT_M) / apart
             self.grid.mark_blocked(x + share * (point[0] - x), y + share * (point[1] - y))
 
     def _begin_new_map(self) -> bool:
-        """Begin a new map when an old one shows no way: obstacles may have moved. Returns whether it did."""
+        """Begin a new map if the map is old, as obstacles may have moved; returns whether a new map began."""
         if self.human.now.tick < self._drawn + round(_TRUSTED_S / self.human.tick_s):
             return False
         self._drawn = self.human.now.tick

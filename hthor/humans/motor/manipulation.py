@@ -15,7 +15,7 @@ _MISSED = "missed"
 
 
 class Hands:
-    """Two hands with a controller each. Attempts are numbered, so that chance treats each on its own."""
+    """Two hands with a controller each. Attempts are numbered, so that each has random numbers of its own."""
 
     def __init__(self, human: HumanContext) -> None:
         self.human = human
@@ -24,7 +24,7 @@ class Hands:
     def do(self, motion: Motion, name: str) -> Generator[Motion, None, str]:
         """Try a motion until the hands do not miss; returns the world's reason for refusing, empty when it worked.
 
-        ``name`` is that of the act, such as "pick apple", for chance.
+        ``name`` is a name of the act for its random numbers, such as "pick apple".
         """
         for _ in range(_MAX_ATTEMPTS):
             number = self._attempts.get(name, 0)
@@ -46,7 +46,7 @@ class Hands:
         return _MISSED
 
     def _complete(self, entry: Event, why: str) -> None:
-        """Add to the journal how an attempt ended: ``why`` it failed, empty when it did not."""
+        """Add to the journal how an attempt ended: ``why`` it failed, empty when it succeeded."""
         human = self.human
         entry.data.update(seconds=round((human.now.tick - entry.tick) * human.tick_s, 3), ok=not why)
         if why:
@@ -54,7 +54,7 @@ class Hands:
 
 
 def _where(motion: Motion) -> dict[str, list[float]]:
-    """Where something is put [m], to the millimetre, when that is named."""
+    """Where an object is put [m], to the millimetre; empty when the motion does not say."""
     if not isinstance(motion, Place) or motion.position is None:
         return {}
     return {"at": [round(part, 3) for part in motion.position]}

@@ -1,8 +1,8 @@
 """How fast a participant notices what is in view.
 
 The rate is lam0 / (1 + (a50 / angle)^2) * exp(-(ecc / ecc_sd)^2 / 2) * share * exp(-clutter * beside). Independent
-glimpses at a rate make the time to notice exponential (Koopman 1956). That it is long for what is small, off the middle
-of the view, half hidden or crowded is the common finding of visual search; the form of each factor is our choice.
+glimpses at a rate make the time to notice exponential (Koopman 1956). Studies of visual search agree that the time is
+long for things that are small, off the middle of the view, half hidden or crowded; each factor's form is our choice.
 """
 
 import math
@@ -18,17 +18,17 @@ _USUAL_M = 0.1
 
 
 def detection_rate(traits: Parameters, angle: float, ecc: float, share: float = 1.0, beside: int = 0) -> float:
-    """Rate [1/s] at which a small thing in view is noticed, of which a ``share`` of 0 to 1 is in view.
+    """Rate [1/s] at which a small thing is noticed when a ``share`` of 0 to 1 of it is in view.
 
-    ``angle`` [rad] is its size over its distance, above 0, ``ecc`` [rad] how far it is off the direction of the head,
-    ``beside`` how many other small things appear close to it.
+    ``angle`` [rad] is its size over its distance, above 0, ``ecc`` [rad] its angle off the direction of the head,
+    ``beside`` the number of other small things that appear close to it.
     """
     small, aside = traits.a50 / angle, ecc / traits.ecc_sd
     return traits.lam0 * share / (1.0 + small * small) * math.exp(-0.5 * aside * aside - traits.clutter * beside)
 
 
 def apparent_size(size: Vec3) -> float:
-    """The size [m] that counts for the eye: the side of a square as large as the largest face of a box."""
+    """The size [m] that counts for the eye: the side of a square with the area of the largest face of a box."""
     _, middle, longest = sorted(size)
     return math.sqrt(middle * longest)
 

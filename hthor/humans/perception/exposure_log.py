@@ -1,6 +1,6 @@
 """The glimpses at each object until it was noticed, for the journal.
 
-A regression needs them to estimate the parameters of noticing: glimpses without success, and the successful one.
+A regression needs them to estimate the parameters of noticing: glimpses without success, and the successful glimpse.
 Similar glimpses are added up.
 """
 
@@ -11,7 +11,7 @@ from msgspec import Struct
 from hthor.humans.core.trial_context import HumanContext
 
 _PER_OCTAVE = 4
-"""[1/octave] Cells of visual angle into which glimpses are added up. Our choice."""
+"""[1/octave] Cells per octave of visual angle; the glimpses in a cell are added up. Our choice."""
 _ECC_RAD = 0.1
 """[rad] Width of a cell of eccentricity. Our choice."""
 _SHARE = 0.2
@@ -38,7 +38,7 @@ class Glimpse(Struct, frozen=True):
 
     @property
     def cell(self) -> tuple[int, int, int, int, bool]:
-        """The cell in which it is added up."""
+        """The cell in which the glimpse is added up."""
         angle = math.floor(_PER_OCTAVE * math.log2(max(self.angle, 1e-9)))
         return angle, int(self.ecc / _ECC_RAD), int(self.share / _SHARE), self.beside, self.attended
 
@@ -48,8 +48,8 @@ class ExposureLog:
 
     Each object gets one journal event "exposure", when it is noticed or at the end of the trial, with the ``object``,
     whether it was ``noticed``, the ``seconds`` in view, and ``gathered``: rows [seconds, angle, ecc, share, beside,
-    attended] as in `Glimpse`, means of those that are added up, ``attended`` 0 or 1. The last row is the last glimpse
-    alone, the one at which the object was noticed.
+    attended] as in `Glimpse`, one per cell: total seconds and means, ``attended`` 0 or 1. The last row is the last
+    glimpse alone, at which the object was noticed if it was.
     """
 
     def __init__(self, human: HumanContext) -> None:
@@ -68,7 +68,7 @@ class ExposureLog:
         self._last[name] = glimpse
 
     def close(self, name: str, noticed: bool) -> None:
-        """Write the glimpses at one object, if there were any."""
+        """Write the glimpses at one object to the journal, if there were any."""
         last = self._last.pop(name, None)
         if last is None:
             return
@@ -81,7 +81,7 @@ class ExposureLog:
         )
 
     def end(self) -> None:
-        """At the end of the trial, write what was in view and never noticed."""
+        """At the end of the trial, write the objects that were in view and never noticed."""
         for name in sorted(self._last):
             self.close(name, noticed=False)
 

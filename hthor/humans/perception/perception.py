@@ -1,11 +1,11 @@
-"""What a participant notices of what is in view.
+"""Which of the things in view a participant notices.
 
 While a thing is in view its detection rate (`hthor.humans.perception.detection_rate`) is added up, glimpse by glimpse;
-it is noticed once the sum reaches a random threshold of this thing in this trial. That is the same law as an
-independent chance at each glimpse, but no glimpse can shift the luck of another.
+it is noticed once the sum reaches a random threshold of this thing in this trial. This is the same law as an
+independent chance at each glimpse, but no glimpse changes the random numbers of another.
 
-On furniture in view, the rate at which the target would be noticed in its middle, alone and in full view, is added up
-as well: the exposure, a measure of how thoroughly it was searched.
+For furniture in view, the rate at which the target would be noticed in its middle, alone and in full view, is added up
+as well: the sum is the exposure, a measure of how thoroughly the furniture was searched.
 """
 
 import math
@@ -19,13 +19,13 @@ from hthor.humans.perception.exposure_log import ExposureLog, Glimpse
 from hthor.types import HUMAN, Detection, Event, Observation, Vec3
 
 GLIMPSE_TICKS = 3
-"""[ticks] From one glimpse to the next. Our choice, after about three fixations a second."""
+"""[ticks] Time from one glimpse to the next. Our choice, after about three fixations a second."""
 _LONGEST_S = 0.6
-"""[s] Most that one glimpse counts for, such as after a long motion. Our choice."""
+"""[s] Longest time that one glimpse counts for, for example after a long motion. Our choice."""
 _LARGE_M = 0.5
 """[m] Things longer than this are recognised like furniture. Our choice."""
 _NEAR_M = 1.0
-"""[m] Things this near to the point that is being searched are attended to. Our choice."""
+"""[m] Distance from a point being searched within which things are attended to. Our choice."""
 
 
 class Eyes:
@@ -49,7 +49,7 @@ class Eyes:
         self._threshold: dict[str, float] = {}
 
     def look(self, now: Observation) -> None:
-        """Take in one glimpse."""
+        """Process one glimpse."""
         tick, pose, wanted, kinds = now.tick, now.pose, self.objects.known, self._holders
         tick_s = self.human.tick_s
         seconds = min(_LONGEST_S, (tick - self.at) * tick_s) if self.at >= 0 else tick_s
@@ -68,12 +68,12 @@ class Eyes:
             self._forget()
 
     def lose(self, known: KnownObject) -> None:
-        """The object is forgotten, or not where it was; it must be noticed again."""
+        """Note that an object was forgotten or is not where it was; it must be noticed again."""
         self.objects.lose(known)
         self._reset(known.id)
 
     def end(self) -> None:
-        """At the end of the trial, add to the journal what was never noticed."""
+        """At the end of the trial, add the objects never noticed to the journal."""
         self._exposures.end()
 
     def _object(self, known: KnownObject, seen: Detection, head: Head, seconds: float) -> None:
@@ -125,7 +125,7 @@ class Eyes:
         return spot is not None and math.dist(spot[:2], seen.position[:2]) < _NEAR_M
 
     def _gather(self, name: str, amount: float, again: int) -> bool:
-        """Add to what is gathered; whether the thing is noticed, after it was lost ``again`` times."""
+        """Add to a thing's sum; True when the thing, lost ``again`` times so far, is noticed."""
         threshold = self._threshold.get(name)
         if threshold is None:
             threshold = -math.log(self.human.draw("notice", name, again))

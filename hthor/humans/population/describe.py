@@ -1,4 +1,4 @@
-"""A population described: parameters, where they come from, and how participants differ."""
+"""The description of a population: parameters, where they come from, and how participants differ."""
 
 from typing import Any
 

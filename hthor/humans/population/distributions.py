@@ -10,7 +10,7 @@ _NORMAL = NormalDist()
 
 
 class Uniform(Struct, tag="uniform", frozen=True):
-    """Between ``low`` and ``high``."""
+    """Uniform between ``low`` and ``high``."""
 
     low: float
     high: float
@@ -27,7 +27,7 @@ class Uniform(Struct, tag="uniform", frozen=True):
 
 
 class LogUniform(Struct, tag="log-uniform", frozen=True):
-    """Between ``low`` and ``high``, its logarithm uniform."""
+    """A number between ``low`` and ``high`` whose logarithm is uniform."""
 
     low: float
     high: float
@@ -76,7 +76,7 @@ class HalfNormal(Struct, tag="half-normal", frozen=True):
 
 
 class LogNormal(Struct, tag="log-normal", frozen=True):
-    """Its logarithm normal around that of ``median`` with standard deviation ``sd``."""
+    """A number whose logarithm is normal around the logarithm of ``median`` with standard deviation ``sd``."""
 
     median: float
     sd: float
@@ -117,6 +117,6 @@ def _positive(what: str, **given: float) -> None:
 
 
 def _special() -> Any:
-    from scipy import special  # comes with the core: scikit-image needs it
+    from scipy import special  # always installed, because scikit-image needs it
 
     return special

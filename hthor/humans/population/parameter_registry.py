@@ -13,8 +13,8 @@ from hthor.humans.population.distributions import Beta, HalfNormal, LogNormal, L
 from hthor.humans.population.parameters import Parameters
 
 PROXY_VERSION = 1
-"""[version] Of the proxy: raised when a participant with the same parameters would behave differently, so that
-populations fitted to another version are not known to fit. Our choice."""
+"""[version] Version of the proxy, raised when a participant with the same parameters would behave differently. A
+population fitted to another version may not fit this one. Our choice."""
 
 Floats = NDArray[np.float64]
 
@@ -27,11 +27,11 @@ class Parameter(Struct, frozen=True, kw_only=True):
     """One parameter, by its name in `hthor.humans.population.parameters`.
 
     Attributes:
-        prior: None for a number that is fixed at its default; ``source`` is of the prior.
+        prior: None for a number that is fixed at its default; ``source`` is the source of the prior.
         effect: spread between participants in units of ``sigma``; 0 for none.
         scale: whether the effect is added to the logarithm, the logit or the number itself.
         fitted: whether calibration on the published results moves it; others are drawn from their priors.
-        grade: what could identify it.
+        grade: which data could identify it.
     """
 
     name: str
@@ -178,7 +178,7 @@ PARAMETERS: tuple[Parameter, ...] = (
     _free("sigma", "", Uniform(0.05, 0.5), "B", "how much people differ", "our choice"),
     _free("learn", "", Uniform(0.0, 0.4), "B", "gain by practice", "10 to 30 % over ten trials"),
 )
-"""In the order of a population's columns."""
+"""All free parameters, in the order of a population's columns."""
 
 
 def free_parameter_names() -> tuple[str, ...]:
@@ -195,7 +195,7 @@ def parameter(name: str) -> Parameter:
     """The free parameter of this name.
 
     Raises:
-        UnknownName: when there is none.
+        UnknownName: when no free parameter has this name.
     """
     if name not in _by_name():
         raise UnknownName("parameter", name, free_parameter_names())
@@ -209,12 +209,12 @@ def parameters_at(point: tuple[float, ...] | list[float]) -> Parameters:
 
 
 def from_quantiles(points: ArrayLike) -> Floats:
-    """Populations at points of the unit cube, in physical units: (N, P) to (N, P), see `from_unit`."""
+    """Populations at points of the unit cube, in physical units: (N, P) to (N, P), see `parameters_at`."""
     return _by_column(points, [p.prior.quantile for p in PARAMETERS if p.prior is not None])
 
 
 def to_quantiles(values: ArrayLike) -> Floats:
-    """Quantiles of populations in their priors: the inverse of `physical`."""
+    """Quantiles of populations in their priors: the inverse of `from_quantiles`."""
     return _by_column(values, [p.prior.cdf for p in PARAMETERS if p.prior is not None])
 
 

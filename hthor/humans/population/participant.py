@@ -12,7 +12,7 @@ from hthor.humans.population.parameter_registry import PARAMETERS
 from hthor.humans.population.parameters import Parameters
 
 _LEAST_SHARE = 1e-3
-"""[share] Shares are kept so far from 0 and 1, where their logit has no value. Our choice."""
+"""[share] Least distance of shares from 0 and 1, where their logit has no value. Our choice."""
 
 
 class Participant(Struct, frozen=True, kw_only=True):
@@ -64,7 +64,7 @@ def add_random_effects(population: Parameters, root: int, effects: Iterable[Rand
 def with_practice(traits: Parameters, index: int) -> Parameters:
     """The same participant in trial number ``index``, from 0: pace, handling and dwelling get quicker with practice.
 
-    The stick, the controllers and the search are new to people; turning and reading are not, and stay.
+    The stick, the controllers and the search are new to people; turning and reading are not, and stay the same.
     """
     lift = 1.0 + traits.learn * (1.0 - math.exp(-index / traits.n_learn))
     return msgspec.structs.replace(

@@ -1,7 +1,7 @@
 """A population: weighted draws of participants' mean parameters, and how far participants differ.
 
-The draws express what is not known about the mean, the random effects how participants differ from it. A participant is
-one draw, picked by weight, plus random effects, both by name: all robots meet the same participants.
+The draws express the uncertainty of the mean, the random effects how participants differ from it. A participant is one
+draw, picked by weight, plus random effects. Both depend only on names, so all robots meet the same participants.
 """
 
 from __future__ import annotations
@@ -29,9 +29,9 @@ Floats = NDArray[np.float64]
 
 IDENTIFIED_FROM = 0.4
 """[ratio] Least contraction (1 - variance of posterior / variance of prior, in quantiles of the prior) of a parameter
-that is called identified. Our choice."""
+that counts as identified. Our choice."""
 WEAKLY_IDENTIFIED_FROM = 0.1
-"""[ratio] Least contraction of a parameter that is called weakly identified. Our choice: sampling makes some .05."""
+"""[ratio] Least contraction of a weakly identified parameter. Our choice: sampling alone makes about .05."""
 
 
 class PopulationColumn(Struct, frozen=True, kw_only=True):
@@ -54,14 +54,14 @@ class PopulationColumn(Struct, frozen=True, kw_only=True):
 
     @property
     def word(self) -> str:
-        """Whether the data determine it."""
+        """Whether the data determine the parameter, in words."""
         if self.contraction >= IDENTIFIED_FROM:
             return "identified"
         return "weakly identified" if self.contraction >= WEAKLY_IDENTIFIED_FROM else "not identified"
 
 
 class Validity(Struct, frozen=True, kw_only=True):
-    """What a population was fitted to and with; elsewhere it is not known to fit. Empty if it was fitted to nothing.
+    """The data and settings of a population's fit; it may not fit under others. Empty if it was fitted to no data.
 
     Attributes:
         simulation: `hthor.rules.SIMULATION`.
@@ -86,11 +86,11 @@ class Population(Struct, frozen=True, kw_only=True, eq=False, dict=True):
         specs: one for each column of ``draws``.
         draws: (D, P) float64, in the units of ``specs``.
         log_weight: (D,) float64, natural logarithms of weights that add up to 1.
-        fixed: values of the parameters that are no column.
-        statistics: what it was fitted to; ``design_effects``: variance of those over that of independent trials.
+        fixed: values of the parameters that have no column.
+        statistics: the data of the fit; ``design_effects``: their variance over that of independent trials.
         figures: further numbers about the fit, such as effective draws or coverage.
-        notes: cautions for its users, a sentence each.
-        missing: parameters of this version that the file does not have; they are at their defaults.
+        notes: cautions for its users, one sentence each.
+        missing: parameters of this version that the file does not have; they have their defaults.
     """
 
     name: str
@@ -133,7 +133,7 @@ class Population(Struct, frozen=True, kw_only=True, eq=False, dict=True):
         Args:
             draws: (D, P) in physical units, one column for each name.
             log_weight: (D,), up to a constant; None when all draws count the same.
-            names: the columns, by default every free parameter.
+            names: names of the columns, by default of every free parameter.
             fixed: values of the other parameters, by default their defaults.
 
         Raises:
@@ -191,7 +191,7 @@ class Population(Struct, frozen=True, kw_only=True, eq=False, dict=True):
 
     @cached_property
     def sha256(self) -> str:
-        """Hash of everything that decides how participants behave, and of no description."""
+        """Hash of everything that decides how participants behave, without descriptions."""
         return jsonio.sha256(
             {
                 "arrays": hashlib.sha256(self.arrays).hexdigest(),

@@ -26,16 +26,16 @@ PRIOR_POPULATION = "literature"
 CALIBRATED_POPULATION = "study"
 """The population calibrated to the published user study."""
 _STEMS = {CALIBRATED_POPULATION: "paper"}
-"""Populations whose file has another name, so that its bytes and hashes stay; both names are accepted."""
+"""Populations whose file has another name, so that its bytes and hashes stay the same; both names are accepted."""
 _ROUNDING = 1e-6
-"""[weight] Largest error of the sum of a file's weights, which is 1. Our choice."""
+"""[weight] Largest difference between the sum of a file's weights and 1. Our choice."""
 _DAMAGED = (
     "it was changed or cut off after it was written; restore both files, or make them again with 'hthor calibrate'"
 )
 
 
 class Arrays(Struct, frozen=True, kw_only=True):
-    """The NPZ file of a JSON file."""
+    """The NPZ file that belongs to a JSON file."""
 
     draws: int
     effective: float
@@ -91,7 +91,7 @@ def load_population(name_or_path: str | Path) -> Population:
 
 
 def save_population(population: Population, path: Path) -> Path:
-    """Write PATH.npz and then PATH.json, which names the other by its hash; returns the JSON's path."""
+    """Write PATH.npz and then PATH.json, which has the hash of PATH.npz; returns the JSON's path."""
     path = path.with_suffix("") if path.suffix in (".npz", ".json") else path
     data = population.arrays
     document = Document(
@@ -143,7 +143,7 @@ def _read(path: Path) -> Population:
 
 
 def _arrays(path: Path, document: Document) -> tuple[Any, Any]:
-    """Draws and weights from the NPZ file that the document names by its hash."""
+    """Draws and weights from the NPZ file whose hash is in the document."""
     data = _bytes(path)
     if (digest := _sha256(data)) != document.arrays.sha256:
         there = document.arrays.sha256[:10]

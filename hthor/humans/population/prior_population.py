@@ -8,14 +8,14 @@ DRAWS = 512
 """[count] Draws of the population from the priors. Our choice: quantiles are exact to 1/1024 of the probability."""
 _ROOT = seeds.derive(0, "literature")
 _DIGITS = 12
-"""[digits] Of every value. Our choice: special functions of libraries may differ in later ones."""
+"""[digits] Significant digits of every value. Our choice: further digits may differ between libraries."""
 _NOTES = (
     "Every parameter is drawn from its prior: these people agree with the literature, and were fitted to no data.",
 )
 
 
 def make_prior_population() -> Population:
-    """The same number of draws from each stratum of every prior, the strata of different parameters mixed."""
+    """One draw from each of `DRAWS` strata of every prior, with the strata of different parameters mixed."""
     orders = [seeds.shuffled(DRAWS, _ROOT, name) for name in parameter_registry.free_parameter_names()]
     points = [[(order[row] + 0.5) / DRAWS for order in orders] for row in range(DRAWS)]
     draws = [

@@ -20,7 +20,7 @@ from hthor.humans.population.participant import Participant
 from hthor.humans.population.population import Population
 
 PROXY = "proxy"
-"""The human model that populations are fitted to; as a word of `--humans`, with the default population."""
+"""The human model that populations are fitted with; as a word of `--humans`, it has the default population."""
 _SORT = "human model"
 _HINT = "Or give a path: pop.npz of a population, my_kind.json of a kind of people, my_human.py of a human model."
 
@@ -29,11 +29,11 @@ class ParticipantSource(Struct, frozen=True, kw_only=True, eq=False):
     """Where the participants of a run come from: a human model and a population.
 
     Attributes:
-        name: for tables and files; has no folders in it.
-        word: finds it again, in any process and from any folder.
-        purpose: a few words about it.
+        name: a name for tables and files, without folders.
+        word: a word of `--humans` that means the same in any process and from any folder.
+        purpose: a few words about these people.
         model: the human model's name, or the path of its file.
-        source: what the model is made from instead of a population, such as a log to replay; mostly empty.
+        source: what the model is made from instead of a population, such as a log to replay; usually empty.
         kind: changes to the population, None for none.
         sha256: hash of everything that decides how participants behave, except hthor's own code.
     """
@@ -65,7 +65,7 @@ class ParticipantSource(Struct, frozen=True, kw_only=True, eq=False):
 
 
 def default_population() -> str:
-    """The population where none is named."""
+    """The population that is used when none is named."""
     return (
         population_file.CALIBRATED_POPULATION
         if population_file.CALIBRATED_POPULATION in population_file.names()
@@ -140,7 +140,7 @@ def _people(
 
 
 def _named(word: str, digest: str) -> str:
-    """A name for tables; the file of a user that has a name of ours gets a part of its hash too."""
+    """A name for tables; a user's file with a name that hthor uses itself gets a part of its hash too."""
     name = _plain(word)
     own = word in human_names() or not word.endswith((".npz", ".json", ".py"))
     return name if own or name not in human_names() else f"{name}-{digest[:6]}"

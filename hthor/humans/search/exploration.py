@@ -16,29 +16,29 @@ from hthor.navigation.frontier import frontiers
 from hthor.types import Motion, Open, Vec2, Vec3, Wait
 
 _INSIDE_M = 0.5
-"""[m] So far into a room people have entered it, and so near to a doorway's far side they have passed. Our choice."""
+"""[m] A room is entered from this depth on, a doorway passed within this distance of its far side. Our choice."""
 _GAZE_WIDTH_RAD = 1.0
-"""[rad] Width of furniture that one gaze takes in; a wider piece is looked at part by part. Our choice."""
+"""[rad] Width of furniture that one gaze covers; a wider piece is looked at part by part. Our choice."""
 _GAZE_SLACK = 0.3
-"""[gazes] A piece may be wider than its gazes take in by this share of one. Our choice."""
+"""[gazes] How much wider than its gazes a piece may be, in widths of a gaze. Our choice."""
 _TABLE_M = 1.3
 """[m] Open furniture lower than this is looked at on top, anything higher in the middle. Our choice."""
 _PART_SHARE = 0.6
 """[ratio] Share of t_dwell for each part of a piece that is looked at part by part. Our choice."""
 _PAUSE_S = 0.3
-"""[s] A pause when nothing else could be done, such as before a blocked doorway. Our choice."""
+"""[s] A pause when nothing else can be done, such as in front of a blocked doorway. Our choice."""
 _BESIDE_M = 1.0
-"""[m] People stop this near to a place on the map that they make for. Our choice."""
+"""[m] Distance at which people stop in front of a place that they know from the map. Our choice."""
 _ROAM_S = 40.0
-"""[s] So long people try to get near a place on the map before they give it up. Our choice."""
+"""[s] How long people try to get near a place on the map before they give up. Our choice."""
 _EXPOSURE_UNREACHED = 1.0
-"""[exposure] Added to a place that cannot be reached, so that others come first. Our choice."""
+"""[exposure] Amount added to a place that cannot be reached, so that others come first. Our choice."""
 _MAX_FAILURES = 1
-"""[count] Failed attempts at a doorway after which it counts as passed: more than this. Our choice."""
+"""[count] A doorway counts as passed after more failed attempts than this. Our choice."""
 
 
 class Exploration:
-    """Carries out a search. ``fresh`` is where a room was entered that was not looked round in yet [m]."""
+    """Carries out a search. ``fresh`` [m] is where a room was entered, until the participant looks round in it."""
 
     def __init__(self, human: HumanContext, eyes: Eyes, memory: SpatialMemory, walker: Walker, hands: Hands) -> None:
         self.human, self.eyes, self.memory, self.walker, self.hands = human, eyes, memory, walker, hands
@@ -64,9 +64,9 @@ class Exploration:
         return True
 
     def make_for(self, point: Vec3, known: Callable[[], bool], search: OptionChoice) -> Behaviour:
-        """Go near a point [m] until what is there is ``known`` by sight.
+        """Go near a point [m] until the place there is ``known`` by sight.
 
-        As long as it is not, it is in another room: go by the doorway or entrance nearest to it, again and again.
+        Until then the point is assumed to be in another room: go to the entrance nearest to it, again and again.
         """
         until = self.human.now.tick + round(_ROAM_S / self.human.tick_s)
         tried: list[str] = []
@@ -91,7 +91,7 @@ class Exploration:
         return (yield from self._look_round_unless(enough)) if self.fresh is not None else True
 
     def _other_room(self, point: Vec3, tried: list[str]) -> Option | None:
-        """The entrance to another room that is nearest to a point as the crow flies."""
+        """The entrance to another room that is nearest to a point in a straight line."""
         doors = [door for door in self.memory.doorways.values() if door.sides and not door.passed]
         ways = [Option(name=door.id, value=0.0, spot=door.beyond, doorway=door) for door in doors]
         ways += [Option(name=room, value=0.0, spot=spot) for room, spot in self.memory.entered.items()]
@@ -156,7 +156,7 @@ class Exploration:
         return True
 
     def _wander(self, search: OptionChoice, enough: Callable[[], bool]) -> Behaviour:
-        """Without options: go where the known floor ends, search something again, or go back and look round."""
+        """Act without options: go to where the known floor ends, search a place again, or go back and look round."""
         since = self.human.now.tick
         edges = frontiers(self.walker.grid, self.walker.planner, self.human.now.pose)
         if edges:

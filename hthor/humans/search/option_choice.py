@@ -16,20 +16,20 @@ from hthor.humans.search.option_description import Option
 from hthor.types import Vec2
 
 DOORWAY_S = 2.0
-"""[s] Expected time to go through a doorway and look into the room, besides the way. Our choice."""
+"""[s] Expected time to go through a doorway and look into the room, without the walk there. Our choice."""
 SETTLE_S = 1.0
-"""[s] Expected time to stop and turn at a place that is searched, besides the look at it. Our choice."""
+"""[s] Expected time to stop and turn at a place that is searched, without the look at it. Our choice."""
 _STALE_TICKS = 100
-"""[ticks] After so long people work out again where to stand at a place. Our choice: ten seconds."""
+"""[ticks] Time after which people choose again where to stand at a place. Our choice: ten seconds."""
 _FRESH_TICKS = 50
-"""[ticks] So long the options of the last choice are taken for those of now. Our choice: five seconds."""
+"""[ticks] How long the options of the last choice count as current. Our choice: five seconds."""
 
 
 class OptionChoice:
     """Lists the options of one search, for the "target", a "destination" or "room", weighs them and chooses.
 
-    ``belief`` is in each kind of furniture, adding up to 1; empty when the thing wanted would have been seen. It is
-    mixed of ``knowledge`` and ``uniform`` ignorance; where they are set, choices are recorded in the journal.
+    ``belief`` is the probability of each kind of furniture, adding up to 1; empty when the object would have been seen.
+    It mixes ``knowledge`` and ``uniform`` ignorance; when these are set, choices are recorded in the journal.
     """
 
     def __init__(self, human: HumanContext, memory: SpatialMemory, walker: Walker, name: str) -> None:
@@ -42,7 +42,7 @@ class OptionChoice:
         self._latest: tuple[int, list[Option]] = (-_FRESH_TICKS, [])
 
     def choose(self) -> Option | None:
-        """The next thing to do, by the model's own law or by the policy that decides in its place; None for nothing."""
+        """The next thing to do, by the model's own law or by its policy, if it has one; None without options."""
         options, number, human = self.options(), self._choices, self.human
         self._latest = human.now.tick, options
         self._choices += 1
@@ -77,7 +77,7 @@ class OptionChoice:
         return max(options, key=utility)
 
     def recent(self) -> list[Option]:
-        """The options of the last choice, if that was just now; else those of now."""
+        """The options of the last choice if it was recent, else the current options."""
         tick, _ = self._latest
         if self.human.now.tick - tick >= _FRESH_TICKS:
             self._latest = self.human.now.tick, self.options()
@@ -122,11 +122,11 @@ class OptionChoice:
         return max(self.human.traits.spare, 1.0 - sum(beliefs.values()))
 
     def is_done(self, place: KnownPlace) -> bool:
-        """Whether nothing is expected any more of a place that is in plain view."""
+        """Whether the object is not expected any more at a place that is in plain view."""
         return place.state != "closed" and self.memory.exposure(place, self.human.now.tick) > self.human.traits.e_skip
 
     def least_searched(self) -> KnownPlace | None:
-        """When all was searched: the place that was searched least, or longest ago."""
+        """The place that was searched least, or longest ago, for when all places were searched."""
         places = [place for place in self.memory.places.values() if self.belief.get(place.kind, 0.0) > 0.0]
         tick = self.human.now.tick
         return min(places, key=lambda place: (self.memory.exposure(place, tick), place.id), default=None)

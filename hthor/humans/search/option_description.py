@@ -15,19 +15,19 @@ from hthor.types import HUMAN, Event, Vec2
 MAX_RECORDED = 12
 """[count] Options of one choice kept in the journal: the chosen one and a random sample. Our choice."""
 FEATURES = ("knowledge", "uniform", "metres", "exposure", "closed", "is_door")
-"""What the journal holds of each option, see `hthor.humans.core.policy.OptionDescription`; the last two are 0 or 1."""
+"""Fields of each option in the journal, see `hthor.humans.core.policy.OptionDescription`; the last two are 0 or 1."""
 _GLANCED = 0.5
-"""[exposure] From here a place is described as "glanced at". Our choice."""
+"""[exposure] Least exposure of a place that is described as "glanced at". Our choice."""
 _SEARCHED = 2.0
-"""[exposure] From here a place is described as "already searched". Our choice."""
+"""[exposure] Least exposure of a place that is described as "already searched". Our choice."""
 _HERE_M = 1.0
-"""[m] Anything nearer is described as "right here". Our choice."""
+"""[m] Options nearer than this are described as "right here". Our choice."""
 
 
 class Option(Struct, frozen=True, kw_only=True):
-    """Search ``place``, or go through ``doorway``; ``value`` is what it promises for its time.
+    """Search ``place``, or go through ``doorway``; ``value`` is its worth for the time that it takes.
 
-    ``metres`` is the way to ``spot`` [m], ``seconds`` what all takes, ``exposure`` how well the place was searched.
+    ``metres`` is the walk to ``spot`` [m], ``seconds`` the whole time, ``exposure`` how well the place was searched.
     """
 
     name: str
@@ -53,7 +53,7 @@ def describe(
     knowledge: Sequence[float],
     uniform: Sequence[float],
 ) -> Situation:
-    """Choice ``number`` of the search called ``name``, as a policy sees it; chances by knowledge and by ignorance."""
+    """Choice ``number`` of the search called ``name`` for a policy; ``knowledge`` and ``uniform``: probabilities."""
     return Situation(
         instruction=human.task.instruction,
         aim="target" if name == "target" else "destination",
@@ -69,7 +69,7 @@ def checked_index(index: Any, situation: Situation) -> int:
     """The index that a policy returned.
 
     Raises:
-        HthorError: when it is no index of an option.
+        HthorError: when it is not an index of an option.
     """
     count = len(situation.options)
     if isinstance(index, bool) or not isinstance(index, int) or not 0 <= index < count:
@@ -88,8 +88,8 @@ def features(
 ) -> dict[str, Any]:
     """The choice as the journal holds it: `FEATURES` of each option, and the index of the chosen one.
 
-    Of more than `MAX_RECORDED` options a random sample is kept besides the chosen one, each as likely: a conditional
-    logit fitted to such samples is consistent (McFadden 1978).
+    Of more than `MAX_RECORDED` options the chosen one and an equally likely sample of the others are kept: a
+    conditional logit fitted to such samples is consistent (McFadden 1978).
     """
     kept = list(zip(options, knowledge, uniform, strict=True))
     if len(kept) > MAX_RECORDED:

@@ -68,7 +68,7 @@ def load(name_or_path: str | Path) -> PopulationKind:
     """A kind by name, or from a file.
 
     Raises:
-        UnknownName: when there is none of that name.
+        UnknownName: when no kind has that name.
         PopulationError: when the file cannot be read, or changes an unknown parameter.
     """
     word = str(name_or_path)
