@@ -1,1 +1,1 @@
-"""What people read about runs: `analysis` computes, `drawing` and `html` draw, `page` and `terminal` present."""
+"""What people read about runs: `analysis` computes it, `drawing` and `html` draw it, `page` and `terminal` show it."""

@@ -1,1 +1,1 @@
-"""What the report says, worked out from runs: no HTML here."""
+"""Computes the contents of a report from runs; makes no HTML."""

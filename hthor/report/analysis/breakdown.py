@@ -1,4 +1,4 @@
-"""Success within parts of the trials, with each kind of person, and of runs against each other."""
+"""Success rates within parts of the trials and with each human population, and comparisons between runs."""
 
 import itertools
 from collections.abc import Callable, Sequence
@@ -17,7 +17,7 @@ _KINDS = "kind of task"
 
 
 def all_splits(runs: Sequence[Run]) -> tuple[Split, ...]:
-    """Every breakdown of the trials with more than one group, and more than a single trial in some group."""
+    """Every breakdown of the trials that has more than one group, and more than one trial in some group."""
     found = (
         _split("difficulty", runs, lambda one: one.spec.task.difficulty, _LEVELS),
         _split(_KINDS, runs, lambda one: one.spec.task.kind.replace("_", " ")),
@@ -28,12 +28,12 @@ def all_splits(runs: Sequence[Run]) -> tuple[Split, ...]:
 
 
 def _tells(split: Split) -> bool:
-    """Whether any group has more than a single trial."""
+    """Whether any group has more than one trial."""
     return any(one.n > 1 for group in split.groups for one in group.sr.values())
 
 
 def split_by_population(runs: Sequence[Run]) -> Split | None:
-    """Success with each human population, in their order; None if there is only one."""
+    """Success with each human population, in the order of the runs; None if there is only one population."""
     names = list(dict.fromkeys(run.plan.humans.name for run in runs))
     groups = tuple(
         Group(name=name, sr={run.label: success_rate(run.records) for run in runs if run.plan.humans.name == name})
@@ -62,7 +62,7 @@ def success_rate(records: Sequence[TrialRecord]) -> Estimate:
 def compare_labelled(
     baseline: Run | None, runs: Sequence[Run]
 ) -> tuple[tuple[Comparison, ...], tuple[IncomparablePair, ...]]:
-    """Every pair of runs, that without a robot as the first of its pairs, and the pairs that share no trial."""
+    """Compare every two runs, a baseline always as the first; also return the pairs that share no trial."""
     order = [run for run in (baseline, *(one for one in runs if one is not baseline)) if run is not None]
     found = compare.compare_pairs(
         [LoadedRun(name=run.label, folder=run.folder, plan=run.plan, records=run.records) for run in order]
@@ -77,7 +77,7 @@ def compare_labelled(
 
 
 def uplift_by_population(runs: Sequence[Run]) -> dict[str, tuple[Comparison, ...]]:
-    """For each human population, what the robots change against no robot."""
+    """For each human population, the comparisons of its robots with no robot."""
     found: dict[str, tuple[Comparison, ...]] = {}
     names = list(dict.fromkeys(run.plan.humans.name for run in runs))
     for name in names if len(names) > 1 else ():

@@ -13,17 +13,17 @@ from hthor.report.analysis.document import Arm, Findings, Published
 from hthor.report.analysis.load_runs import Run
 
 _MANY = 8
-"""Of more runs than these fewer trials are drawn, so that the page stays small."""
+"""With more runs than this, fewer trials are drawn, so that the page stays small."""
 _STUDIED = {"object_goal_navigation", "mobile_manipulation"}
-"""Kinds of task that published figures are of."""
+"""Task kinds for which a study has published figures."""
 
 
 def build_findings(runs: Sequence[Run], published: Published | None = None) -> Findings:
-    """The document; most of it is about the human population of the first run.
+    """Build the document; most of it is about the human population of the first run.
 
     Args:
-        runs: as `hthor.report.analysis.load_runs` reads them.
-        published: figures of a study to compare with, used if the tasks are of its kinds.
+        runs: as `hthor.report.analysis.load_runs` returns them.
+        published: a study's figures to compare with; used only if the tasks are of the kinds that it studied.
     """
     people = runs[0].plan.humans.name
     own = [run for run in runs if run.plan.humans.name == people]

@@ -16,9 +16,9 @@ from hthor.report.analysis.run_provenance import Provenance
 
 
 class ExampleTrial(Struct, frozen=True, kw_only=True):
-    """A trial worth a map. ``gain_s`` is the time saved [s] against the same person without a robot, None without one.
+    """A trial to draw on a map; ``replay`` is the command that draws the whole trial.
 
-    ``replay`` is the command that draws it whole.
+    ``gain_s`` is the time saved [s] against the same person without a robot, None if there is no such trial.
     """
 
     arm: str
@@ -39,10 +39,10 @@ class ExampleTrial(Struct, frozen=True, kw_only=True):
 
 
 class FaultGroup(Struct, frozen=True, kw_only=True):
-    """One way in which a run's robots failed: in how many ``trials`` out of ``whole``, and the first of them.
+    """Faults of one kind in a run: ``trials`` of its ``whole`` trials had one. The rest is about the first such trial.
 
-    ``detail`` is the traceback or what the robot's mind did, ``output`` what it printed last, empty where nothing was
-    kept; ``again`` the command that plays the trial once more, ``replay`` the one that draws it.
+    ``detail`` is the traceback or a description of the fault, ``output`` the agent's last printed text; either is empty
+    if the run did not keep it. ``again`` is the command that plays the trial again, ``replay`` the one that draws it.
     """
 
     run: str
@@ -66,7 +66,7 @@ SCHEMA = "hthor.report/3"
 
 
 class Share(Struct, frozen=True, kw_only=True):
-    """A published share ``k`` of ``n`` trials; ``inferred`` where the study prints only the percentage."""
+    """A published share, ``k`` of ``n`` trials; ``inferred`` if ``k`` was computed from a published percentage."""
 
     k: int
     n: int
@@ -74,7 +74,7 @@ class Share(Struct, frozen=True, kw_only=True):
 
     @property
     def ci95(self) -> tuple[float, float]:
-        """Wilson's interval: all that is known of these trials is how many there were."""
+        """Wilson's interval, because nothing but the two counts is known of these trials."""
         z, share = 1.959964, self.k / self.n
         middle = (share + z * z / (2 * self.n)) / (1 + z * z / self.n)
         half = z / (1 + z * z / self.n) * math.sqrt(share * (1 - share) / self.n + z * z / (4 * self.n * self.n))
@@ -82,9 +82,9 @@ class Share(Struct, frozen=True, kw_only=True):
 
 
 class Published(Struct, frozen=True, kw_only=True):
-    """What a study printed: figures as fractions by name, such as "sr none", and the counts behind some of them.
+    """A study's published figures: fractions by name, such as "sr none", and the counts behind some of them.
 
-    ``suite`` is the name of the suite that has its tasks.
+    ``suite`` is the name of the suite with the study's tasks.
     """
 
     name: str
@@ -96,9 +96,9 @@ class Published(Struct, frozen=True, kw_only=True):
 
 
 class Arm(Struct, frozen=True, kw_only=True):
-    """One run's robots with the report's people: ``label`` is their name on the page.
+    """One run with the human population of the report; ``label`` is the name of its robots on the page.
 
-    ``condition`` is none, frontier or oracle where the article had such a robot, else empty; ``folder`` the run's name.
+    ``condition`` is none, frontier or oracle if the article had such a robot, else empty. ``folder`` is the run's name.
     """
 
     label: str
@@ -112,7 +112,7 @@ class Arm(Struct, frozen=True, kw_only=True):
 
 
 class IncomparablePair(Struct, frozen=True, kw_only=True):
-    """Two runs that share no trial; ``field`` of their configurations says why, empty where they only lack trials."""
+    """Two runs that share no trial. ``field`` is the run config field that differs, or empty if trials are missing."""
 
     first: str
     second: str
@@ -120,7 +120,7 @@ class IncomparablePair(Struct, frozen=True, kw_only=True):
 
 
 class TimeSpent(Struct, frozen=True, kw_only=True):
-    """Time spent in one run [s]; an unsolved trial counts with the time limit. ``unsolved`` of ``trials`` did.
+    """Time spent in one run [s]. Of its ``trials``, the ``unsolved`` ones count with the time limit.
 
     ``solved`` is the share of trials that were solved within 0, 1, 2, ... seconds.
     """
@@ -137,10 +137,10 @@ class TimeSpent(Struct, frozen=True, kw_only=True):
 
 
 class TrustCurve(Struct, frozen=True, kw_only=True):
-    """Trust by trial of the session: means, their 95 % intervals, and how many people rated each.
+    """Trust after each trial of the session: means, their 95 % intervals, and how many people gave a rating.
 
-    ``slope`` is the mean over people of the least-squares slope [points a trial], ``slope_se`` its standard error;
-    None where fewer than two people rated two trials.
+    ``slope`` is the mean over people of the least-squares slope [points per trial], ``slope_se`` its standard error;
+    both are None if fewer than two people rated two trials.
     """
 
     arm: str
@@ -153,14 +153,14 @@ class TrustCurve(Struct, frozen=True, kw_only=True):
 
 
 class Group(Struct, frozen=True, kw_only=True):
-    """Success within one part of the trials, such as hard tasks, by the arm's label."""
+    """Success within one part of the trials, such as hard tasks: one estimate for each run's label."""
 
     name: str
     sr: dict[str, Estimate]
 
 
 class Split(Struct, frozen=True, kw_only=True):
-    """All trials parted by one thing; ``word`` says by what."""
+    """All trials divided into groups by one property, such as difficulty; ``word`` names the property."""
 
     word: str
     groups: tuple[Group, ...]
@@ -169,10 +169,10 @@ class Split(Struct, frozen=True, kw_only=True):
 class Findings(Struct, frozen=True, kw_only=True):
     """The whole document.
 
-    ``people`` is the human population of most of the report; ``by_people`` has all. ``baseline`` is the label of the
-    run without a robot, empty if there is none. ``comparisons`` are of this population's runs, by label, the baseline
-    first; ``apart`` are the pairs that cannot be compared. ``people_uplift`` has the comparisons with the baseline for
-    each population.
+    ``people`` is the human population that most of the report is about; ``by_people`` has success with all populations.
+    ``baseline`` is the label of the run without a robot, empty if there is none. ``comparisons`` are between runs with
+    ``people``, by label, the baseline first; ``apart`` has the pairs of runs that cannot be compared. ``people_uplift``
+    has the comparisons with the baseline for each population.
     """
 
     schema: str = SCHEMA
@@ -194,5 +194,5 @@ class Findings(Struct, frozen=True, kw_only=True):
 
     @property
     def uplift(self) -> tuple[Comparison, ...]:
-        """What each robot changes against no robot."""
+        """The comparisons of each robot with no robot."""
         return tuple(pair for pair in self.comparisons if self.baseline and pair.first == self.baseline)

@@ -17,15 +17,15 @@ from hthor.eval.results import baseline
 
 NONE = NO_ROBOT
 Pair = tuple[int, int, int, str]
-"""What two runs' trials share when they are of the same person at the same task: seed, person, place, task."""
+"""Seed, participant, place in the session and task of a trial. Trials of two runs with an equal key form a pair."""
 
 
 class Run(Struct, frozen=True, kw_only=True, eq=False):
-    """One run: its configuration, its trials in order with freshly measured metrics, and what to call it.
+    """One run: its configuration, its trials in order with newly computed metrics, and its names in the report.
 
-    ``name`` is what its folder is called, with the folder above where that tells it apart. ``sha256`` is the hash
-    of its log as `hthor.eval.results.aggregate` has it. ``beside`` says that the user did not name it: it was
-    found as the baseline of another.
+    ``name`` is the name of its folder, preceded by the parent folder's if needed to tell runs apart. ``sha256`` is the
+    hash of its log as in `hthor.eval.results.aggregate`. ``beside`` is true if the user did not name the run: the
+    report found it next to another run, as its baseline.
     """
 
     folder: Path
@@ -39,21 +39,21 @@ class Run(Struct, frozen=True, kw_only=True, eq=False):
 
     @property
     def by_pair(self) -> dict[Pair, TrialRecord]:
-        """The trials by what they share with those of other robots."""
+        """The trials by the key that pairs them with trials of other runs."""
         return {pairing_key(record): record for record in self.records}
 
 
 def pairing_key(record: TrialRecord) -> Pair:
-    """What a trial shares with that of the same person at the same task with other robots."""
+    """The key by which a trial is paired with that of the same person at the same task with other robots."""
     spec = record.spec
     return (spec.seed, spec.participant, spec.index, spec.task.id)
 
 
 def load_runs(folders: Sequence[Path]) -> list[Run]:
-    """Every run, in the order given.
+    """Read every run, in the order of ``folders``.
 
     Raises:
-        RunError: when a folder holds no run, a file of it is damaged, or the runs do not belong together.
+        RunError: if a folder holds no run, one of its files is damaged, or the runs do not belong together.
     """
     found = [_read(folder) for folder in folders]
     for one in found[1:]:
@@ -63,7 +63,7 @@ def load_runs(folders: Sequence[Path]) -> list[Run]:
 
 
 def with_baselines(found: Sequence[Run]) -> list[Run]:
-    """The runs, preceded by a baseline for each human population that has none, if one is found next to them."""
+    """The runs; each human population that has no baseline gets one in front, if one lies next to its runs."""
     whole: list[Run] = []
     for one in found:
         people = one.plan.humans.name
@@ -93,7 +93,7 @@ def _read(folder: Path) -> Run:
 
 
 def _condition(plan: RunConfig) -> str:
-    """The condition of the published study that these robots are, if any."""
+    """The condition of the published study that had this robot; empty if there is none."""
     if not plan.seats:
         return "none"
     agent = plan.seats[0].agent
@@ -102,7 +102,7 @@ def _condition(plan: RunConfig) -> str:
 
 
 def _together(first: Run, other: Run) -> None:
-    """See that two runs are of the same tasks under the same rules."""
+    """Check that two runs have the same tasks and rules."""
     here, there = other.plan, first.plan
     fields = {
         "suite.sha256": (here.suite.sha256, there.suite.sha256, f"suite '{here.suite.name}', not '{there.suite.name}'"),
@@ -128,7 +128,7 @@ def _distinct(found: Sequence[Run]) -> None:
 
 
 def _named(found: Sequence[Run]) -> list[Run]:
-    """Names and labels that tell runs apart: where two labels with the same people are equal, with the name."""
+    """The runs with names and labels that differ: to equal labels with the same people, the run's name is added."""
     names = [_name(one, found) for one in found]
     whole: list[Run] = []
     for one, name in zip(found, names, strict=True):

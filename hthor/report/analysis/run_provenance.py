@@ -1,4 +1,4 @@
-"""Where one run came from: everything that decides its records, and what held its agents."""
+"""Where one run came from: everything that decides its records, and how its agents were isolated."""
 
 from msgspec import Struct
 
@@ -17,7 +17,7 @@ _LOCKSTEP = "lockstep"
 
 
 class Platform(Struct, frozen=True, kw_only=True):
-    """A machine that played a part of a run: system, processor's architecture and make, vector units, C library."""
+    """A machine that played a part of a run: system, processor architecture and model, vector units, C library."""
 
     system: str = ""
     machine: str = ""
@@ -27,12 +27,12 @@ class Platform(Struct, frozen=True, kw_only=True):
 
 
 class Provenance(Struct, frozen=True, kw_only=True):
-    """One run's.
+    """Where one run came from.
 
-    ``name`` is that of its folder. ``beside`` says that the report found it by itself, as the baseline of another run.
-    ``isolation`` is None where all agents are built in; ``platforms`` is empty where the run did not note them.
-    ``command`` plays the run again, ``alone`` the same people at the same tasks without a robot. ``mode`` is
-    lockstep, or realtime where robots' thinking took time of the trials.
+    ``name`` is its folder's name. ``beside`` is true if the report found the run by itself, as another run's baseline.
+    ``isolation`` is None if all agents are built in. ``platforms`` is empty if the run did not record them. ``command``
+    plays the run again; ``alone`` plays the same people and tasks without a robot. ``mode`` is lockstep, or realtime if
+    the agents' computing time counted as time of the trials.
     """
 
     name: str
@@ -65,7 +65,7 @@ def run_provenance(run: Run) -> Provenance:
     """Where a run came from.
 
     Raises:
-        RunError: when a file next to its log cannot be read.
+        RunError: if a file next to the run's log cannot be read.
     """
     plan = run.plan
     return Provenance(

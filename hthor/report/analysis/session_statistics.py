@@ -1,4 +1,4 @@
-"""Time spent and trust in one run, as numbers."""
+"""Statistics of time spent and trust in one run."""
 
 import math
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ _QUARTILES = (0.0, 0.25, 0.5, 0.75, 1.0)
 
 
 def time_spent(run: Run) -> TimeSpent:
-    """Minimum, quartiles and maximum of the time spent, and how many were done by when."""
+    """Minimum, quartiles and maximum of the time spent, and the share of trials solved by each second."""
     times = trial_metrics.column((record.metrics for record in run.records), "time_s")
     least, lower, median, upper, most = (round(float(value), _DIGITS) for value in np.quantile(times, _QUARTILES))
     unsolved = sum(not record.met for record in run.records)
@@ -36,7 +36,7 @@ def time_spent(run: Run) -> TimeSpent:
 
 
 def trust_curve(run: Run) -> TrustCurve | None:
-    """Trust by trial of the session; None where nobody rated anything."""
+    """Trust by trial of the session; None if nobody rated a robot."""
     rated = [(one.spec.participant, one.spec.index, one.trust) for one in run.records if one.trust is not None]
     if not run.plan.seats or not rated:
         return None
@@ -60,7 +60,7 @@ def _people(rated: Sequence[tuple[int, int, int]]) -> list[int]:
 
 
 def _slope(marks: Sequence[tuple[int, int]]) -> float | None:
-    """Least-squares slope of one person's ratings [points a trial]; None of a single one."""
+    """Least-squares slope of one person's ratings [points per trial]; None if there is only one rating."""
     if len(marks) < 2:
         return None
     x, y = (np.array(values, dtype=float) for values in zip(*marks, strict=True))
@@ -69,7 +69,7 @@ def _slope(marks: Sequence[tuple[int, int]]) -> float | None:
 
 
 def _error(values: Sequence[float]) -> float | None:
-    """Standard error of the mean; None of fewer than two."""
+    """Standard error of the mean; None for fewer than two values."""
     if len(values) < 2:
         return None
     mean = _mean(values)

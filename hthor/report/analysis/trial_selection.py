@@ -1,4 +1,4 @@
-"""Trials of a run that are shown: where its robots helped most and least, and the first of each sort of fault."""
+"""Selects trials to show: where a run's robots helped most and least, and the first trial with each kind of fault."""
 
 import shlex
 
@@ -11,7 +11,7 @@ from hthor.report.analysis.document import ExampleTrial, FaultGroup
 from hthor.report.analysis.load_runs import Run, pairing_key
 
 EACH = 2
-"""So many of the best and of the worst."""
+"""How many of the best trials to show, and how many of the worst."""
 _DETAIL_MAX, _OUTPUT_MAX = 4000, 2000
 _FOLDER = "faults"
 
@@ -19,8 +19,8 @@ _FOLDER = "faults"
 def best_and_worst(run: Run, alone: Run | None, each: int = EACH) -> list[ExampleTrial]:
     """The ``each`` best and worst trials of a run with robots, each trial at most once.
 
-    Against the same person without a robot where there is such a run: by the time saved, and among equals by
-    time-weighted success. Without one by time-weighted success, and among equals by the time spent.
+    If there is a run without a robot, trials are ranked by the time saved against the same person in that run, then by
+    time-weighted success. Otherwise they are ranked by time-weighted success, then by the time spent.
     """
     others = alone.by_pair if alone is not None else {}
     ranked = [record for record in run.records if alone is None or pairing_key(record) in others]
@@ -66,12 +66,12 @@ def _shown(run: Run, rank: str, record: TrialRecord, other: TrialRecord | None) 
 
 
 def replay_command(run: Run, record: TrialRecord) -> str:
-    """The command that draws a trial, as it can be typed where the report was written."""
+    """The command that draws a trial, to be typed in the folder in which the report was written."""
     return shlex.join(["hthor", "replay", str(cli_command.relative_path(run.folder)), record.key])
 
 
 class _Left(Struct):
-    """What a run kept of one robot that failed, as far as it is shown."""
+    """The data that a run kept of one robot's failure, as far as the report shows it."""
 
     seat: str = ""
     kind: str = ""
@@ -85,7 +85,7 @@ class _Remains(Struct):
 
 
 def fault_summary(run: Run) -> list[FaultGroup]:
-    """One entry for each seat and sort of fault, by the first trial that it came in, the most frequent first."""
+    """One entry for each seat and kind of fault, described by its first trial; the most frequent first."""
     agents = {robot.seat: robot.agent.name for robot in run.plan.seats}
     cases: dict[tuple[str, str], list[TrialRecord]] = {}
     for record in run.records:
@@ -120,16 +120,16 @@ def _failure(run: Run, seat: str, agent: str, kind: str, held: list[TrialRecord]
 
 
 def _here(again: str, run: Run) -> str:
-    """The command that plays a trial again, with the run's folder as it is reached from here."""
+    """The command that plays a trial again, with a path to the run's folder that is valid from here."""
     try:
         *words, _, key = shlex.split(again)
-    except ValueError:  # there is none, or somebody changed it
+    except ValueError:  # the command is missing, or somebody changed it
         return again
     return shlex.join([*words, str(cli_command.relative_path(run.folder)), key])
 
 
 def _remains(run: Run, record: TrialRecord) -> _Remains:
-    """What the run kept of a trial; nothing where it kept none, or what nobody can read: no number depends on it."""
+    """What the run kept of a trial's faults; empty if missing or unreadable, because no number depends on it."""
     path = run.folder / _FOLDER / f"{record.key}.json"
     try:
         return documents.decode(path.read_bytes(), _Remains)

@@ -1,1 +1,1 @@
-"""Floor plans, trials, timelines and videos as pictures."""
+"""Draws floor plans, trials, timelines and videos."""

@@ -1,4 +1,4 @@
-"""A house drawn from above as a floor plan, and names of rooms and a scale on a picture of it."""
+"""Draws a house from above as a floor plan, and adds room names and a scale to a picture of a house."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ _NAME_PT, _SMALL_NAME_PT = 8.5, 6.5
 _FURNITURE, _EDGE = "#d9d4cb", "#a8a196"
 RUG, RUG_EDGE, RUG_HATCH = "#faf7f0", "#cdc6b8", "////"
 _FLAT_M = 0.05
-"""What rises no higher from the floor is walked and driven over: rugs and mats."""
+"""Things that are no higher, such as rugs and mats, can be walked and driven over."""
 _DPI, _STRIP_PX = 100, 34
 _LABEL_STROKE: list[patheffects.AbstractPathEffect] = [patheffects.withStroke(linewidth=2.6, foreground="white")]
 _TITLE_CHARACTERS = 8.0
-"""Pixels that a character of the title takes, about."""
+"""Approximate width of a character of the title [px]."""
 
 
 def draw_house(ax: Axes, house: HouseSpec, *, marked: Collection[str] = (), small: bool = False) -> None:
@@ -84,12 +84,12 @@ def _draw_thing(ax: Axes, thing: Thing, marked: bool) -> None:
 
 
 def is_flat(thing: Thing) -> bool:
-    """Whether a thing only covers the floor, so that everybody goes over it."""
+    """Whether a thing only covers the floor, so that people and robots move over it."""
     return not thing.parent and thing.centre[2] + thing.size[2] / 2 <= _FLAT_M
 
 
 def _front_line(thing: Thing) -> tuple[Vec2, Vec2]:
-    """A thin line along the front edge, so that a reader sees which way a sofa or a fridge faces."""
+    """A thin line along the front edge, which shows the way that a sofa or a fridge faces."""
     width, depth = thing.size[0], thing.size[1]
     inset = min(0.08, depth * 0.15)
     a, b = (
@@ -100,7 +100,7 @@ def _front_line(thing: Thing) -> tuple[Vec2, Vec2]:
 
 
 def _label(ax: Axes, thing: Thing) -> None:
-    """The name of a receptacle, along its longer side."""
+    """Write the name of a receptacle along its longer side."""
     outline = plane.rectangle((thing.centre[0], thing.centre[1]), (thing.size[0], thing.size[1]), thing.yaw)
     wide, deep = (max(axis) - min(axis) for axis in zip(*outline, strict=True))
     turned = 90.0 if deep > 1.2 * wide else 0.0
@@ -130,7 +130,7 @@ def _name_room(ax: Axes, room: Room, house: HouseSpec, size: float) -> None:
 
 
 def quiet_spot(room: Room, house: HouseSpec) -> Vec2:
-    """The middle of the room's largest patch of bare floor, stretched sideways because names are wide."""
+    """The middle of the room's largest patch of bare floor; wide patches are preferred because names are wide."""
     xs, ys = [x for x, _ in room.polygon], [y for _, y in room.polygon]
     scale, squeeze = 20.0, 0.45
 
@@ -164,7 +164,7 @@ def _frame(ax: Axes, house: HouseSpec) -> None:
 
 
 def title(kind: str) -> str:
-    """A kind's name for people; kinds that the catalogue lacks are named as they are."""
+    """The title of a kind; a kind that the catalogue lacks keeps its name."""
     return catalog.kind(kind).title if kind in catalog.names() else kind.replace("_", " ")
 
 
@@ -172,10 +172,10 @@ def title(kind: str) -> str:
 def with_labels(
     picture: Any, house: HouseSpec, bounds: tuple[float, float, float, float], *, named: bool = True
 ) -> Any:
-    """The picture with rooms named on their barest floor, and a strip below with a scale and the house's name.
+    """The picture with room names on bare floor, and a strip below it with a scale and the house's name.
 
     Args:
-        picture: (H, W, 3) uint8, north up. bounds: x0, y0, x1, y1 [m] that it covers. named: whether rooms are named.
+        picture: (H, W, 3) uint8, north up. bounds: x0, y0, x1, y1 of the picture [m]. named: whether to name rooms.
     """
     high, wide = picture.shape[:2]
     x0, y0, x1, y1 = bounds

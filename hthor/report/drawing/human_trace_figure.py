@@ -1,7 +1,7 @@
-"""What the simulated human believed, saw and chose in one trial, as a figure.
+"""Draws what the simulated human believed, saw and chose in one trial.
 
-Above, the house at some moments of choice: how likely the person thought each place, how well they had searched it,
-and where they chose to go. Below, the same trial along the clock.
+Above, the house at some of the human's choices: how likely each place seemed, how well it had been searched, and where
+the human chose to go. Below, the same trial on a time axis.
 """
 
 from __future__ import annotations
@@ -26,14 +26,14 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _MOMENTS, _TALL = 4, 1.1
-"""Plans of houses that are so much deeper than wide stand in one row, others in two."""
+"""How many plans stand in a row at most if the house is this much deeper than wide; other plans stand in pairs."""
 _WIDE, _WIDER = 11.0, 14.0
-"""Inches, with two plans in a row and with more."""
+"""Width of the figure [in] with two plans in a row, and with more."""
 _TITLE_PT, _EDGE_IN = 11.0, 0.3
-"""Points of the title's letters, and inches left free beside it."""
+"""Size of the title's letters [pt], and free space at the title's end [in]."""
 _SHADES = colormaps["YlOrBr"]
 _TOP, _NAMED = 0.35, 0.03
-"""A place that is so likely has the darkest shade; less likely ones than the second bear no number."""
+"""From this probability on, a place has the darkest shade; below the second one, no number is written on the place."""
 _LOOKED = 0.5
 _VIEW_M, _VIEW_DEG = 1.1, 97.0
 _STROKE: list[patheffects.AbstractPathEffect] = [patheffects.withStroke(linewidth=2.0, foreground="white")]
@@ -41,7 +41,7 @@ _STROKE: list[patheffects.AbstractPathEffect] = [patheffects.withStroke(linewidt
 
 @lettering.plain_lettering()
 def figure(record: TrialRecord, house: HouseSpec, stream: HumanTrace) -> Figure:
-    """Draw a mind, 11 inches wide, 14 where the house is deep."""
+    """Draw a human trace; the figure is 11 inches wide, or 14 if the house is deep."""
     moments = _moments(stream.events)
     wide, deep = _extent(house)
     columns = max(2, min(len(moments), _MOMENTS)) if deep > _TALL * wide else 2
@@ -69,7 +69,7 @@ def figure(record: TrialRecord, house: HouseSpec, stream: HumanTrace) -> Figure:
 
 
 def _moments(events: Sequence[Event]) -> list[tuple[Event, Event]]:
-    """Some choices, with what was believed at them: the first, the last, and others evenly between."""
+    """Some choices, each with the beliefs behind it: the first, the last, and others evenly between."""
     beliefs = [event for event in events if event.kind == "beliefs"]
     choices = [event for event in events if event.kind == "choice" and "values" in event.data]
     pairs = list(zip(beliefs, choices, strict=False))
@@ -108,7 +108,7 @@ def _draw_moment(
 
 
 def _draw_end(ax: Axes, record: TrialRecord, house: HouseSpec, stream: HumanTrace) -> None:
-    """The whole way, and what was noticed, of a trial in which nothing had to be searched for."""
+    """Draw the whole path, and what was noticed, in a trial in which nothing had to be searched for."""
     floor_plan.draw_house(ax, house)
     noticed = {event.data["object"] for event in stream.events if event.kind == "noticed"}
     for thing in house.things:
@@ -127,7 +127,7 @@ def _draw_targets(ax: Axes, record: TrialRecord) -> None:
 
 
 def posterior(beliefs: Event) -> tuple[dict[str, float], float]:
-    """Chance that the thing is at each known place, and behind doorways, after what was searched; adds up to 1."""
+    """Probability of the object at each known place, and behind doorways, given the search so far; the sum is 1."""
     left = {p["id"]: p["belief"] * math.exp(-p["exposure"]) for p in beliefs.data["places"]}
     ahead = float(beliefs.data["ahead"])
     total = sum(left.values()) + ahead
@@ -158,7 +158,7 @@ def _draw_way(ax: Axes, record: TrialRecord, until: int) -> None:
 
 
 def _spots(house: HouseSpec) -> Mapping[str, Vec2]:
-    """Where each option is, by its name."""
+    """The position of each option, by its name."""
     spots: dict[str, Vec2] = {thing.id: (thing.centre[0], thing.centre[1]) for thing in house.things}
     for opening in house.openings:
         (ax, ay), (bx, by) = opening.a, opening.b
@@ -167,7 +167,7 @@ def _spots(house: HouseSpec) -> Mapping[str, Vec2]:
 
 
 def _sought(record: TrialRecord, aim: str) -> str:
-    """What is looked for, in words."""
+    """The name of what is looked for, in words."""
     goal = record.spec.task.goal
     kinds = {placed.id: placed.kind for placed in record.spec.task.objects}
     several = len(goal.todo) > 1
@@ -176,7 +176,7 @@ def _sought(record: TrialRecord, aim: str) -> str:
 
 
 def _plain(option: str, beliefs: Event) -> str:
-    """An option in words."""
+    """The name of an option, in words."""
     kinds = {place["id"]: place["kind"] for place in beliefs.data["places"]}
     return "a doorway" if option.startswith("door ") else f"the {floor_plan.title(kinds.get(option, option)).lower()}"
 

@@ -1,4 +1,4 @@
-"""What a person was about, noticed, chose and was told, along the clock."""
+"""Draws what a person did, noticed, chose and was shown, on a time axis."""
 
 from __future__ import annotations
 
@@ -22,29 +22,29 @@ _LANES = {
     "noticed": "noticed",
     "is about": "aim",
 }
-"""The kind of event that each lane is for, the lowest first."""
+"""The kind of event in each lane, the lowest lane first."""
 _TERMS = {"a0": "willing", "trust": "trust", "gain": "gain", "load": "load", "again": "again"}
 _LANE_IN = 0.46
 _SHADES = {"search": "#9ecae1", "follow": "#c9a6d6", "fetch": "#a1d99b", "deliver": "#74c476", "begin": "#dddddd"}
 _ANSWERS = {"confirmed": trial_trace.MESSAGE, "declined": trial_trace.IDLE_MESSAGE, "covered": "#cccccc"}
 _TRIED: dict[object, str] = {True: "#74c476", False: trial_trace.FAILED}
 _CHAR, _NAMES = 0.008, 4
-"""What share of the time axis a letter takes up; so many names stand in a row."""
+"""Share of the time axis that a letter takes up; how many missed objects are named."""
 
 
 def row_names(stream: HumanTrace) -> list[str]:
-    """The lanes that there is something for, the lowest first."""
+    """The lanes that have events, the lowest first."""
     kinds = {event.kind for event in stream.events}
     return [name for name, kind in _LANES.items() if kind in kinds]
 
 
 def timeline_height(stream: HumanTrace) -> float:
-    """Inches that the lanes want."""
+    """Height of the lanes [in]."""
     return _LANE_IN * len(row_names(stream)) + 0.7
 
 
 def option_chances(choice: Event, beta: float) -> dict[str, float]:
-    """How likely each option was to be chosen, by name: value^beta, adding up to 1."""
+    """Probability that each option was chosen, by name: value^beta, scaled to a sum of 1."""
     values = [max(value, 1e-12) for value in choice.data["values"]]
     top = max(values)
     weights = [(value / top) ** beta for value in values]
@@ -95,7 +95,7 @@ def _draw_aims(ax: Axes, aims: list[Event], end: float, row: float, letter_s: fl
 
 
 def _draw_noticed(ax: Axes, stream: HumanTrace, wanted: set[str], row: float, end: float) -> None:
-    """A stroke for each piece of furniture, red when it is forgotten; a star with its name for what matters."""
+    """Draw a line when furniture is noticed, red when it is forgotten; a star and a name for objects of the task."""
     seen = {e.data["object"]: e.data for e in stream.events if e.kind == "exposure"}
     last, high = -math.inf, False
     for event in stream.events:
@@ -120,7 +120,7 @@ def _draw_noticed(ax: Axes, stream: HumanTrace, wanted: set[str], row: float, en
 
 
 def _draw_choice(ax: Axes, choice: Event, beta: float, row: float) -> None:
-    """A column of chances, the chosen option's filled."""
+    """Draw a column of the options' probabilities, in which the chosen option is coloured."""
     x, low = choice.tick * rules.TICK_S, row - 0.36
     for name, share in option_chances(choice, beta).items():
         chosen = name == choice.data["chosen"]
@@ -141,7 +141,7 @@ def _draw_attempt(ax: Axes, event: Event, end: float, row: float) -> None:
 
 
 def _draw_message(ax: Axes, shown: Event, stream: HumanTrace, end: float, row: float) -> None:
-    """From when a message was shown to what became of it."""
+    """Draw a bar from the time when a message was shown to its outcome."""
     number, begin = shown.data["message"], shown.tick * rules.TICK_S
     fate = next((e for e in stream.events if e.kind in _ANSWERS and e.data["message"] == number), None)
     until = end if fate is None else fate.tick * rules.TICK_S
@@ -153,7 +153,7 @@ def _draw_message(ax: Axes, shown: Event, stream: HumanTrace, end: float, row: f
 
 
 def _draw_trust(ax: Axes, told: list[Event], end: float) -> None:
-    """Mean trust, from 0 at the foot of its lane to 1 at its top."""
+    """Draw the mean trust, from 0 at the bottom of its lane to 1 at the top."""
     if not told:
         return
     xs = [event.tick * rules.TICK_S for event in told]
@@ -165,13 +165,13 @@ def _draw_trust(ax: Axes, told: list[Event], end: float) -> None:
 
 
 def _words(name: str) -> str:
-    """An object's or a thing's id in words, without its number."""
+    """The id of an object or a piece of furniture in words, without its number."""
     kind, _, number = name.rpartition("_")
     return (kind if number.isdecimal() else name).replace("_", " ")
 
 
 def offers(stream: HumanTrace) -> list[str]:
-    """A line for each message that was weighed: what spoke for and against it, and the answer."""
+    """A line for each message that was weighed: the reasons for and against it, and the answer."""
     numbers = {e.data["number"]: e.data["message"] + 1 for e in stream.events if e.kind == "offer"}
     lines = []
     for event in stream.events:

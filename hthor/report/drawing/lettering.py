@@ -1,7 +1,7 @@
-"""How words stand in pictures: as they are. What agents and files say is never read as a formula.
+"""Writes words in pictures literally: text of agents and files is never read as a formula.
 
-Every figure is made and saved within `plain`, so that a message such as ``$\\frac{1}{$`` is drawn letter by letter, and
-a letter that the font lacks is a box and no warning.
+Every figure is made and saved within `plain_lettering`, so that a message such as ``$\\frac{1}{$`` is drawn letter by
+letter, and a letter that the font lacks becomes a box without a warning.
 """
 
 import warnings
@@ -14,12 +14,12 @@ import matplotlib as mpl
 from matplotlib.figure import Figure
 
 SETTINGS = {"text.parse_math": False, "text.usetex": False}
-"""For those who set more than this."""
+"""Matplotlib's settings for this, for code that has to set others as well."""
 
 
 @contextmanager
 def plain_lettering() -> Iterator[None]:
-    """Draw words as they are; a decorator, too."""
+    """Draw words literally, as a context or as a decorator."""
     with mpl.rc_context(SETTINGS), warnings.catch_warnings():
         warnings.filterwarnings("ignore", message=r"(?s)(Glyph|Matplotlib currently does not support) .*")
         yield

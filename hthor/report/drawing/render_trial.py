@@ -1,4 +1,4 @@
-"""A logged trial as a picture or a film in a file."""
+"""Draws a logged trial as a picture or a video in a file."""
 
 from pathlib import Path
 
@@ -12,10 +12,10 @@ PICTURES = (".png", ".svg", ".pdf")
 
 
 def draw_trial(run: Path, record: TrialRecord, path: Path, *, video: bool) -> None:
-    """Write the picture or the film of a trial of the run in the folder ``run``.
+    """Write the picture or the video of a trial of the run in the folder ``run``.
 
     Raises:
-        HthorError: when the file's name does not fit, or the house has changed since.
+        HthorError: if the file's name has the wrong ending, or the house has changed since the trial.
     """
     check_file_name(path, video=video)
     plan = load_house(run, record)
@@ -31,10 +31,10 @@ def draw_trial(run: Path, record: TrialRecord, path: Path, *, video: bool) -> No
 
 
 def check_file_name(path: Path, *, video: bool) -> None:
-    """See that a file's name says what is written into it.
+    """Check that a file's name has the ending of a picture or of a video.
 
     Raises:
-        HthorError: when it does not.
+        HthorError: if it has another ending.
     """
     valid = (".webm",) if video else PICTURES
     if path.suffix.lower() not in valid:
@@ -42,10 +42,10 @@ def check_file_name(path: Path, *, video: bool) -> None:
 
 
 def load_house(run: Path, record: TrialRecord) -> HouseSpec:
-    """The house of a trial of the run in the folder ``run``, as it was then.
+    """The house of a trial of the run in the folder ``run``, as it was in the trial.
 
     Raises:
-        HthorError: when it has changed since.
+        HthorError: if the house has changed since the trial.
     """
     task = record.spec.task
     found = HouseLibrary(folder=run / "houses").load(task.house)

@@ -1,4 +1,4 @@
-"""A task as a figure: the house from above, the objects, the start poses and the shortest walk."""
+"""Draws a task: the house from above, the objects, the start poses and the shortest walk."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ _OTHER = "#6b6f76"
 _STROKE: list[patheffects.AbstractPathEffect] = [patheffects.withStroke(linewidth=2.2, foreground="white")]
 _APART_M = 0.45
 _WIDE_IN, _TITLE_PT = 8.0, 10.0
-"""Inches of the figure, and points of its title's letters."""
+"""Width of the figure [in], and size of the title's letters [pt]."""
 
 
 def draw_task(task: TaskSpec, house: HouseSpec, feat: Solution, path: Path) -> None:
     """Write the picture of a task.
 
     Args:
-        feat: how a person who knows everything does it.
+        feat: how a person who knows everything does the task.
 
     Raises:
-        HthorError: when the file's name does not fit.
+        HthorError: if the file's name has the wrong ending.
     """
     if path.suffix.lower() not in PICTURES:
         raise HthorError(f"{path}: the name of a picture must end in {' or '.join(PICTURES)}.")
@@ -84,13 +84,13 @@ def _draw_objects(ax: Axes, task: TaskSpec) -> None:
 
 
 def _crowds(placed: Placement, other: Placement) -> bool:
-    """Whether another object's name would lie on this one's: then this one's goes below."""
+    """Whether another object's name would cover this one's, so that this one's is written below its mark."""
     apart = math.dist(placed.position[:2], other.position[:2])
     return 0.0 < apart < _APART_M and placed.position[1] < other.position[1]
 
 
 def _draw_start(ax: Axes, pose: Pose, number: int) -> None:
-    """A ring with a line where it looks; a robot's with its number."""
+    """Draw a ring with a line in the viewing direction; robots also get their number."""
     shade = trial_trace.PERSON if number == 0 else trial_trace.ROBOTS[(number - 1) % len(trial_trace.ROBOTS)]
     ax.plot(
         (pose.x, pose.x + 0.32 * math.cos(pose.yaw)),

@@ -1,6 +1,6 @@
-"""Words that fit where they stand in a picture: measured in the font of all figures, broken, shortened; draws legends.
+"""Fits words into pictures: measures, wraps and shortens them in the font of all figures; draws legends.
 
-Names are people's own and may be long. Nothing here counts characters: an "i" and a "W" differ by a factor of four.
+Users choose names, which may be long. Widths are measured because an "i" and a "W" differ by a factor of four.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ if TYPE_CHECKING:
     from matplotlib.legend import Legend
 
 _PIECES = re.compile(r"[^\s_+/.:-]+[\s_+/.:-]*|[\s_+/.:-]+")
-"""A line may end after a space and after a mark that joins words."""
+"""The pieces of a text: a line may end after a space and after a mark that joins words."""
 _FONT, _POINTS_AN_INCH = "DejaVu Sans", 72.0
 _ENTRY_IN, _EDGE_IN = 3.6, 0.1
-"""Inches that the words of one entry of a legend take at most, and that a legend leaves free at the sides."""
+"""Width of the words of a legend entry at most [in], and free space at the sides of a legend [in]."""
 _MORE = " …"
 
 
 def text_width(words: str, size: float, *, bold: bool = False) -> float:
-    """How wide a line of words is [in].
+    """The width of a line of words [in].
 
     Args:
         size: of the letters [pt].
@@ -40,7 +40,7 @@ def text_width(words: str, size: float, *, bold: bool = False) -> float:
 
 
 def wrap(words: str, inches: float, size: float, *, bold: bool = False) -> list[str]:
-    """The words in lines that are no wider than ``inches``, broken between words where that can be."""
+    """The words in lines no wider than ``inches``, broken between words if possible."""
     found = [""]
     for piece in _PIECES.findall(words):
         if found[-1] and text_width((found[-1] + piece).rstrip(), size, bold=bold) > inches:
@@ -53,12 +53,12 @@ def wrap(words: str, inches: float, size: float, *, bold: bool = False) -> list[
 
 
 def wrapped(words: str, inches: float, size: float, *, bold: bool = False) -> str:
-    """The same as one text, a line below another."""
+    """The lines of `wrap` as one text."""
     return "\n".join(wrap(words, inches, size, bold=bold))
 
 
 def shorten(words: str, inches: float, size: float, *, bold: bool = False) -> str:
-    """One line that is no wider than ``inches``; what does not fit is left out, and an ellipsis says so."""
+    """One line no wider than ``inches``; an ellipsis stands for the words that do not fit."""
     line = " ".join(words.split())
     if text_width(line, size, bold=bold) <= inches:
         return line
@@ -67,7 +67,7 @@ def shorten(words: str, inches: float, size: float, *, bold: bool = False) -> st
 
 
 def _fitting(words: str, inches: float, size: float, *, bold: bool) -> int:
-    """How many letters fit, one at least."""
+    """How many letters fit, at least one."""
     low, high = 1, len(words)
     while low < high:
         middle = (low + high + 1) // 2
@@ -76,10 +76,10 @@ def _fitting(words: str, inches: float, size: float, *, bold: bool) -> int:
 
 
 def legend(made: Figure, handles: Sequence[Artist], columns: int, *, size: float = 7.5, **look: Any) -> Legend:
-    """A figure's legend, with as many columns as fit.
+    """Draw a figure's legend, with as many columns as fit.
 
     Args:
-        columns: side by side at most. size: of the letters [pt]. look: what else matplotlib's legend takes.
+        columns: how many at most. size: of the letters [pt]. look: other options of matplotlib's legend.
     """
     for handle in handles:
         handle.set_label(wrapped(str(handle.get_label()), _ENTRY_IN, size))

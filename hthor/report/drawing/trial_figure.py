@@ -1,4 +1,4 @@
-"""One trial as a figure: the house from above, the paths, the messages and their outcomes, and a timeline."""
+"""Draws one trial: the house from above, the paths, the messages and their outcomes, and a timeline."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _CORNERS, _CROWDED_M = ((1, 1), (-1, -1), (-1, 1), (1, -1)), 1.5
-"""Where the names of targets stand that are so near each other."""
+"""Corners in which targets' names stand, one after the other, if the targets are closer than this [m]."""
 _LINES, _MANY, _WIDE_IN = 10, 100, 8.0
-"""Messages whose words are shown, messages whose arrows are faint, and inches of the figure."""
+"""How many messages are written out; with how many messages the arrows become faint; width of the figure [in]."""
 _EDGE_IN, WORDS_PT, HEAD_PT = 0.15, 7.5, 10.0
-"""Inches left free beside a line of words; points of messages' words and of the headline."""
+"""Free space at the ends of a line of words [in]; size of the letters of messages and of the headline [pt]."""
 _COLUMNS, _DEEPEST = 5, 8.5
-"""Entries of the legend side by side, and inches of a plan's height at most."""
+"""Columns of the legend, and height of a plan at most [in]."""
 _LETTER_IN, _BADGE_IN, _BESIDE_M = 0.065, 0.17, 0.15
-"""Inches of a letter on a badge and of a badge; metres below which an arrow to what is meant would hide the badge."""
+"""Width of a letter on a badge, and height of a badge [in]; arrows shorter than this [m] are hidden by the badge."""
 _STROKE: list[patheffects.AbstractPathEffect] = [patheffects.withStroke(linewidth=2.4, foreground="white")]
 
 
@@ -36,7 +36,7 @@ def trial_figure(spec: TrialSpec, log: EpisodeLog, house: HouseSpec) -> Figure:
     """Draw a trial, about 8 inches wide: the plan, the timeline below, and the messages' words.
 
     Args:
-        spec: the trial. log: what it left behind. house: the house of its task.
+        spec: the trial. log: its log. house: the house of its task.
     """
     words = _words(log)
     wide, high = _size(house)
@@ -63,9 +63,9 @@ def trial_figure(spec: TrialSpec, log: EpisodeLog, house: HouseSpec) -> Figure:
 
 
 def draw_path(ax: Axes, log: EpisodeLog, seat: str, *, words: bool = True) -> None:
-    """Draw a seat's way: a line that darkens with time, a dot every ten seconds, rings at start and end.
+    """Draw a seat's path: a line that darkens with time, a dot every ten seconds, rings at start and end.
 
-    A robot whose agent failed stands still from then on: a cross marks the place instead of an end.
+    A robot whose agent failed stands still for the rest of the trial: a cross marks this place instead of a ring.
     """
     way, shade = trial_trace.points(log, seat), trial_trace.seat_colour(seat)
     fault = trial_trace.first_fault(log, seat)
@@ -87,7 +87,7 @@ def draw_path(ax: Axes, log: EpisodeLog, seat: str, *, words: bool = True) -> No
 
 
 def _draw_fault(ax: Axes, place: Vec2, fault: Fault, *, words: bool) -> None:
-    """A cross where an agent failed, with the fault and its time."""
+    """Draw a cross where an agent failed, with the fault and its time."""
     ax.scatter(*place, s=74, marker="X", facecolor=trial_trace.FAILED, edgecolor="white", linewidths=0.9, zorder=13)
     if words:
         told = f"{fault.kind} at {fault.tick * rules.TICK_S:.1f} s"
@@ -98,7 +98,7 @@ def _draw_fault(ax: Axes, place: Vec2, fault: Fault, *, words: bool) -> None:
 
 
 def _draw_targets(ax: Axes, spec: TrialSpec, house: HouseSpec) -> None:
-    """A star where each object starts; a hollow one, joined to it, where exactly it belongs."""
+    """Draw a star where each object starts, with a line to a hollow star if it belongs at an exact point."""
     done: list[Vec2] = []
     for job, start in trial_trace.targets(spec, house):
         x, y, _ = start.position
@@ -139,7 +139,7 @@ def _name_destinations(ax: Axes, spec: TrialSpec, house: HouseSpec) -> None:
 
 
 def _words(log: EpisodeLog) -> list[tuple[str, str]]:
-    """A line for each message, with its colour; of many the first and the last few."""
+    """A line for each message, with its colour; of many messages only the first and the last few."""
     sent = list(enumerate(trial_trace.messages(log), 1))
     half = _LINES // 2
     left = len(sent) - 2 * half
@@ -150,7 +150,7 @@ def _words(log: EpisodeLog) -> list[tuple[str, str]]:
 
 
 def _line_of(log: EpisodeLog, number: int, event: Event) -> tuple[str, str]:
-    """A message's number, time, sender, words and fate in a line, and its colour."""
+    """A message's number, time, sender, words and outcome as one line, and its colour."""
     fate = trial_trace.outcome_of(log, event.data["message"])
     head = f"{number}  {event.tick * rules.TICK_S:.1f} s  {event.seat}: “"
     end = f"” ({'unanswered' if fate in ('sent', 'shown') else fate})"
@@ -168,7 +168,7 @@ def _write_words(ax: Axes, words: Sequence[tuple[str, str]]) -> None:
 
 
 def draw_messages(ax: Axes, log: EpisodeLog, *, arrows: bool = True) -> None:
-    """Every message's number where it was sent, and an arrow to where it said the thing was.
+    """Draw every message's number where it was sent, and an arrow to the place that the message gives.
 
     Messages that would hide one another share a badge.
     """
@@ -183,7 +183,7 @@ def draw_messages(ax: Axes, log: EpisodeLog, *, arrows: bool = True) -> None:
         if claim is None or math.dist(claim[:2], here) <= _BESIDE_M:
             continue
         same = (shade, *(round(part / _BESIDE_M) for part in (*here, *claim[:2])))
-        if same not in drawn:  # of arrows that lie on one another one is enough
+        if same not in drawn:  # equal arrows are drawn only once
             drawn.add(same)
             arrow = {"arrowstyle": "-|>", "color": shade, "alpha": strength}
             line = {"lw": 1.0 if strength == 1.0 else 0.7, "ls": (0, (3, 2)), "shrinkA": 6, "shrinkB": 5}
@@ -195,14 +195,14 @@ def draw_messages(ax: Axes, log: EpisodeLog, *, arrows: bool = True) -> None:
 
 
 def _on_plan(ax: Axes, group: trial_trace.MessageGroup, inch: float) -> Vec2:
-    """Where a badge stands: at its place, or so far from the edge that it is not cut."""
+    """The position of a badge: at its place, but far enough from the edge that it is not cut off."""
     half = 0.5 * _LETTER_IN * inch * (len(group.words) + 2)
     west, east = ax.get_xlim()
     return (min(max(group.place[0], west + half), east - half), group.place[1])
 
 
 def _metres(ax: Axes) -> float:
-    """Metres of the house in an inch of the picture, about."""
+    """How many metres of the house an inch of the picture shows, approximately."""
     low, high = ax.get_xlim()
     return (high - low) / max(1.0, 0.75 * float(ax.get_figure(root=True).get_figwidth()))  # type: ignore[union-attr]
 
@@ -215,10 +215,10 @@ def _draw_acts(ax: Axes, log: EpisodeLog) -> None:
 
 
 def headline(spec: TrialSpec, log: EpisodeLog, inches: float, size: float) -> str:
-    """The instruction, the agents, and how the trial ended, in lines.
+    """The instruction, the agents, and how the trial ended, broken into lines.
 
     Args:
-        inches: that a line is wide at most. size: of its letters [pt].
+        inches: width of a line at most. size: of its letters [pt].
     """
     agents = " and ".join(dict.fromkeys(robot.agent.name for robot in spec.robots)) or "no robot"
     seconds = log.ticks * rules.TICK_S

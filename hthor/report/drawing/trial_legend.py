@@ -19,7 +19,7 @@ def legend_entries(spec: TrialSpec, log: EpisodeLog, house: HouseSpec, *, moving
     """The legend's entries.
 
     Args:
-        moving: whether it is for a video, which has no marks for starts, ends, actions and messages.
+        moving: whether the legend is for a video, which does not mark starts, ends, actions and messages.
     """
     found: list[Artist] = [line(trial_trace.PERSON, "person")]
     found += [line(trial_trace.seat_colour(robot.seat), trial_trace.robot_words(robot)) for robot in spec.robots]
@@ -44,7 +44,7 @@ def legend_entries(spec: TrialSpec, log: EpisodeLog, house: HouseSpec, *, moving
 
 
 def _marks(log: EpisodeLog) -> list[Artist]:
-    """The marks of messages and actions."""
+    """The entries for marks of messages and actions."""
     shades = set(trial_trace.message_colours(log).values())
     words = {trial_trace.MESSAGE: "confirmed", trial_trace.IDLE_MESSAGE: "not confirmed"}
     found: list[Artist] = [mark("o", shade, f"message, {words[shade]}", size=7) for shade in words if shade in shades]
@@ -53,17 +53,17 @@ def _marks(log: EpisodeLog) -> list[Artist]:
 
 
 def line(shade: str, label: str) -> Line2D:
-    """An entry for a way."""
+    """The entry for a path."""
     return Line2D([], [], color=shade, lw=2, label=label)
 
 
 def mark(marker: str, face: str, label: str, *, edge: str = "white", size: float = 6.5) -> Line2D:
-    """An entry for a mark of ``size`` [pt]."""
+    """The entry for a mark of ``size`` [pt]."""
     return Line2D(
         [], [], ls="", marker=marker, markersize=size, markerfacecolor=face, markeredgecolor=edge, label=label
     )
 
 
 def destination(size: float = 6.5) -> Line2D:
-    """The entry for where objects belong."""
+    """The entry for the places where objects belong."""
     return mark("s", floor_plan.MARKED, "destination", edge=floor_plan.MARKED_EDGE, size=size)

@@ -1,4 +1,4 @@
-"""One trial along the clock: a row a seat, with what it did and said."""
+"""Draws one trial on a time axis: one row per seat, with its actions and messages."""
 
 from __future__ import annotations
 
@@ -16,18 +16,18 @@ if TYPE_CHECKING:
 
 
 _WORD = 0.09
-"""How much of the time axis a word takes up."""
+"""Share of the time axis that a word takes up."""
 _LETTER = 0.0095
-"""How much of it a letter on a badge takes up."""
+"""Share of the time axis that a letter on a badge takes up."""
 _Side = Literal["left", "center", "right"]
 _SIDES: tuple[_Side, _Side] = ("right", "left")
-"""Where the words of two moments stand that are near each other, the earlier one first."""
+"""On which side of its mark the word of each of two close moments stands, the earlier moment first."""
 _LIFTS = (6, -14, 15)
-"""Where a word may stand, in points above its mark, best first."""
+"""Heights of a word above its mark [pt], the best one first."""
 
 
 def draw_timeline(ax: Axes, spec: TrialSpec, log: EpisodeLog) -> None:
-    """Who did what when: one row a seat, and one for the progress of a goal that has parts."""
+    """Draw who did what and when: one row per seat, and one for the progress of a goal with several parts."""
     seats = list(log.paths)
     steps = [event for event in log.events if event.kind == "progress"]
     rows = len(seats) + (log.progress is not None)
@@ -64,7 +64,7 @@ def draw_timeline(ax: Axes, spec: TrialSpec, log: EpisodeLog) -> None:
 
 
 def _draw_progress(ax: Axes, steps: Sequence[Event], end: float, row: float, word_s: float) -> None:
-    """A bar that darkens as more of the goal is met, with the shares in words."""
+    """Draw a bar that darkens as more of the goal is met, with the shares in words."""
     marks = [(0.0, 0.0), *((event.tick * rules.TICK_S, float(event.data["value"])) for event in steps)]
     for (begin, value), (until, _) in zip(marks, [*marks[1:], (end, 0.0)], strict=True):
         ax.barh(row, until - begin, left=begin, height=0.42, color=trial_trace.TARGET, alpha=0.08 + 0.6 * value, lw=0)

@@ -36,15 +36,15 @@ ACTS = {
 """Marker and verb of each action that is drawn."""
 _THERE_M = 0.3
 _PARTS, _ROUND, _PADDED = 2, 3, 1.6
-"""Parts of a group of numbers that are written out; from how many letters on it is no disc; letters of its edges."""
+"""Parts of a group of numbers that are written out; letters from which on a badge is no disc; its margins [letters]."""
 GONE = "#9aa0a6"
 """The colour of a robot whose agent failed."""
 _MARKED = 8
-"""Places that will do are marked up to so many; more would mark half the house."""
+"""Destinations are marked if they are at most this many; more would mark half the house."""
 
 
 def targets(spec: TrialSpec, house: HouseSpec) -> list[tuple[Job, Placement]]:
-    """Every job that is not done from the start, and where its object lies then."""
+    """Every job that is not done at the start, and the start placement of its object."""
     starts, kinds = (
         {placed.id: placed for placed in spec.task.objects},
         {thing.id: thing.kind for thing in house.things},
@@ -60,7 +60,7 @@ def targets(spec: TrialSpec, house: HouseSpec) -> list[tuple[Job, Placement]]:
 
 
 def destinations(spec: TrialSpec, house: HouseSpec) -> list[str]:
-    """Ids of the things and rooms to which objects are to go, none where almost anything will do."""
+    """Ids of the things and rooms that objects are to be taken to; none if almost any place is right."""
     wanted = {name for job in spec.task.goal.todo if job.place is None for name in job.destinations}
     found = [thing.id for thing in house.things if {thing.id, thing.kind} & wanted]
     found += [room.id for room in house.rooms if room.id in wanted]
@@ -80,22 +80,22 @@ def seat_colour(seat: str) -> str:
 
 
 def points(log: EpisodeLog, seat: str) -> np.ndarray:
-    """(N, 2) [m], where the seat was at every logged tick."""
+    """(N, 2) positions of the seat at all logged ticks [m]."""
     return np.array(_path(log, seat), dtype=float)[:, :2] / 1000.0
 
 
 def position_at(log: EpisodeLog, seat: str, tick: int) -> Vec2:
-    """Where the seat was at ``tick`` [m], to the nearest logged pose."""
+    """The seat's position at ``tick`` [m], taken from the nearest logged pose."""
     path = _path(log, seat)
     x, y, _ = path[min(tick // rules.LOG_EVERY_TICKS, len(path) - 1)]
     return (x / 1000.0, y / 1000.0)
 
 
 def _path(log: EpisodeLog, seat: str) -> list[tuple[int, int, int]]:
-    """Where the seat was.
+    """The logged path of the seat.
 
     Raises:
-        RunError: when the log does not say, as one that was changed by hand.
+        RunError: if the log has no path of this seat, for example because somebody edited it.
     """
     if not (path := log.paths.get(seat)):
         raise RunError(f"the trial's record has no path of '{seat}', so the trial cannot be drawn.")
@@ -108,7 +108,7 @@ def messages(log: EpisodeLog) -> list[Event]:
 
 
 def outcome_of(log: EpisodeLog, message: int) -> str:
-    """A message's last event: confirmed, declined, covered, shown or sent."""
+    """The kind of a message's last event: confirmed, declined, covered, shown or sent."""
     kinds = {event.kind for event in log.events if event.data.get("message") == message}
     return next((kind for kind in ("confirmed", "declined", "covered", "shown") if kind in kinds), "sent")
 
@@ -126,13 +126,13 @@ def message_colours(log: EpisodeLog) -> dict[int, str]:
 
 
 def first_fault(log: EpisodeLog, seat: str) -> Fault | None:
-    """The first fault of a seat's agent, after which the trial went on without it."""
+    """The first fault of a seat's agent; the trial went on without the agent."""
     return next((fault for fault in log.faults if fault.seat == seat), None)
 
 
 _Mark = tuple[int, Event, Vec2]
 _Joined = tuple[list[_Mark], str]
-"""A message's number and place; messages that share a badge, with their numbers in words."""
+"""A message with its number and place (``_Mark``); those that share a badge, and their numbers in words."""
 
 
 class MessageGroup(Struct, frozen=True, kw_only=True):
@@ -146,9 +146,9 @@ class MessageGroup(Struct, frozen=True, kw_only=True):
 def group_messages(
     log: EpisodeLog, marks: Sequence[tuple[int, Event, Vec2]], letter: float, high: float
 ) -> list[MessageGroup]:
-    """Messages with their numbers and places; those whose badges would touch are joined, at the place of the first.
+    """Group messages, with numbers and places: those whose badges would touch are joined, at the place of the first.
 
-    A group has the colour of a confirmed message when it has one.
+    A group with a confirmed message has the colour of confirmed messages.
 
     Args:
         letter, high: width of a letter on a badge and height of a badge, in the units of the places.
@@ -160,7 +160,7 @@ def group_messages(
         return abs(x - u) < wide and abs(y - v) < high
 
     shades = message_colours(log)
-    held: list[_Joined] = []  # no two of them touch, so that there are few, however many messages there are
+    held: list[_Joined] = []  # no two groups touch, so there are only a few, however many messages there are
     for mark in marks:
         one: _Joined = ([mark], _numbers([mark]))
         while (near := next((other for other in held if touch(one, other)), None)) is not None:
@@ -183,7 +183,7 @@ def _numbers(marks: Sequence[tuple[int, Event, Vec2]]) -> str:
 
 
 def number_ranges(numbers: Sequence[int]) -> str:
-    """Rising numbers in words: "1–3, 7"; of more parts than two only the ends, "1 … 9"."""
+    """Rising numbers in words, such as "1–3, 7"; if these are more than two parts, only both ends: "1 … 9"."""
     parts: list[list[int]] = []
     for number in numbers:
         if parts and number == parts[-1][1] + 1:
@@ -197,12 +197,12 @@ def number_ranges(numbers: Sequence[int]) -> str:
 
 
 def draw_mark(ax: Axes, place: Sequence[float], shape: str, size: float, shade: str, edge: float, z: float) -> None:
-    """A mark of ``size`` [pt^2] in a white line of ``edge`` [pt]."""
+    """Draw a mark of ``size`` [pt^2] with a white outline of ``edge`` [pt]."""
     ax.scatter(place[0], place[1], s=size, marker=shape, color=shade, edgecolor="white", linewidths=edge, zorder=z)
 
 
 def draw_badge(ax: Axes, place: Vec2, text: str, shade: str) -> None:
-    """Messages' numbers in a disc. It takes no room from the axes, even where it stands at their edge."""
+    """Draw messages' numbers in a disc. The disc does not make the axes smaller, even at their edge."""
     style = "circle,pad=0.22" if len(text) < _ROUND else "round,pad=0.2,rounding_size=0.6"
     box = {"boxstyle": style, "facecolor": shade, "edgecolor": "white", "lw": 0.8}
     made = ax.text(

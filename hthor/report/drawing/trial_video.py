@@ -1,6 +1,6 @@
-"""One trial as a video from above, at several times real speed.
+"""Draws one trial as a video from above, at several times real speed.
 
-Films are VP8 in WebM, which browsers play and OpenCV's own FFmpeg writes. The same trial gives the same bytes.
+Videos are VP8 in WebM, which browsers play and OpenCV's own FFmpeg writes. The same trial gives the same bytes.
 """
 
 import contextlib
@@ -25,27 +25,27 @@ from hthor.report.drawing import floor_plan, lettering, text_fit, trial_figure, 
 from hthor.types import HouseSpec, TrialSpec
 
 SPEED = 4
-"""Seconds of the trial in a second of film."""
+"""Seconds of the trial per second of the video."""
 HOLD_S = 2
-"""Seconds that the last picture stays."""
+"""How long the last picture stays [s]."""
 _TAKEN = ("picked", "lifted")
 _SHIFT = 4  # cv2 draws at 1/16 pixel
 _WIDE, _HIGH, _DPI = 9.6, 8.0, 100
 _PLAN = (0.01, 0.165, 0.98, 0.755)
-"""Where the plan lies in the picture; the title is above it, the clock, the messages and the legend are below."""
+"""The plan's place in the picture; the title is above it; the clock, the messages and the legend are below it."""
 _TITLE_IN, _TITLE_PT, _TITLE_LINES = 9.3, 11.0, 3
-"""Inches that the title is wide, points of its letters, and lines for which there is room; of more they are smaller."""
+"""Width of the title [in], size of its letters [pt], and its lines at most; a longer title has smaller letters."""
 _CLOCK_Y, _MESSAGE_Y = 676, 706
-"""Pixels from the top to the line of the clock and to that of the newest message."""
+"""Distances of the clock's line and of the newest message's line from the top [px]."""
 _WORDS_MAX = 110
 _TRACK_UID, _TAG_UID, _FIXED_UID = b"\x73\xc5\x88", b"\x63\xc5\x88", bytes(range(1, 9))
 
 
 def write_video(path: Path, spec: TrialSpec, log: EpisodeLog, house: HouseSpec) -> None:
-    """Write a WebM film of the trial.
+    """Write a WebM video of the trial.
 
     Raises:
-        HthorError: when this machine's OpenCV cannot write such films there.
+        HthorError: if the OpenCV on this machine cannot write such a video to ``path``.
     """
     stage = _Stage(spec, log, house)
     height, width = stage.empty.shape[:2]
@@ -66,7 +66,7 @@ def write_video(path: Path, spec: TrialSpec, log: EpisodeLog, house: HouseSpec) 
 
 @contextlib.contextmanager
 def _hushed() -> Iterator[None]:
-    """Without what FFmpeg writes to standard error: it takes any name of a codec in WebM for a mistake."""
+    """Suppress FFmpeg's text on standard error: FFmpeg reports every codec name in WebM as a mistake."""
     sys.stderr.flush()
     kept = os.dup(2)
     try:
@@ -79,7 +79,7 @@ def _hushed() -> Iterator[None]:
 
 
 def _steady(path: Path) -> None:
-    """Replace the random number that FFmpeg gives a film's track, in the track's head and in what refers to it."""
+    """Replace the random number that FFmpeg gives to a video's track, in the track's header and in references to it."""
     data = path.read_bytes()
     at = data.find(_TRACK_UID)
     if at < 0:
@@ -91,7 +91,7 @@ def _steady(path: Path) -> None:
 
 
 class _Stage:
-    """The empty house as pixels, and where its metres fall on them."""
+    """The empty house as pixels, and the pixel position of each point of the house."""
 
     @lettering.plain_lettering()
     def __init__(self, spec: TrialSpec, log: EpisodeLog, house: HouseSpec) -> None:
@@ -140,7 +140,7 @@ class _Stage:
         return frame
 
     def _draw_seat(self, frame: Any, log: EpisodeLog, index: int, seat: str) -> None:
-        """A seat's path so far and where it looks; a robot whose agent failed is a cross."""
+        """Draw a seat's path so far and its viewing direction; a robot whose agent failed is a cross."""
         fault = trial_trace.first_fault(log, seat)
         failed = fault is not None and fault.tick <= index * rules.LOG_EVERY_TICKS
         last = min(index, fault.tick // rules.LOG_EVERY_TICKS) if fault is not None else index
@@ -159,7 +159,7 @@ class _Stage:
         cv2.line(frame, (x, y), nose, shade, 3, cv2.LINE_AA)
 
     def _draw_message(self, frame: Any, log: EpisodeLog, tick: int) -> None:
-        """The newest message stays for five seconds after it was sent."""
+        """Write the newest message; it stays for five seconds."""
         recent = [event for event in trial_trace.messages(log) if 0 <= tick - event.tick <= 5.0 / rules.TICK_S]
         if not recent:
             return
@@ -185,7 +185,7 @@ class _Stage:
 
 
 def _write(frame: Any, text: str, corner: tuple[int, int], shade: str) -> int:
-    """Write words whose left lower corner lies there; gives their width in pixels."""
+    """Write words with their lower left corner at ``corner``; return their width [px]."""
     inked, shift = _lettered(text, shade)
     high, wide = inked.shape[:2]
     x, y = corner[0], corner[1] - high + shift
@@ -198,7 +198,7 @@ def _write(frame: Any, text: str, corner: tuple[int, int], shade: str) -> int:
 
 @lru_cache(maxsize=256)
 def _lettered(text: str, shade: str) -> tuple[Any, int]:
-    """Words as RGBA pixels in the font of all pictures, and how far they go below their line."""
+    """Words as RGBA pixels in the font of all pictures, and how far they reach below their baseline [px]."""
     with lettering.plain_lettering():
         sheet = Figure(figsize=(_WIDE, 0.3), dpi=_DPI, facecolor="none")
         canvas = FigureCanvasAgg(sheet)

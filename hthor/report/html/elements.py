@@ -1,4 +1,4 @@
-"""Pieces of a page: tables, figures, paragraphs; everything that is put in is escaped."""
+"""Builds parts of a page: tables, figures, paragraphs. Everything is escaped except drawings and parts made here."""
 
 import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
@@ -10,20 +10,20 @@ from hthor.report.html import markup
 from hthor.report.html.markup import Markup, tag
 
 _WORD_MAX, _PARTS = 24, re.compile(r"[^_+/.:-]+[_+/.:-]*|[_+/.:-]+")
-"""Letters of a word that is not broken, and what a longer one is made of."""
+"""Letters of the longest word that is not broken, and the pieces of a longer word."""
 _MANY = 3
-"""Of more columns with intervals than these the intervals stand below the numbers."""
+"""With more columns with intervals than this, the intervals stand below the numbers."""
 
 
 class Mark(Struct, frozen=True):
-    """A word with a meaning of its own: ``mood`` is good, bad or quiet."""
+    """A coloured word: ``mood`` is good, bad or quiet."""
 
     word: str
     mood: str
 
 
 class Value(Struct, frozen=True):
-    """A number, its ``interval``, and on a line of its own what else one has to know of it."""
+    """A number, its ``interval``, and a note on a line of its own."""
 
     number: str
     interval: str = ""
@@ -31,13 +31,13 @@ class Value(Struct, frozen=True):
 
 
 class Code(Struct, frozen=True):
-    """What a machine reads or wrote: a command, a hash."""
+    """Text that a machine reads or wrote, such as a command or a hash."""
 
     text: str
 
 
 class Band(Struct, frozen=True):
-    """A row of a table that names those below it."""
+    """A row of a table that is a heading for the rows below it."""
 
     word: str
 
@@ -52,7 +52,7 @@ def paragraph(text: str, mood: str = "") -> str:
 
 
 def paragraphs(texts: Iterable[str]) -> str:
-    """A paragraph each."""
+    """Each text as a paragraph."""
     return "\n".join(paragraph(text) for text in texts)
 
 
@@ -64,7 +64,7 @@ def bullets(texts: Sequence[str]) -> str:
 def table(
     head: Sequence[str], rows: Iterable[Sequence[Piece] | Band], caption: str = "", words: Collection[int] = (0,)
 ) -> str:
-    """A table; the columns numbered in ``words`` hold words, the others numbers, with their intervals or without."""
+    """A table; the columns numbered in ``words`` hold words, the others numbers with or without intervals."""
     held = list(rows)
     kinds = ["" if i in words else "n" for i in range(len(head))]
     for row in held:
@@ -79,7 +79,7 @@ def table(
 
 
 def figure(drawing: str, caption: str | Sequence[Piece], mood: str = "") -> str:
-    """A drawing, which is put in as it is, and what it shows."""
+    """A drawing, inserted without escaping, with its caption."""
     parts = [caption] if isinstance(caption, str) else caption
     told = " ".join(inside(part) for part in parts)
     return (
@@ -90,22 +90,22 @@ def figure(drawing: str, caption: str | Sequence[Piece], mood: str = "") -> str:
 
 
 def drawn(drawings: Mapping[str, str], name: str, caption: str) -> str:
-    """The drawing of that name, nothing where there is none."""
+    """The drawing of that name with its caption; empty if there is no such drawing."""
     return figure(drawings[name], caption) if name in drawings else ""
 
 
 def listed(items: Iterable[Sequence[Piece]]) -> str:
-    """A list of lines, each of several pieces."""
+    """A list of lines, each made of several pieces."""
     return "<ul>\n" + "\n".join(f"<li>{''.join(inside(one) for one in parts)}</li>" for parts in items) + "\n</ul>"
 
 
 def block(text: str) -> str:
-    """Lines as they are: a traceback, a command."""
+    """Lines shown unchanged, such as a traceback or a command."""
     return f"<pre>{escape(text)}</pre>"
 
 
 def folded(title: str, *parts: str) -> str:
-    """Parts that are shown when one asks for them, and in print."""
+    """Parts that a reader has to open on the screen; in print they are always shown."""
     return f"<details><summary>{_held(title)}</summary>\n" + "\n".join(parts) + "\n</details>"
 
 
@@ -124,12 +124,12 @@ def navigation(titles: Mapping[str, str]) -> str:
 
 
 def page(title: str, body: Iterable[str], rules: str, description: str = "") -> str:
-    """A whole page of pieces that were made here."""
+    """A whole page from parts made by this module's functions."""
     return markup.page(title, map(Markup, body), rules, description=description)
 
 
 def mark(yes: bool, good: str = "yes", bad: str = "no") -> Mark:
-    """A verdict."""
+    """A verdict: the word for yes in green, or the word for no in red."""
     return Mark(good, "good") if yes else Mark(bad, "bad")
 
 
@@ -148,7 +148,7 @@ def _cell(cell: Piece, column: int, kind: str) -> str:
 
 
 def inside(cell: Piece) -> str:
-    """A cell as a part of a line."""
+    """A cell as part of a line."""
     match cell:
         case Mark():
             return f'<b class="{cell.mood}">{escape(cell.word)}</b>'
@@ -163,13 +163,13 @@ def inside(cell: Piece) -> str:
 
 
 def _held(text: str) -> str:
-    """Text whose numbers stay with their units, and whose overlong words, such as names, may be broken."""
+    """Text in which numbers stay with their units, and overlong words, such as names, may be broken."""
     whole = re.sub(r"(?<=\d) (?=(?:%|s|m)(?!\w))", "\u00a0", text)
     return "".join(_broken(word) if len(word) > _WORD_MAX else escape(word) for word in re.split(r"(\s+)", whole))
 
 
 def _broken(word: str) -> str:
-    """A word with places where a line may end: after marks that join words, else after so many letters."""
+    """A word with places where a line may end: after marks that join words, else after a fixed number of letters."""
     parts = (part[at : at + _WORD_MAX] for part in _PARTS.findall(word) for at in range(0, len(part), _WORD_MAX))
     return "<wbr>".join(escape(part) for part in parts)
 

@@ -1,7 +1,7 @@
 """HTML elements in which all text is escaped: the base of every page.
 
-A `Markup` is HTML; a plain str is text and is escaped when it is put into an element. So what a
-document holds, such as an entry of the leaderboard, reaches the page as text alone.
+A `Markup` is HTML; a plain str is text and is escaped when it is put into an element. So the content of a
+document, such as an entry of the leaderboard, reaches the page only as text.
 """
 
 import base64
@@ -11,11 +11,11 @@ from html import escape
 
 from msgspec import Struct
 
-_VOID = ("meta", "link")  # of HTML: in a drawing every element is closed, or the next lies within it and is not seen
+_VOID = ("meta", "link")  # HTML elements without an end tag; every SVG element needs one, or it holds the next one
 
 
 class Markup(Struct, frozen=True):
-    """A piece of HTML. It is made by the functions below and by nothing else."""
+    """A piece of HTML. Only the functions below make one."""
 
     html: str
 
@@ -25,10 +25,10 @@ NOTHING = Markup("")
 
 
 def tag(name: str, /, *inside: Piece, **attributes: str | int | float | None) -> Markup:
-    """An element; what is inside is escaped where it is text.
+    """An HTML element; text inside it is escaped.
 
     Args:
-        attributes: None leaves one out. A "_" in a name stands for "-"; at its end it is dropped, as in ``class_``.
+        attributes: None leaves an attribute out. A "_" in a name becomes "-"; a final "_" is dropped, as in ``class_``.
     """
     given = ((key.rstrip("_").replace("_", "-"), value) for key, value in attributes.items() if value is not None)
     pairs = "".join(f' {key}="{escape(_plain(value))}"' for key, value in given)
@@ -37,12 +37,12 @@ def tag(name: str, /, *inside: Piece, **attributes: str | int | float | None) ->
 
 
 def join(pieces: Iterable[Piece], between: str = "") -> Markup:
-    """Pieces in a row, escaped where they are text."""
+    """Pieces in a row; text among them is escaped."""
     return Markup(between.join(one.html if isinstance(one, Markup) else escape(one) for one in pieces))
 
 
 def link(url: str, *inside: Piece) -> Markup:
-    """A link to a page on the web; the inside alone for any other address, such as a script."""
+    """A link to a page on the web; for any other address, such as a script, only ``inside`` without a link."""
     if not url.startswith(("https://", "http://")):
         return join(inside)
     return tag("a", *inside, href=url, rel="nofollow noopener noreferrer")
@@ -55,7 +55,7 @@ def policy(rules: str, code: str) -> Markup:
 
 
 def table(head: Iterable[Markup], rows: Iterable[Markup], caption: Markup | None = None, kind: str = "") -> Markup:
-    """A table of whole cells of its head and whole rows, which can be scrolled where the page is too narrow."""
+    """A table of complete header cells and rows; it scrolls if the page is too narrow."""
     top, body = tag("thead", tag("tr", *head)), tag("tbody", join(rows, "\n"))
     return tag("div", tag("table", caption or NOTHING, top, body, class_=kind or None), class_="wide")
 
@@ -63,7 +63,7 @@ def table(head: Iterable[Markup], rows: Iterable[Markup], caption: Markup | None
 def page(
     title: str, main: Iterable[Piece], rules: str, *, description: str = "", code: str = "", sealed: bool = False
 ) -> str:
-    """A whole page in English that needs nothing else.
+    """A whole page in English that loads nothing from elsewhere.
 
     Args:
         main: what the page shows. rules: its style sheet. code: its script.

@@ -1,7 +1,7 @@
-"""The look of the report's figures, and how one becomes a part of a page.
+"""The look of the report's figures, and their conversion to parts of a page.
 
-Colours in a figure are names of the page's own, so that it is readable on light and on dark paper. They are told apart
-by people who see no red or no green.
+Colours in a figure are the page's CSS variables, so that it is readable on a light and on a dark background. People
+who are colour-blind to red or green can tell the colours apart.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ VARIABLES = {
     FRONTIER: "frontier",
     ORACLE: "oracle",
 }
-"""Names of the page's colours by what they are on light paper."""
+"""Names of the page's colours by their values on a light background."""
 DARK = {
     INK: "#e8eaed",
     SOFT: "#a3abb4",
@@ -51,12 +51,12 @@ DARK = {
     FRONTIER: "#e9b44c",
     ORACLE: "#5fb3ea",
 }
-"""The same on dark paper."""
+"""The same for a dark background."""
 WIDE = 7.2
 """Width of a figure [in]."""
 
 _PX = 1.45
-"""Pixels that a point of a figure takes on a screen that is wide enough."""
+"""Pixels per point of a figure, on a screen that is wide enough."""
 
 _STYLE = {
     **lettering.SETTINGS,
@@ -99,7 +99,7 @@ def style() -> Iterator[None]:
 
 
 def new_figure(height: float, width: float = WIDE) -> Figure:
-    """An empty figure [in], to be drawn on within `style`."""
+    """An empty figure of this size [in], to be drawn on within `style`."""
     engine = ConstrainedLayoutEngine(w_pad=0.06, h_pad=0.06, wspace=0.07, hspace=0.04)
     return Figure(figsize=(width, height), layout=engine, facecolor="none")
 
@@ -114,11 +114,11 @@ def quiet_axes(ax: Axes, *, grid: Literal["both", "x", "y"] = "x") -> None:
 
 
 def to_svg(made: Figure, name: str, words: str) -> str:
-    """The figure as an element of a page: the same bytes for the same drawing.
+    """The figure as an SVG element of a page; the same drawing gives the same bytes.
 
     Args:
-        name: of the figure, unlike that of any other on the page.
-        words: what it shows, for those who cannot see it.
+        name: of the figure, unique on the page.
+        words: a description for people who cannot see the figure.
     """
     out = io.StringIO()
     with style():
@@ -145,17 +145,17 @@ def to_svg(made: Figure, name: str, words: str) -> str:
 
 
 def _short(text: str) -> str:
-    """The same drawing in fewer bytes: hundredths of a point are seen by nobody, groups' names are read by none."""
+    """The same drawing in fewer bytes: numbers are cut to two decimals, and unused names are removed."""
     text = re.sub(r"(\d+\.\d{2})\d+", r"\1", text)
     used = set(re.findall(r'(?:href="#|url\(#)([^")]+)', text))
     return re.sub(r' id="([^"]+)"', lambda found: found.group(0) if found.group(1) in used else "", text)
 
 
 def svg_document(element: str) -> str:
-    """The file's text.
+    """The text of an SVG file.
 
     Args:
-        element: as `to_svg` makes it.
+        element: as `to_svg` returns it.
     """
     found = _ELEMENT_HEAD.match(element)
     assert found is not None

@@ -1,6 +1,6 @@
-"""What everybody saw at some moments of a logged trial: it is played again, a camera at every seat; draws no figure.
+"""Pictures of what every seat saw at some moments of a logged trial, which is played again with cameras.
 
-Looking changes nothing, which is checked: the record of the trial that was played again must equal the logged one.
+Taking pictures changes nothing, which is checked: the record of the repeated trial must equal the logged record.
 """
 
 from collections.abc import Callable, Collection, Sequence
@@ -23,14 +23,14 @@ from hthor.types import Event, TaskSpec
 
 SIZE = (400, 300)
 _FINER = 2
-"""Pictures are drawn so many times larger and then averaged, which leaves no steps along edges."""
+"""Pictures are drawn this many times larger and then averaged, which makes edges smooth."""
 
 Views = dict[int, dict[str, Any]]
 """Pictures (H, W, 3) uint8 by tick and seat."""
 
 
 class CameraFrames:
-    """A world that also keeps what its seats see at some ticks."""
+    """A world that also keeps what its seats see at some ticks, for drawing later."""
 
     def __init__(self, world: Any, ticks: Collection[int], profile: str) -> None:
         self._world, self._ticks, self._profile = world, frozenset(ticks), profile
@@ -50,7 +50,7 @@ class CameraFrames:
         return events
 
     def views(self) -> Views:
-        """The pictures, drawn now."""
+        """Draw and return the pictures."""
         return {tick: {seat: _averaged(draw()) for seat, draw in kept.items()} for tick, kept in self._kept.items()}
 
     def _look(self) -> None:
@@ -70,17 +70,17 @@ def render_frames(
     humans: str = "",
     given: AgentInputs | None = None,
 ) -> Views:
-    """Play a trial again and look.
+    """Play a trial again and return pictures of what its seats saw.
 
     Args:
-        folder: the run's. wanted: the trial. ticks: when to look.
+        folder: of the run. wanted: the trial. ticks: when to take pictures.
         profile: how pictures are drawn, fast or nice.
-        agents: files of the run's agents that are not built in. humans: where its people come from, when the name in
-            the log does not find them. given: arguments and files that the agents were given.
+        agents: files of the run's agents that are not built in. humans: the human model, if the log's name does not
+        find it. given: arguments and files that the agents were given.
 
     Raises:
-        RunError: when trials before it are missing, another version of hthor played them, or it goes otherwise now.
-        HthorError: when a file is needed.
+        RunError: if trials before it are missing, another version of hthor played them, or the trial ends differently.
+        HthorError: if a file that was not given is needed.
     """
     spec, run = wanted.spec, RunFolder(folder)
     session = Session(participant=spec.participant, trials=session_history.session_before(run, wanted))
@@ -110,6 +110,6 @@ def _averaged(picture: Any) -> Any:
 
 
 def _course(done: TrialRecord) -> bytes:
-    """Everything that happened, without the words of a fault, which are the agent's own."""
+    """Everything that happened, without the texts of faults, which agents write."""
     plain = tuple(msgspec.structs.replace(fault, detail="") for fault in done.faults)
     return trial_record.encode(msgspec.structs.replace(done, faults=plain))

@@ -1,4 +1,4 @@
-"""The case study's files from the folders of runs: one person at one task with several robots, as SVG and PNG."""
+"""Writes a case study from the folders of runs: one person at one task with several robots, as SVG and PNG."""
 
 import io
 from collections.abc import Sequence
@@ -30,18 +30,18 @@ def write_case_study(
     humans: str = "",
     given: AgentInputs | None = None,
 ) -> tuple[Path, Path]:
-    """Draw a task under the robots of several runs; the paths of the SVG and of the PNG.
+    """Draw a task with the robots of several runs; return the paths of the SVG and of the PNG.
 
     Args:
-        folders: the runs'. task: its id. out: a folder.
+        folders: of the runs. task: its id. out: the folder to write to.
         person: the participant; by default the first who did the task in every run.
         profile: how views are drawn, fast or nice.
-        agents: files of agents that are not built in. humans: where the people come from. given: what the agents were
-            given.
+        agents: files of agents that are not built in. humans: the human model, if its name in the log does not find it.
+        given: arguments and files that the agents were given.
 
     Raises:
-        RunError: when the runs do not belong together, or cannot be played again.
-        UnknownName: when nobody did the task.
+        RunError: if the runs do not belong together, or cannot be played again.
+        UnknownName: if no person, or not this person, did the task in every run.
     """
     if out.exists() and not out.is_dir():
         raise HthorError(f"{out} is a file; --out takes a folder.")
@@ -80,7 +80,7 @@ def _same_people(runs: Sequence[Run]) -> None:
 
 
 def _records(runs: Sequence[Run], task: str, person: int | None) -> list[TrialRecord]:
-    """The trials of the task, of one person, a run each."""
+    """One person's trials of the task, one per run."""
     tables = [run.by_pair for run in runs]
     shared = sorted(pair for pair in tables[0] if all(pair in table for table in tables[1:]))
     mine = [pair for pair in shared if pair[3] == task and person in (None, pair[1])]

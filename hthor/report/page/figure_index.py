@@ -1,4 +1,4 @@
-"""Every figure of a report by its name, with what it shows in words."""
+"""All figures of a report by name, each with a description in words."""
 
 from collections.abc import Iterator, Sequence
 
@@ -12,11 +12,11 @@ from hthor.report.page.figures import breakdown, scores, session, trial_map
 from hthor.types import HouseSpec
 
 PAIRS_MOST = 15
-"""More comparisons than these are only in the table, and those with no robot in the figure."""
+"""With more comparisons than this, the figure shows only those with no robot, and the table shows all."""
 
 
 class NamedFigure(Struct, frozen=True, kw_only=True, eq=False):
-    """A figure, its name as a file's, and what it shows for those who cannot see it."""
+    """A figure, its name, which is also its file's name, and a description for people who cannot see it."""
 
     name: str
     words: str
@@ -24,7 +24,7 @@ class NamedFigure(Struct, frozen=True, kw_only=True, eq=False):
 
 
 class MapScene(Struct, frozen=True, kw_only=True, eq=False):
-    """What a map is drawn of: a trial, the same person's without a robot if there is one, and the house."""
+    """The content of a map: a trial, the same person's trial without a robot if there is one, and the house."""
 
     record: TrialRecord
     alone: TrialRecord | None
@@ -35,7 +35,7 @@ def draw_figures(found: Findings, scenes: Sequence[MapScene]) -> Iterator[NamedF
     """The figures in the page's order; those that would be empty are left out.
 
     Args:
-        scenes: of ``found.shown``, one each in that order; none if the houses are not available.
+        scenes: one for each trial of ``found.shown``, in that order; empty if the houses are not available.
     """
     yield from _of_runs(found)
     yield from _of_parts(found)

@@ -1,4 +1,4 @@
-"""The page's first sentence: what was compared, which robot is better and by how much, or that it cannot be told."""
+"""The page's first sentence: what was compared, and which robot is better by how much, if the data can tell."""
 
 from collections.abc import Sequence
 
@@ -8,11 +8,11 @@ from hthor.report.html.number_format import listed, signed
 from hthor.report.page import sentences
 
 _MANY = 6
-"""Of more pairs than these the sentence tells only those of the best robot."""
+"""If there are more pairs, the sentence has only those of the best robot."""
 
 
 def headline(found: Findings) -> str:
-    """Which robot is better."""
+    """Say which robot is better."""
     if not found.comparisons:
         return _alone(found)
     many = len(found.comparisons) > _MANY
@@ -43,7 +43,7 @@ def _alone(found: Findings) -> str:
 
 
 def notable_comparisons(found: Findings) -> Sequence[Comparison]:
-    """The comparisons that are told in words below."""
+    """The comparisons that the results section puts into words."""
     if len(found.comparisons) <= _MANY:
         return found.comparisons
     best = _of_the_best(found)
@@ -51,7 +51,7 @@ def notable_comparisons(found: Findings) -> Sequence[Comparison]:
 
 
 def _of_the_best(found: Findings) -> list[Comparison]:
-    """Of the robot that does best, the comparisons with the second and with no robot."""
+    """The comparisons of the most successful robot with the second and with no robot."""
     ranked = sorted(found.arms, key=lambda arm: -(arm.scores["sr"].mean or 0.0))
     robots = [arm.label for arm in ranked if arm.label != found.baseline]
     others = {*robots[1:2], found.baseline}
@@ -63,7 +63,7 @@ def _of_the_best(found: Findings) -> list[Comparison]:
 
 
 def _better(found: Findings, pairs: Sequence[Comparison]) -> list[str]:
-    """Which robots are better than which, the best first."""
+    """Say which robots are better than which others, the best first."""
     rates = {arm.label: arm.scores["sr"].mean or 0.0 for arm in found.arms}
     said = []
     for name in sorted(rates, key=lambda label: -rates[label]):
@@ -75,7 +75,7 @@ def _better(found: Findings, pairs: Sequence[Comparison]) -> list[str]:
 
 
 def _unsure(pairs: Sequence[Comparison]) -> list[str]:
-    """Which robots cannot be separated."""
+    """Say which robots the data cannot tell apart."""
     each: list[str] = []
     for pair in pairs:
         if not pair.better:

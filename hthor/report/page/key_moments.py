@@ -13,24 +13,24 @@ from hthor.types import HUMAN, Event, HouseSpec
 
 MANY = 4
 _APART_S = 1.0
-"""Two moments are at least so far apart."""
+"""Time between two moments at least [s]."""
 _ANSWERS = {"confirmed": "person confirms", "declined": "person declines"}
 _DEEDS = ("picked", "held", "lifted", "opened", "placed")
 
 
 class Moment(Struct, frozen=True, kw_only=True):
-    """A tick of a trial, and what happened there in a few words."""
+    """A tick of a trial, and in a few words what happened then."""
 
     tick: int
     words: str
 
 
 def key_moments(record: TrialRecord, house: HouseSpec | None = None) -> list[Moment]:
-    """Up to `MANY` moments in order, the last of them the end.
+    """Up to `MANY` moments in order; the last moment is the end.
 
-    First come the sending of the first message that the person confirmed (else of the first), the answer to it, and the
-    first action of the human's hands. What is left is filled with looks into the longest waits; where ``house`` is
-    given, they say in which room the person is.
+    The first three are when the first message that the person confirmed was sent (if none was, the first message), when
+    it was answered, and when the human's hands first did something. The others are in the middle of the longest waits;
+    if ``house`` is given, their words are the room in which the person is.
     """
     found = [Moment(tick=record.ticks, words="done" if record.met else "time is up")]
     apart = round(_APART_S / rules.TICK_S)
@@ -44,7 +44,7 @@ def key_moments(record: TrialRecord, house: HouseSpec | None = None) -> list[Mom
 
 
 def _candidates(record: TrialRecord) -> Iterator[Moment]:
-    """What happened, the most telling first."""
+    """Events of the trial as moments, the most important first."""
     sent = trial_trace.messages(record.log)
     if sent:
         fates = [trial_trace.outcome_of(record.log, event.data["message"]) for event in sent]
@@ -66,7 +66,7 @@ def _answer(record: TrialRecord, message: Event) -> Iterator[Moment]:
 
 
 def _longest_wait(found: list[Moment], least: int) -> int:
-    """The middle of the longest time in which nothing is shown; 0 where none is worth it."""
+    """The middle tick of the longest time without a moment; 0 if that time is shorter than ``least``."""
     ticks = [0, *sorted(one.tick for one in found)]
     wait, first = max((second - first, -first) for first, second in itertools.pairwise(ticks))
     return -first + wait // 2 if wait >= least else 0

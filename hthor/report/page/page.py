@@ -60,10 +60,10 @@ li{margin:.15rem 0}
 
 
 def render(found: Findings, drawings: Mapping[str, str]) -> str:
-    """The page, the same bytes for the same findings.
+    """The page as HTML; the same findings give the same bytes.
 
     Args:
-        drawings: elements of the page by the names that `hthor.report.page.figure_index` gives.
+        drawings: SVG elements by the names that `hthor.report.page.figure_index` gives.
     """
     sections = (
         elements.section(number, name, title, *make(found, drawings))

@@ -1,4 +1,4 @@
-"""Sentences about a report's numbers."""
+"""Puts a report's numbers into sentences."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -9,22 +9,22 @@ from hthor.report.analysis.document import Arm, ExampleTrial, Findings, Incompar
 from hthor.report.html.number_format import listed, plain, signed
 
 _NAMED = 4
-"""So many robots are named in the title."""
+"""How many robots the title names at most."""
 _CLEAR = 2.0
-"""A slope of so many standard errors is called one."""
+"""A slope of at least this many standard errors is called a trend."""
 _APART = {
     "": "they have no trial in common yet; finish both",
-    "suite.sha256": "they have other tasks",
+    "suite.sha256": "they have different tasks",
     "kind.sha256": "their kind of task comes from different files",
-    "humans.sha256": "they have other human models",
+    "humans.sha256": "they have different human models",
     "seed": "their seeds differ, so the participants and tasks do",
-    "rules_sha256": "they were played under other rules",
+    "rules_sha256": "they were played under different rules",
     "code_sha256": "they were played by different versions of the code",
 }
 
 
 def page_title(found: Findings) -> str:
-    """What the page is called."""
+    """The page's title."""
     robots = [arm.label for arm in found.arms if arm.label != found.baseline]
     against = " against no robot" if found.baseline and robots else ""
     named = listed(robots or [found.baseline]) if len(robots) <= _NAMED else f"{len(robots)} robots"
@@ -32,7 +32,7 @@ def page_title(found: Findings) -> str:
 
 
 def page_facts(found: Findings) -> str:
-    """How much there is of what."""
+    """How many runs, trials, tasks and people the page is about."""
     trials = sum(one.trials for one in found.origins)
     tasks, people = max(arm.tasks for arm in found.arms), max(arm.people for arm in found.arms)
     runs = "1 run" if len(found.origins) == 1 else f"{len(found.origins)} runs"
@@ -41,7 +41,7 @@ def page_facts(found: Findings) -> str:
 
 
 def without_baseline(found: Findings) -> str:
-    """That whether the robots help is unknown, and the command that would show it."""
+    """Say that it is unknown whether the robots help, and give the command that would show it."""
     return (
         "There is no run without a robot among these or next to them, so it is unknown whether the robots "
         f"help. This makes one: {found.origins[0].alone}"
@@ -49,17 +49,17 @@ def without_baseline(found: Findings) -> str:
 
 
 def not_comparable(one: IncomparablePair) -> str:
-    """Why two runs are not compared."""
+    """Say why two runs are not compared."""
     return f"{_upper(one.first)} and {one.second} are not compared trial by trial: {_APART.get(one.field, one.field)}."
 
 
 def comparison_sentence(pair: Comparison) -> str:
-    """What `hthor compare` says of two runs."""
+    """The sentence of `hthor compare` about two runs."""
     return _upper(re.sub(r"(?<=[ (])-(?=\d)", "−", pair.sentence))
 
 
 def published_figures(found: Findings) -> str:
-    """What the article's figures are, and whether these runs can be compared with them."""
+    """Say where the article's figures come from, and whether these runs can be compared with them."""
     study = found.published
     if study is None:
         return ""
@@ -76,7 +76,7 @@ def published_figures(found: Findings) -> str:
 
 
 def time_spent(parts: Sequence[TimeSpent]) -> str:
-    """Where the boxes differ."""
+    """Say how much the times of the runs differ."""
     each = listed(f"{one.arm} {one.median:.1f} s [{one.lower:.1f}, {one.upper:.1f}]" for one in parts)
     text = f"Median [quartiles]: {each}."
     if len(parts) > 1:
@@ -89,7 +89,7 @@ def time_spent(parts: Sequence[TimeSpent]) -> str:
 
 
 def trust_trend(curves: Sequence[TrustCurve]) -> str:
-    """Whether trust rises or falls over a session."""
+    """Say whether trust rises or falls over a session."""
     return " ".join(_trend(curve) for curve in curves)
 
 
@@ -103,7 +103,7 @@ def _trend(curve: TrustCurve) -> str:
 
 
 def messages(arms: Sequence[Arm]) -> str:
-    """How much robots said, and how much of it was accepted."""
+    """Say how many messages robots sent, and how many of them were accepted."""
     said = []
     for arm in arms:
         sent, taken, useful = (arm.scores[name] for name in ("sent", "accepted", "first_useful_s"))
@@ -117,7 +117,7 @@ def messages(arms: Sequence[Arm]) -> str:
 
 
 def extreme_gains(word: str, gains: Mapping[str, Mapping[str, Difference]]) -> str:
-    """In which part the robots make the largest difference, and the smallest."""
+    """Name the groups with the largest and the smallest gain from robots."""
     each = [(one.difference, label, name, one) for name, by in gains.items() for label, one in by.items()]
     if not each:
         return ""
@@ -129,7 +129,7 @@ def extreme_gains(word: str, gains: Mapping[str, Mapping[str, Difference]]) -> s
 
 
 def worst_population(split: Split) -> str:
-    """With which people each robot does worst."""
+    """Name the people with which each robot does worst."""
     said = []
     for label in dict.fromkeys(label for group in split.groups for label in group.sr):
         rates = [
@@ -141,7 +141,7 @@ def worst_population(split: Split) -> str:
 
 
 def example_trial(one: ExampleTrial) -> str:
-    """What became of a trial that is drawn."""
+    """The outcome of a trial that is drawn."""
     end = f"done in {one.time_s:.1f} s" if one.met else f"not done in {one.time_s:.0f} s"
     text = f"“{one.instruction}” {_upper(end)}"
     if one.alone_s is not None:
@@ -150,7 +150,7 @@ def example_trial(one: ExampleTrial) -> str:
 
 
 def time_gained(one: ExampleTrial) -> str:
-    """What the robot was worth in a trial."""
+    """The time that the robots saved in a trial."""
     if one.gain_s is None:
         return "Done." if one.met else "Not done."
     if one.gain_s == 0.0:
@@ -168,7 +168,7 @@ def _upper(text: str) -> str:
 
 
 def warnings(found: Findings) -> list[str]:
-    """A sentence each."""
+    """Each warning as one sentence."""
     said = [
         f"{one.name} is not finished: {one.whole - one.trials} of {one.whole} trials are missing."
         for one in found.origins

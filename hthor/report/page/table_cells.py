@@ -1,4 +1,4 @@
-"""Estimates and differences as cells of tables: number, interval, and below them n and what it could have seen."""
+"""Estimates and differences as table cells: number, interval, and below them n and the detectable difference."""
 
 from hthor.eval.metrics.metric import SHARE, Metric, Unit
 from hthor.eval.results.paired_difference import Difference
@@ -12,7 +12,7 @@ NOTE = (
     "that have the value, and mde, the smallest difference from a given number that so many trials would have seen in "
     "four of five cases."
 )
-"""What the cells of `estimate` say."""
+"""Explains the cells of `estimate`."""
 
 
 def estimate(one: Estimate, unit: Unit = SHARE, decimals: int = 1) -> Piece:
@@ -24,7 +24,7 @@ def estimate(one: Estimate, unit: Unit = SHARE, decimals: int = 1) -> Piece:
 
 
 def difference(one: Difference | None, metric: Metric) -> Piece:
-    """An improvement with its sign: for a metric that is better lower, how much lower."""
+    """An improvement with its sign; for a metric where lower is better, it is positive if the value became lower."""
     if one is None:
         return "–"
     scale = metric.sign * metric.unit.scale
@@ -34,7 +34,7 @@ def difference(one: Difference | None, metric: Metric) -> Piece:
 
 
 def share(value: float | None, of: Share | None) -> Piece:
-    """A published figure, with the interval of its counts where it has any."""
+    """A published figure, with an interval if its counts were published."""
     if value is None:
         return ""
     if of is None:
@@ -44,7 +44,7 @@ def share(value: float | None, of: Share | None) -> Piece:
 
 
 def p_value(p: float | None) -> str:
-    """A probability, as papers print it."""
+    """A probability, as scientific papers print it."""
     return "–" if p is None else "< 0.001" if p < 0.001 else f"{p:.3f}"
 
 
@@ -54,7 +54,7 @@ def robots(arms: tuple[Arm, ...]) -> tuple[Arm, ...]:
 
 
 def _note(n: int, mde80: float | None, unit: Unit, decimals: int) -> str:
-    if not mde80:  # too few, or all alike: no measure of chance
+    if not mde80:  # too few trials, or all alike: chance cannot be measured
         return f"n {n}"
     if unit == SHARE and mde80 >= 1.0:
         return f"n {n} · mde > 100"

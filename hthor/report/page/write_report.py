@@ -1,4 +1,4 @@
-"""A report's files from the folders of runs: `report.html`, `report.json`, and the figures as SVG."""
+"""Writes a report from the folders of runs: `report.html`, `report.json`, and the figures as SVG."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -15,11 +15,11 @@ from hthor.report.page.figure_index import MapScene
 
 
 def write_report(folders: Sequence[Path], out: Path, published: Published | None = None) -> Findings:
-    """Read the runs, and their control where none of them is without a robot, and write the report into ``out``.
+    """Read the runs, find baselines for those that have none, and write the report into ``out``.
 
     Raises:
-        RunError: when a run is damaged, or the runs do not belong together.
-        HthorError: when ``out`` is not a folder, or a house has changed since.
+        RunError: if a run is damaged, or the runs do not belong together.
+        HthorError: if ``out`` is a file, or a house has changed since its trial.
     """
     if out.exists() and not out.is_dir():
         raise HthorError(f"{out} is a file; --out takes the report's folder.")
@@ -37,7 +37,7 @@ def write_report(folders: Sequence[Path], out: Path, published: Published | None
 
 
 def _scenes(runs: Sequence[Run], found: Findings) -> Iterator[MapScene]:
-    """What the maps are drawn of, in the findings' order."""
+    """The content of the maps, in the findings' order."""
     own = {run.label: run for run in runs if run.plan.humans.name == found.people}
     alone = own[found.baseline].by_pair if found.baseline else {}
     by_arm = {label: {record.key: record for record in run.records} for label, run in own.items()}

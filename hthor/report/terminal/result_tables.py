@@ -21,15 +21,15 @@ if TYPE_CHECKING:
     from hthor.eval.comparison.population_matrix import PopulationMatrix
 
 Row = tuple[str, Unit, Estimate]
-"""Title, unit and value."""
+"""Title, unit and value of a metric."""
 _HEADINGS = ("difference", "95 % interval", "could have seen", "p", "trials")
 
 
 def result_table(result: RunResult, *, everything: bool = False) -> Table:
-    """One run: a row for each metric.
+    """One run: one row per metric.
 
     Args:
-        everything: with all that is counted, not only the main metrics.
+        everything: whether to show all metrics, not only the main ones.
     """
     title = f"{result.label}: {result.suite.name}, {result.counts.trials} trials, {result.humans.name} people"
     title += ", in real time" if result.mode == REALTIME else ""
@@ -48,7 +48,7 @@ def result_table(result: RunResult, *, everything: bool = False) -> Table:
 
 
 def result_notes(results: Iterable[RunResult]) -> Iterator[str]:
-    """What a reader of these results' tables has to know besides their numbers, each note once."""
+    """The notes that a reader of these results' tables needs besides the numbers, each note once."""
     held = list(results)
     outside = dict.fromkeys(note for result in held for note in result.humans.notes)
     if outside:
@@ -62,7 +62,7 @@ def result_notes(results: Iterable[RunResult]) -> Iterator[str]:
 
 
 def kinds_table(result: RunResult) -> Table:
-    """One run of several kinds of task: a column each, the main metrics with their intervals below."""
+    """One run of several kinds of task: one column per kind, and the main metrics with intervals below the means."""
     kinds = [kind.replace("_", " ") for kind in result.by_kind]
     table = new_table(f"{result.label}: by kind of task (95 % interval)", *kinds)
     _add_main_rows(table, list(result.by_kind.values()))
@@ -70,7 +70,7 @@ def kinds_table(result: RunResult) -> Table:
 
 
 def comparison_table(results: Sequence[RunResult]) -> Table:
-    """Several runs: a column each, the mean with its interval below."""
+    """Several runs: one column per run, with intervals below the means."""
     first = results[0]
     title = f"{first.suite.name}, {first.counts.trials} trials, {first.humans.name} people (95 % interval)"
     table = new_table(title, *(result.label for result in results))
@@ -83,7 +83,7 @@ def comparison_table(results: Sequence[RunResult]) -> Table:
 
 
 def population_table(matrix: PopulationMatrix) -> Table:
-    """A row for each human population, three columns for each agent; an agent's worst population is marked."""
+    """One row per human population, three columns per agent; each agent's worst population is marked."""
     headings = [
         heading
         for agent in map(_called, matrix.agents)
@@ -101,7 +101,7 @@ def population_table(matrix: PopulationMatrix) -> Table:
 
 
 def worst_population_lines(matrix: PopulationMatrix) -> Iterator[str]:
-    """The worst population of each agent, a line each."""
+    """The worst population of each agent, one line per agent."""
     for name, worst in matrix.worst.items():
         agent = _called(name)
         rate, behind = f"{worst.sr * 100.0:.1f} %", f"{worst.behind * 100.0:.1f} points"
@@ -120,7 +120,7 @@ def _bare(estimate: Estimate) -> str:
 
 
 def _add_main_rows(table: Table, columns: Sequence[Scores]) -> None:
-    """A row for each main metric."""
+    """Add one row per main metric."""
     for metric in registry.MAIN:
         estimates = [scores[metric.name] for scores in columns]
         if any(estimate.n for estimate in estimates) or not metric.optional:
@@ -138,12 +138,12 @@ def _rows(scores: Scores, everything: bool) -> Iterator[Row]:
 
 
 def format_mean(estimate: Estimate, unit: Unit) -> str:
-    """The mean with its unit; a dash where there is none."""
+    """The mean with its unit; a dash if there is no mean."""
     return "–" if estimate.mean is None else f"{unit.scale * estimate.mean:.1f} {unit.name}".rstrip()
 
 
 def format_interval(estimate: Estimate, unit: Unit) -> str:
-    """The interval without its unit; a dash where there is none."""
+    """The interval without its unit; a dash if there is no interval."""
     if estimate.ci95 is None:
         return "–"
     low, high = estimate.ci95
@@ -151,10 +151,10 @@ def format_interval(estimate: Estimate, unit: Unit) -> str:
 
 
 def format_detectable(mde80: float | None, unit: Unit) -> str:
-    """The smallest difference that so many trials could have seen, as a number.
+    """The smallest true difference that this many trials would probably detect, as a number.
 
-    A dash where the trials are too few to tell, or all alike and no measure of chance. No two shares are further apart
-    than 100 points.
+    A dash if the trials are too few, or all alike, so that chance cannot be measured. Two shares differ by
+    100 points at most.
     """
     if not mde80:
         return "–"
@@ -191,7 +191,7 @@ def _uplift_cell(result: RunResult) -> str:
 
 
 def pair_table(pair: Comparison) -> Table:
-    """A row for each metric."""
+    """One row per metric."""
     title = f"{pair.second} against {pair.first}: {pair.tasks} tasks, {pair.people} people"
     table = new_table(title, pair.first, pair.second, *_HEADINGS)
     for name, difference in pair.differences.items():
@@ -210,7 +210,7 @@ def groups_table(pair: Comparison, by: str) -> Table:
 
 
 def comparison_lines(pair: Comparison) -> Iterator[str]:
-    """The rest in words, the verdict last."""
+    """The rest of a comparison in words, the verdict last."""
     mcnemar, tally = pair.mcnemar, pair.tally
     yield (
         f"success in one of the two only: {mcnemar.only_second} times {pair.second}, {mcnemar.only_first} times "

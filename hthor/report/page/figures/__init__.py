@@ -1,1 +1,1 @@
-"""The report's figures, one a file, in the look of `hthor.report.html.matplotlib_svg`."""
+"""The report's figures, one per file, in the style of `hthor.report.html.matplotlib_svg`."""

@@ -1,4 +1,4 @@
-"""Success of every run within parts of the trials, or with each kind of person."""
+"""Draws the success of every run within parts of the trials, or with each human population."""
 
 from __future__ import annotations
 
@@ -18,27 +18,27 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 _ROW = 0.13
-"""Inches that each robot takes up within a group."""
+"""Height of each robot's row within a group [in]."""
 _HEAD = 0.45
-"""Height of the name of a split, in groups."""
+"""Height of the name of a split, in heights of a group."""
 _LEGEND = 5
-"""Entries of the legend side by side at most."""
+"""Columns of the legend at most."""
 _LONG = 8
-"""More groups than these stand in two columns."""
+"""If there are more groups, they stand in two columns."""
 
 
 class _Line(Struct):
-    """A group, or the name of what the groups below it part."""
+    """A line of the figure: a group, or the name of the property that divides the groups below."""
 
     word: str
     group: Group | None = None
 
 
 def figure(splits: Sequence[Split], arms: Sequence[Arm], *, ranked: bool = False) -> Figure:
-    """A row a group with its number of trials, a mark a run, with 95 % intervals.
+    """One row per group with its number of trials, and one mark per run with its 95 % interval.
 
     Args:
-        ranked: the group in which people do worst first.
+        ranked: whether the group in which people do worst comes first.
     """
     own = run_styles.run_styles(arms, (label for split in splits for group in split.groups for label in group.sr))
     lines: list[_Line] = []
@@ -92,7 +92,7 @@ def _draw(ax: Axes, lines: Sequence[_Line], own: dict[str, RunStyle]) -> None:
 
 
 def _places(lines: Sequence[_Line]) -> tuple[list[float], float]:
-    """The middle of each line from above, and the height of all."""
+    """The middle of each line, counted from the top, and the height of all lines."""
     places, y = [], 0.0
     for line in lines:
         high = _HEAD if line.group is None else 1.0

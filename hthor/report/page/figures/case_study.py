@@ -1,4 +1,4 @@
-"""The case study: a row a robot, the house from above with the ways, and what everybody saw at key moments."""
+"""Draws a case study: one row per robot, with all paths on a plan of the house and each seat's view at key moments."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ if TYPE_CHECKING:
 
 _MAP_WIDE, _VIEW_WIDE = 3.1, 1.55
 _HEAD, _EDGES = 0.36, 0.5
-"""Inches above each row, and above and below all."""
+"""Height of the words above each row, and of the space above and below all rows [in]."""
 _MAP_HIGH = 3.3
-"""Inches that a map may take at most."""
+"""Height of a map at most [in]."""
 _NEAR_M, _BESIDE_M = 0.5, 0.6
 _LETTER_PT, _BADGE_IN = 6.5, 0.12
-"""Points of a letter on a badge, and inches of a badge beside its letters."""
+"""Size of a letter on a badge [pt], and the badge's width besides its letters [in]."""
 _HEAD_PT, _TASK_PT, _EDGE_IN = 8.5, 9.0, 0.2
-"""Points of the words above a row and above all, and inches left free beside them."""
+"""Size of the words above a row and above all rows [pt], and free space at their ends [in]."""
 _CORNERS: tuple[Vec2, ...] = ((1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0))
 
 
 class Row(Struct, frozen=True, kw_only=True, eq=False):
-    """One robot's trial: what to call it, its moments, and what was seen at them."""
+    """One robot's trial: its name, its key moments, and each seat's view at them."""
 
     label: str
     record: TrialRecord
@@ -94,16 +94,16 @@ def _draw_map(ax: Axes, row: Row, house: HouseSpec) -> None:
 
 
 def _is_on_map(ax: Axes, place: Vec2, letters: str, side: Vec2) -> bool:
-    """Whether the letters at this corner end before the map does: beyond it they could be cut."""
+    """Whether the letters at this corner end within the map; outside it they could be cut off."""
     (west, east), (south, north) = ax.get_xlim(), ax.get_ylim()
-    metres = max((east - west) / _MAP_WIDE, (north - south) / _MAP_HIGH)  # in an inch of the map
+    metres = max((east - west) / _MAP_WIDE, (north - south) / _MAP_HIGH)  # per inch of the map
     wide = _BADGE_IN + text_fit.text_width(letters, _LETTER_PT, bold=True)
     x, y = place[0] + side[0] * metres * wide, place[1] + side[1] * metres * 2.0 * _BADGE_IN
     return west <= x <= east and south <= y <= north
 
 
 def _room(place: Vec2, side: Vec2, busy: Sequence[Vec2]) -> float:
-    """How far a letter at this corner is from everything else."""
+    """How far letters at this corner are from everything else."""
     return round(min((math.dist(_beside(place, side), other) for other in busy), default=math.inf), 2)
 
 
@@ -112,7 +112,7 @@ def _beside(place: Vec2, side: Vec2) -> Vec2:
 
 
 def _places(row: Row, seat: str) -> list[tuple[Vec2, str]]:
-    """Where a seat was at the moments; letters of moments at which it was in one place stand together."""
+    """Positions of a seat at the moments; letters of moments with the same position stand together."""
     found: list[tuple[Vec2, str]] = []
     for letter, moment in zip(string.ascii_lowercase, row.moments, strict=False):
         place = trial_trace.position_at(row.record.log, seat, moment.tick)
@@ -124,7 +124,7 @@ def _places(row: Row, seat: str) -> list[tuple[Vec2, str]]:
 
 
 def _letter(ax: Axes, place: Vec2, letters: str, seat: str, side: Vec2) -> None:
-    """Beside the place, where there is room."""
+    """Write letters next to the place, where there is room."""
     made = ax.annotate(
         letters,
         place,
@@ -134,11 +134,11 @@ def _letter(ax: Axes, place: Vec2, letters: str, seat: str, side: Vec2) -> None:
         va="bottom" if side[1] > 0 else "top",
         **_badge(seat),
     )
-    made.set_in_layout(False)  # at the edge of a house it would take room from the row, whose scale is all rows'
+    made.set_in_layout(False)  # at the edge of a house it would make this row smaller, and all rows have one scale
 
 
 def _draw_view(ax: Axes, view: Any, seat: str, column: int, moment: Moment, *, first: bool) -> None:
-    """A picture in a frame of its seat's colour, with its letter; what happened above the first."""
+    """Draw a view in a frame of its seat's colour, with its letter; the first also has the event's words above it."""
     ax.imshow(view, interpolation="none")
     ax.set_xticks([])
     ax.set_yticks([])
@@ -152,7 +152,7 @@ def _draw_view(ax: Axes, view: Any, seat: str, column: int, moment: Moment, *, f
 
 
 def _badge(seat: str) -> dict[str, Any]:
-    """A letter in a seat's colour, as it stands on the map and on the view."""
+    """The style of a letter in a seat's colour, for the map and the view."""
     box = {"boxstyle": "round,pad=0.2,rounding_size=0.5", "fc": trial_trace.seat_colour(seat), "ec": "white", "lw": 0.7}
     return {"fontsize": _LETTER_PT, "weight": "bold", "color": "white", "bbox": box, "zorder": 15}
 

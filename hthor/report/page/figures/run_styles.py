@@ -1,4 +1,4 @@
-"""How runs are told apart in figures: a colour each, and a mark for those who see none."""
+"""Tells runs apart in figures: each has a colour, and a mark for people who cannot see colours."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 _OTHERS = ("#9a5fb5", "#2f9270", "#c4587f", "#7f7a2c", "#4a79c4")
 _SHAPES = {"none": "o", "frontier": "s", "oracle": "^"}
 _NAME_IN, _NAME_PT = 1.35, 8.0
-"""Inches that a name is wide at most, and points of its letters."""
+"""Width of a name at most [in], and size of its letters [pt]."""
 LINE_IN = 0.135
-"""Inches of a line of a name."""
+"""Height of a line of a name [in]."""
 _MORE = ("v", "P", "X", "p", "h")
 
 
@@ -34,10 +34,10 @@ class RunStyle(Struct, frozen=True, kw_only=True):
 
 
 def run_styles(arms: Sequence[Arm], more: Iterable[str] = ()) -> dict[str, RunStyle]:
-    """A mark for each run by its label; the article's three conditions always look alike, the first of each at least.
+    """A style for each run by its label; the first run with each of the article's three conditions always has the same.
 
     Args:
-        more: labels that may be of none of the runs.
+        more: further labels, which may belong to no run.
     """
     found: dict[str, RunStyle] = {}
     taken: set[str] = set()
@@ -56,7 +56,7 @@ def run_styles(arms: Sequence[Arm], more: Iterable[str] = ()) -> dict[str, RunSt
 def interval(
     ax: Axes, y: float, mean: float | None, ci95: Sequence[float] | None, mark: RunStyle, *, thin: bool = False
 ) -> None:
-    """A mean with its 95 % interval, lying; the ends are ticked, as a good interval is shorter than its mark."""
+    """Draw a mean with a horizontal 95 % interval; its ends have ticks because the mark hides short intervals."""
     if mean is None:
         return
     if ci95 is not None:
@@ -76,7 +76,7 @@ def estimate(ax: Axes, y: float, one: Estimate, mark: RunStyle, scale: float = 1
 def window(
     values: Iterable[float], step: float, most: tuple[float, float] = (-math.inf, math.inf)
 ) -> tuple[float, float]:
-    """Limits of an axis that holds these values with some air, at whole steps."""
+    """Limits of an axis that holds these values with a margin, at whole multiples of ``step``."""
     held = list(values) or [0.0]
     low = step * math.floor((min(held) - 0.15 * step) / step)
     high = step * math.ceil((max(held) + 0.15 * step) / step)
@@ -84,16 +84,16 @@ def window(
 
 
 def draw_names(ax: Axes, ends: Sequence[tuple[float, float, str, RunStyle]], line: float) -> None:
-    """Names of curves on the right of all of them, each as near to its curve's end as the others let it be.
+    """Write names to the right of all curves, each as near to its curve's end as the other names allow.
 
-    The axes' limits of y must be set: no name leaves them.
+    The y limits of the axes must be set already: no name leaves them.
 
     Args:
-        ends: x, y, name and mark of each. line: the height of a line of a name, in units of y.
+        ends: x, y, name and style of each curve. line: the height of a line of a name, in units of y.
     """
     if not ends:
         return
-    right = max(x for x, _, _, _ in ends)  # a name that began at its own curve's end would lie below others' marks
+    right = max(x for x, _, _, _ in ends)  # a name that began at its own curve's end could be covered by other marks
     ordered = sorted(ends, key=lambda end: end[1])
     words = [axis_label(name) for _, _, name, _ in ordered]
     highs = [line * (text.count("\n") + 1) for text in words]
@@ -104,11 +104,11 @@ def draw_names(ax: Axes, ends: Sequence[tuple[float, float, str, RunStyle]], lin
 
 
 def _apart(middles: Sequence[float], highs: Sequence[float], within: tuple[float, float]) -> list[float]:
-    """The middles, lowest first, moved so that nothing so high touches another or leaves the limits, if there is room.
+    """Move the middles, lowest first, so that no names of these heights overlap or leave the limits, if there is room.
 
-    What meets moves by as little as it can, in either direction: each group lies around the mean of its wishes.
+    Names that overlap move as little as possible, up or down: a group is centred on the mean of their wanted places.
     """
-    groups: list[tuple[list[float], list[float]]] = []  # wishes and heights
+    groups: list[tuple[list[float], list[float]]] = []  # wanted middles, and heights
     for middle, high in zip(middles, highs, strict=True):
         groups.append(([middle], [high]))
         while len(groups) > 1 and _foot(groups[-1], within) < _foot(groups[-2], within) + sum(groups[-2][1]):
@@ -125,7 +125,7 @@ def _apart(middles: Sequence[float], highs: Sequence[float], within: tuple[float
 
 
 def _foot(group: tuple[list[float], list[float]], within: tuple[float, float]) -> float:
-    """Where a group begins."""
+    """The lower end of a group."""
     wishes, highs = group
     starts = [
         wish - high / 2.0 - sum(highs[:place]) for place, (wish, high) in enumerate(zip(wishes, highs, strict=True))
@@ -135,18 +135,18 @@ def _foot(group: tuple[list[float], list[float]], within: tuple[float, float]) -
 
 
 def axis_label(name: str) -> str:
-    """A long name in lines that are short enough for an axis."""
+    """A long name, broken into lines that are short enough for an axis."""
     return text_fit.wrapped(name, _NAME_IN, _NAME_PT)
 
 
 def row_height(names: Iterable[str], least: float = 0.36) -> float:
-    """Inches that a row takes whose name has a line for n below."""
+    """The height of a row whose name has a line for n below it [in]."""
     lines = 1 + max(axis_label(name).count("\n") + 1 for name in names)
     return max(least, LINE_IN * lines + 0.08)
 
 
 def names_height(names: Iterable[str]) -> float:
-    """Inches of all names, one below another."""
+    """The height of all names, one below another [in]."""
     return sum(LINE_IN * (axis_label(name).count("\n") + 1) for name in names)
 
 

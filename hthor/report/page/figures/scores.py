@@ -1,4 +1,4 @@
-"""Scores of every run beside the published ones, and runs against each other over the trials that they share."""
+"""Draws every run's scores next to the published ones, and differences between runs over the trials that they share."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ METRICS = tuple(metric for metric in registry.MAIN if metric.is_share)
 """The metrics that have a panel."""
 _SHIFT = 0.17
 _MANY = 4
-"""So many panels have short titles."""
+"""From this number of panels on, their titles are short."""
 _QUIET = {"ha": "center", "va": "center", "color": matplotlib_svg.SOFT, "fontsize": 7}
 
 
 def scores_figure(found: Findings) -> Figure:
-    """Means with 95 % intervals; diamonds are the article's, with intervals of their own where it tells counts."""
+    """Means with 95 % intervals; diamonds are the article's values, with intervals where it gives counts."""
     own, rows = run_styles.run_styles(found.arms), len(found.arms)
     held = [metric for metric in METRICS if any(arm.scores[metric.name].n for arm in found.arms)]
     study = found.published is not None and any(arm.condition for arm in found.arms)
@@ -82,9 +82,9 @@ def _publish(ax: Axes, y: float, name: str, found: Findings) -> None:
 
 
 def comparison_figure(pairs: Sequence[Comparison], arms: Sequence[Arm]) -> Figure:
-    """Paired differences with their intervals, those of success as the verdicts have them.
+    """Paired differences with their intervals; the intervals of success are those of the verdicts.
 
-    Right of the line the robot that is named first is better.
+    To the right of the line, the robot that is named first is better.
     """
     own, rows = run_styles.run_styles(arms), len(pairs)
     names = [f"{pair.second} − {pair.first}" for pair in pairs]

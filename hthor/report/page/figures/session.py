@@ -1,4 +1,4 @@
-"""Over a session: the time spent, trust by trial, and what became of the robots' messages."""
+"""Draws a session's course: the time spent, trust by trial, and the outcomes of the robots' messages."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ if TYPE_CHECKING:
     from hthor.report.page.figures.run_styles import RunStyle
 
 _EDGES_IN = 0.8
-"""Inches of title and labels of the figure of times."""
+"""Height of the title and labels of the figure of times [in]."""
 _MANY = 6
-"""So many curves are named at their ends; boxes have the names of more."""
+"""Up to this many curves have their names at their ends; if there are more, only the boxes have names."""
 _SIDE = 0.06
 _HIGH_IN, _TRUST_EDGES_IN = 2.7, 0.75
-"""Inches of the figure of trust, and of its title and labels."""
+"""Height of the figure of trust, and of its title and labels [in]."""
 FATES = {
     "accepted": ("confirmed", trial_trace.MESSAGE),
     "declined": ("declined", trial_trace.IDLE_MESSAGE),
@@ -106,7 +106,7 @@ def trust_figure(curves: Sequence[TrustCurve], arms: Sequence[Arm]) -> Figure:
 
 
 def trust_window(curves: Sequence[TrustCurve]) -> tuple[float, float]:
-    """The part of the scale that is drawn, from a whole point to another."""
+    """The part of the trust scale that is drawn, between whole points."""
     values = [end for curve in curves for pair in curve.ci95 for end in pair]
     low, high = run_styles.window(values, 1.0, (float(rules.TRUST_MIN), float(rules.TRUST_MAX)))
     if high - low < 2.0:
@@ -115,10 +115,10 @@ def trust_window(curves: Sequence[TrustCurve]) -> tuple[float, float]:
 
 
 def communication_figure(arms: Sequence[Arm]) -> Figure:
-    """Messages a trial by their fate, and means with 95 % intervals of what they cost and brought.
+    """Messages per trial by their outcome, and means with 95 % intervals of their costs and benefits.
 
     Args:
-        arms: those with robots.
+        arms: runs with robots.
     """
     own, rows = run_styles.run_styles(arms), len(arms)
     with matplotlib_svg.style():

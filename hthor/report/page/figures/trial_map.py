@@ -1,4 +1,4 @@
-"""One trial from above: the person's and the robots' ways, and the same person's without a robot."""
+"""Draws one trial from above: the paths of the person and the robots, and that of the same person without a robot."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _DASH = (0, (2, 2))
 
 
 def figure(record: TrialRecord, house: HouseSpec, alone: TrialRecord | None) -> Figure:
-    """A small plan; all are of one size, whatever the house.
+    """A small plan; all plans have one size, whatever the house.
 
     Args:
         alone: the trial of the same person at the same task without a robot, if there is one.
@@ -42,11 +42,11 @@ def figure(record: TrialRecord, house: HouseSpec, alone: TrialRecord | None) -> 
 
 
 def legend(seats: Collection[str], *, alone: bool, destined: bool, failed: bool = False) -> Figure:
-    """What all these plans have in common.
+    """The legend that all these plans share.
 
     Args:
-        seats: everybody who is drawn. alone: whether ways without a robot are. destined: whether destinations are.
-        failed: whether the mind of one of them failed.
+        seats: those that are drawn. alone: whether paths without a robot are drawn. destined: whether destinations
+        are drawn. failed: whether the agent of a seat failed.
     """
     ways = [trial_legend.line(trial_trace.seat_colour(seat), "person" if seat == HUMAN else seat) for seat in seats]
     if alone:

@@ -1,1 +1,1 @@
-"""The report's sections: functions of the findings that give parts of the page."""
+"""The report's sections: each function takes the findings and returns parts of the page."""

@@ -1,4 +1,4 @@
-"""Success by difficulty, kind of task, split, scene and kind of person, with the gain over no robot."""
+"""Success by difficulty, kind of task, split, scene and human population, with the gain over no robot."""
 
 from collections.abc import Iterable, Mapping, Sequence
 
@@ -13,13 +13,13 @@ from hthor.report.page import sentences, table_cells
 
 _KEYS = {"difficulty": "difficulty", "kind of task": "kind", "split": "split", "scene": "scene"}
 _LONG = 12
-"""A table of more groups is shown when one asks for it."""
+"""A table of more groups is folded."""
 Gains = dict[str, dict[str, Difference]]
-"""By group and robot."""
+"""Differences in success by group and robot."""
 
 
 def difficulty(found: Findings, drawings: Mapping[str, str]) -> list[str]:
-    """Of what the section by difficulty is made."""
+    """The parts of the section by difficulty."""
     held = [one for one in found.splits if one.word != "scene"]
     if not held:
         return [
@@ -33,7 +33,7 @@ def difficulty(found: Findings, drawings: Mapping[str, str]) -> list[str]:
 
 
 def scenes(found: Findings, drawings: Mapping[str, str]) -> list[str]:
-    """Of what the section by scene is made."""
+    """The parts of the section by scene."""
     held = [one for one in found.splits if one.word == "scene"]
     if not held:
         return [elements.paragraph("All trials are in one scene, or there is one trial in each.")]
@@ -43,12 +43,12 @@ def scenes(found: Findings, drawings: Mapping[str, str]) -> list[str]:
 
 
 def people(found: Findings, drawings: Mapping[str, str]) -> list[str]:
-    """Of what the section by kind of person is made."""
+    """The parts of the section by human population."""
     if found.by_people is None:
         return [
             elements.paragraph(
-                f"Everybody in these runs is of one people, '{found.people}'. Runs of several, as 'hthor eval --humans "
-                "kinds' makes them, are set side by side here."
+                f"All people in these runs are '{found.people}'. Runs with several kinds, as from 'hthor eval --humans "
+                "kinds', are compared here."
             )
         ]
     said = [
@@ -85,14 +85,14 @@ def _made(
 
 
 def _ordered(found: Findings, labels: Iterable[str]) -> list[str]:
-    """Each label once, those of the page's runs first and in their order."""
+    """Each label once; labels of the page's runs come first, in the order of the runs."""
     there = set(labels)
     own = [arm.label for arm in found.arms if arm.label in there]
     return [*own, *sorted(there.difference(own))]
 
 
 def _gains(found: Findings, split: Split) -> Gains:
-    """What each robot adds within each group, where its trials have partners without a robot."""
+    """The gain of each robot within each group, if its trials can be paired with trials without a robot."""
     if split.word not in _KEYS:
         return {
             people: {pair.second: pair.differences["sr"] for pair in pairs}

@@ -1,4 +1,4 @@
-"""Where the runs come from: everything that decides their records, what held their agents, and their commands."""
+"""Where the runs come from: everything that decides their records, how agents were isolated, and commands."""
 
 from collections.abc import Callable, Mapping, Sequence
 
@@ -11,7 +11,7 @@ from hthor.report.html.elements import Code, Piece
 
 
 def parts(found: Findings, _: Mapping[str, str]) -> list[str]:
-    """Of what the section is made."""
+    """The parts of the section."""
     said = (
         "Hashes by their first twelve digits; report.json has them whole. Equal hashes, seeds and platforms give the "
     )
@@ -32,7 +32,7 @@ def parts(found: Findings, _: Mapping[str, str]) -> list[str]:
 
 
 def _own(found: Findings) -> str:
-    """Where files of the user's own are wanted: a run keeps their names and hashes, not their folders."""
+    """Where the user's own files must be found: a run keeps their names and hashes, not their folders."""
     ours = all(robot.agent.source.startswith(BUILT_IN_AGENTS) for one in found.origins for robot in one.robots)
     return "" if ours else ", typed where the agents' files lie"
 
@@ -46,7 +46,7 @@ def _agents(one: Provenance) -> Piece:
 
 
 def isolation(held: Isolation | None) -> str:
-    """A level with its layers in words."""
+    """An isolation level in words, with its layers."""
     if held is None:
         return "built-in agents, inside"
     layers = {

@@ -1,4 +1,4 @@
-"""The tables against the baselines and the article, and of runs against each other, trial by trial."""
+"""Tables that compare runs with the baselines and the article, and with each other trial by trial."""
 
 from collections.abc import Iterator, Mapping
 
@@ -12,7 +12,7 @@ from hthor.report.page import headline, sentences, table_cells
 
 _PUBLISHED = {"none": "no robot", "frontier": "frontier", "oracle": "oracle"}
 _SHORT = 24
-"""Names up to so long stand in one line."""
+"""Names up to this long stand in one line."""
 _COLUMNS = (
     "Below: n, the trials that both runs share, and mde, the smallest true difference that these would have seen in "
     "four of five cases. Won: only the robot that is named first succeeded; lost: only the other; with the exact "
@@ -23,7 +23,7 @@ _PAIR_HEAD = ("", *(registry.get(name).gain for name in result_file.UPLIFT_METRI
 
 
 def scores(found: Findings, drawings: Mapping[str, str]) -> list[str]:
-    """Of what the section is made."""
+    """The parts of the section on scores."""
     metrics = [metric for metric in registry.MAIN if any(arm.scores[metric.name].n for arm in found.arms)]
     rows: list[list[Piece] | Band] = []
     if found.published is not None:
@@ -46,7 +46,7 @@ def scores(found: Findings, drawings: Mapping[str, str]) -> list[str]:
 
 
 def _published(found: Findings, metrics: list[str]) -> Iterator[list[Piece] | Band]:
-    """The article's rows."""
+    """The rows of the article's figures."""
     study = found.published
     if study is None:
         return
@@ -61,7 +61,7 @@ def _published(found: Findings, metrics: list[str]) -> Iterator[list[Piece] | Ba
 
 
 def comparison(found: Findings, drawings: Mapping[str, str]) -> list[str]:
-    """Of what the section is made."""
+    """The parts of the section on comparisons."""
     said = [elements.paragraph(sentences.without_baseline(found))] if not found.baseline else []
     apart = [elements.bullets([sentences.not_comparable(one) for one in found.apart])] if found.apart else []
     if not found.comparisons:
@@ -94,7 +94,7 @@ def _bars(found: Findings) -> str:
 
 
 def _intervals(found: Findings) -> str:
-    """What the brackets say."""
+    """What the brackets in the table mean."""
     among = _among(found)
     if among == 1:
         return "In brackets: 95 % interval."

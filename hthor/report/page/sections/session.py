@@ -1,4 +1,4 @@
-"""Over a session: time spent, as the article's box plots have it, trust, messages, and being in the way."""
+"""A session's course: time spent as in the article's box plots, trust, messages, and being in the way."""
 
 from collections.abc import Iterator, Mapping
 
@@ -17,7 +17,7 @@ _TRUST_HEAD = ("robot", "people", "after the first trial", "after the last trial
 
 
 def time_spent(found: Findings, drawings: Mapping[str, str]) -> list[str]:
-    """Of what the section is made."""
+    """The parts of the section on time spent."""
     rows = [
         [
             one.arm,
@@ -40,7 +40,7 @@ def time_spent(found: Findings, drawings: Mapping[str, str]) -> list[str]:
 
 
 def trust(found: Findings, drawings: Mapping[str, str]) -> list[str]:
-    """Of what the section is made."""
+    """The parts of the section on trust."""
     if not found.trust:
         return [elements.paragraph("Nobody rated a robot in these runs.")]
     rows: list[list[Piece]] = [
@@ -74,7 +74,7 @@ def _with_interval(one: TrustCurve, which: int) -> Value:
 
 
 def communication(found: Findings, drawings: Mapping[str, str]) -> list[str]:
-    """Of what the section is made."""
+    """The parts of the section on communication."""
     robots = table_cells.robots(found.arms)
     if not robots:
         return [elements.paragraph("There is no robot in these runs.")]
@@ -102,7 +102,7 @@ def communication(found: Findings, drawings: Mapping[str, str]) -> list[str]:
 
 
 def _rows(arms: tuple[Arm, ...], section: str) -> Iterator[list[Piece]]:
-    """A row for each metric of a section that some run has a value of."""
+    """A row for each metric of a section for which at least one run has a value."""
     for metric in registry.SINGLE:
         own = metric.section or ("" if metric.main else "bodies")
         if own == section and any(arm.scores[metric.name].n for arm in arms):
@@ -111,7 +111,7 @@ def _rows(arms: tuple[Arm, ...], section: str) -> Iterator[list[Piece]]:
 
 
 def _rows_by_seat(arms: tuple[Arm, ...]) -> Iterator[list[Piece] | Band]:
-    """Below the name of each metric that has values by seat, a row for each seat or pair of seats."""
+    """For each metric that has values by seat, its name, and below it a row for each seat or pair of seats."""
     for metric in registry.BY_SEAT:
         estimates = [arm.scores.by_seat(metric.name) for arm in arms]
         seats = dict.fromkeys(seat for by_seat in estimates for seat in by_seat)

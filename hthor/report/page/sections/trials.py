@@ -1,4 +1,4 @@
-"""Single trials: the best and the worst of each robot on maps, and of each kind of fault the first."""
+"""Single trials: maps of each robot's best and worst trials, and the first trial with each kind of fault."""
 
 from collections.abc import Mapping
 from html import escape
@@ -13,9 +13,9 @@ _FAULT_HEAD = ("run", "whose", "fault", "trials", "share", "first in")
 
 
 def trials(found: Findings, drawings: Mapping[str, str]) -> list[str]:
-    """Of what the section is made."""
+    """The parts of the section on best and worst trials."""
     if not found.shown:
-        return [elements.paragraph("There is no robot to tell of.")]
+        return [elements.paragraph("There is no robot in these runs.")]
     by = "the time saved against the same person without a robot" if found.baseline else "time-weighted success"
     held = [elements.paragraph(f"Ranked by {by}: extremes of many trials, not typical ones.")]
     if "legend" in drawings:
@@ -38,7 +38,7 @@ def _card(one: ExampleTrial, drawing: str) -> str:
 
 
 def faults(found: Findings, _: Mapping[str, str]) -> list[str]:
-    """Of what the section is made."""
+    """The parts of the section on faults."""
     trials = sum(one.trials for one in found.origins)
     if not found.failures:
         return [elements.paragraph(f"No robot failed in any of the {trials} trials.")]
@@ -63,13 +63,13 @@ def faults(found: Findings, _: Mapping[str, str]) -> list[str]:
 
 
 def _first(one: FaultGroup) -> list[str]:
-    """What is known of the first of a kind."""
+    """The details of the first trial with one kind of fault."""
     where = f"{one.task}, person {one.participant}, trial {one.index + 1}, after {one.after_s:.1f} s"
     commands = [command for command in (one.again, one.replay) if command]
     return [
         f"<h3>{elements.inside(one.run)}, {elements.inside(Mark(one.kind, 'bad'))}: the first</h3>",
         elements.paragraph(f"{where}:"),
-        elements.block(one.detail or "nothing was said"),
+        elements.block(one.detail or "no details were kept"),
         *((elements.paragraph("It printed last:"), elements.block(one.output)) if one.output else ()),
         elements.listed(
             ["Play it again: " if command == one.again else "Draw it: ", Code(command)] for command in commands
