@@ -1,4 +1,4 @@
-"""What to do in a house: kinds of task, suites of tasks, and how both are made.
+"""Tasks in a house: kinds of task, suites of tasks, and how both are made.
 
 Begin with `kind` (the contract of a kind of task) and `suites.library` (how a suite is read).
 """

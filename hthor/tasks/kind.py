@@ -1,7 +1,7 @@
-"""The contract of a kind of task: its goals, its instruction, when it is done, and the least time that it takes.
+"""The contract of a kind of task: its goals, its instruction, when it is done, and its least time.
 
-One file in `hthor/tasks/kinds`, or a file of the user's, defines one kind as ``KIND``; the kind's name is the file's.
-Task generation asks a kind for goals and least times, the episode whether the goal is met and how far it is.
+One file in `hthor/tasks/kinds`, or a user's file, defines one kind as ``KIND``; the kind's name is the file's name.
+Task generation asks a kind for goals and least times; the episode asks for progress, and whether the goal is met.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ class LeastTimes(Protocol):
     """The least time to meet a goal, as a function of where the person starts."""
 
     def __call__(self, starts: ArrayLike, /) -> NDArray[np.float64]:
-        """(N,) least times [s] for ``starts`` (N, 2) [m], house frame; inf where the goal cannot be met from."""
+        """(N,) least times [s] for ``starts`` (N, 2) [m], house frame; inf for a start from which it is impossible."""
         ...
 
 
@@ -32,9 +32,9 @@ class TaskKind(ABC):
 
     Attributes:
         name: the name of the kind and of its file, such as "mobile_manipulation".
-        short: stands for the kind in task ids, and is the name of its own suite where it has one.
-        crew: names of the robots in a trial, unless the caller chooses others.
-        time_limit: of its tasks [s].
+        short: the kind's name in task ids, and the name of its suite if it has one.
+        crew: names of the robots in a trial, unless the caller chooses other robots.
+        time_limit: time limit of its tasks [s].
         t_star_base, t_star_slowness: T* is ``t_star_base`` [s] plus ``t_star_slowness`` times the least time; by
             default the least time itself.
     """
@@ -52,20 +52,20 @@ class TaskKind(ABC):
 
     @abstractmethod
     def objection(self, goal: Goal, house: HouseSpec) -> str:
-        """Why the goal is not a valid one of this kind in the house, in words; empty when it is."""
+        """Why the goal is not a valid goal of this kind in the house, in words; empty when it is valid."""
 
     @abstractmethod
     def instruction(self, goal: Goal, objects: tuple[Placement, ...]) -> str:
-        """The sentence that the person and the robots are given.
+        """The sentence that tells the person and the robots the goal.
 
         Args:
             goal: what to do.
-            objects: the arrangement at the start, with the goal's objects among them.
+            objects: the arrangement at the start, including the goal's objects.
         """
 
     @abstractmethod
     def met(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec) -> bool:
-        """Whether the goal is met; asked at every tick of a trial.
+        """Whether the goal is met; called at every tick of a trial.
 
         Args:
             task: the task.
@@ -75,11 +75,11 @@ class TaskKind(ABC):
 
     @abstractmethod
     def solved(self, goal: Goal, objects: tuple[Placement, ...], house: HouseSpec) -> bool:
-        """Whether an arrangement meets the goal before anybody has moved; such a task is not generated."""
+        """Whether the arrangement at the start already meets the goal; such a task is not generated."""
 
     @abstractmethod
     def least_times(self, house: HouseSpec, objects: tuple[Placement, ...], goal: Goal) -> LeastTimes:
-        """The least time to meet the goal from each start: a lower bound that nobody can beat.
+        """The least time to meet the goal from each start: a lower bound for every person and team.
 
         Args:
             house: the floor plan.
@@ -87,20 +87,20 @@ class TaskKind(ABC):
             goal: what to do.
 
         Returns:
-            A function from starts (N, 2) [m] to times (N,) [s]; inf where the goal cannot be met from.
+            A function from starts (N, 2) [m] to times (N,) [s]; inf for a start from which it is impossible.
         """
 
     def draw(self, house: HouseSpec, root: int) -> tuple[Goal, tuple[Placement, ...]]:
         """A goal and an arrangement that does not meet it.
 
-        By default one of `goals`, each equally likely, and the six targets spread by the scene priors.
+        By default, one of `goals`, all equally likely, and the six targets placed by the scene priors.
 
         Args:
             house: the floor plan.
             root: of all random draws (`hthor.seeds`); equal roots must give equal results.
 
         Raises:
-            HthorError: when the house has nothing for a task of this kind.
+            HthorError: when no task of this kind is possible in the house.
         """
         from hthor.tasks.arrangement.target_arrangement import arrange
 
@@ -111,7 +111,7 @@ class TaskKind(ABC):
         return goal, arrange(house, root, {goal.target: goal.destination})
 
     def misfit(self, task: TaskSpec, house: HouseSpec) -> str:  # noqa: ARG002 - most kinds accept any
-        """Why a valid task is not worth giving, in words; empty when it is. Task generation then draws again."""
+        """Why a valid task is still unsuitable, in words; empty when it is suitable. If not, generation draws again."""
         return ""
 
     def progress(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec) -> float:
@@ -128,18 +128,18 @@ class TaskKind(ABC):
         return round(self.t_star_base + self.t_star_slowness * round(least, 3), 3) if math.isfinite(least) else math.inf
 
     def least(self, task: TaskSpec) -> float:
-        """The least time [s] that a task's T* stands for."""
+        """The least time [s] that a task's T* was computed from."""
         return round((task.t_star - self.t_star_base) / self.t_star_slowness, 3)
 
 
 def target_of(goal: Goal, objects: tuple[Placement, ...]) -> Placement:
-    """Where the goal's target is placed."""
+    """The placement of the goal's target."""
     return next(placement for placement in objects if placement.id == goal.target)
 
 
 def kind_of(thing_id: str, house: HouseSpec) -> str:
-    """The kind of the house's thing with this id, empty when there is none."""
-    for thing in house.things if thing_id else ():  # asked at every tick of a trial
+    """The kind of the house's thing with this id, empty when there is no such thing."""
+    for thing in house.things if thing_id else ():  # called at every tick of a trial
         if thing.id == thing_id:
             return thing.kind
     return ""

@@ -1,15 +1,15 @@
 """Kinds of task whose goal is a list of jobs, `Goal.jobs`: when a job is done, and the least time.
 
-A job is done when its object is in nobody's hands and rests where one of its ``destinations`` says: on or in the thing
-of that id, on or in a thing of that kind, or in the room of that id; and, where ``place`` says where exactly, within
-`PLACE_M` of it on the plan, or `TOGETHER_M` for what it takes several to carry.
+A job is done when its object is in nobody's hands and rests at one of its ``destinations``: on or in the thing with
+that id, on or in a thing of that kind, or in the room with that id. If the job has an exact ``place``, the object must
+also lie within `PLACE_M` of it on the plan, or within `TOGETHER_M` for an object that several bodies carry.
 
-T* of a team is a time that no team can beat, whatever its robots and their starts: that of the longest job,
-done by somebody who happens to stand next to its object. It is a walk at `rules.PACE_M_S` along the shortest path of
-the avatar from a cell within the avatar's reach of the object to one within reach of the nearest thing that will do
-(into the room that will do), less the slack of the grid, plus `rules.HANDLING_S` each to pick, to place, and to open
-what the object lies shut in. Several who carry something go at `rules.HANDLE_PACE` of that pace. All other jobs are
-done meanwhile. From where the person cannot walk to every object, T* is infinite.
+T* of a team is a lower bound for every team, whatever its robots and their starts: the time of the longest job, done by
+a body that already stands next to its object, while others do the other jobs. It is a walk at `rules.PACE_M_S` along
+the shortest path of the avatar from a cell within the avatar's reach of the object to a cell within reach of the
+nearest destination, less the slack of the grid, plus `rules.HANDLING_S` each to pick, to place, and to open a closed
+thing that contains the object. Bodies that carry together walk at `rules.HANDLE_PACE` of that pace. If the person
+cannot walk to every object from the start, T* is infinite.
 """
 
 import functools
@@ -27,24 +27,24 @@ from hthor.tasks.kind import LeastTimes, TaskKind, kind_of
 from hthor.types import Goal, HouseSpec, Job, Placement, Snapshot, TaskSpec, Thing, ThingState, Vec2, Vec3
 
 PLACE_M = 0.30
-"""How far an object may lie from where exactly it belongs. A hand puts things on the free spot nearest to the one that
-is wanted, and a person remembers a spot to within about 0.1 m; but the other end of the same table is not the place."""
+"""How far an object may lie from its exact place. A hand puts things on the free spot nearest to the intended one, and
+a person remembers a spot to within about 0.1 m; but the other end of the same table does not count."""
 TOGETHER_M = 0.75
-"""The same for what several carry: it follows its leader like a trailer, and is put down where it hangs."""
+"""The same for an object that several carry: it follows its leader like a trailer, and is put down where it is."""
 
 
 class JobKind(TaskKind):
-    """A kind whose goal is to do all of a list of jobs, in any order. A kind of this sort says how a task is drawn.
+    """A kind whose goal is to do all jobs of a list, in any order. A subclass defines how a task is drawn.
 
-    Progress counts the jobs that are left: of those not done at the start, the share that is done, and a job that was
-    done and has been undone takes one away again, down to none. The goal is met when none is left.
+    Progress is the share done of the jobs that were not done at the start; each job that was done at the start and has
+    been undone subtracts one job, down to zero. The goal is met when no job is left.
     """
 
     @abstractmethod
     def draw(self, house: HouseSpec, root: int) -> tuple[Goal, tuple[Placement, ...]]: ...
 
     def goals(self, house: HouseSpec) -> tuple[Goal, ...]:
-        """One of the many that can be drawn, where they cannot be told without the objects."""
+        """An example of the goals that can be drawn, if these depend on the objects."""
         return (self.draw(house, 0)[0],)
 
     def objection(self, goal: Goal, house: HouseSpec) -> str:
@@ -101,7 +101,7 @@ def is_done(job: Job, state: ThingState | None, house: HouseSpec) -> bool:
 
 
 def jobs_left(goal: Goal, objects: tuple[Placement, ...], house: HouseSpec) -> tuple[Job, ...]:
-    """The jobs that the arrangement leaves to be done."""
+    """The jobs that are not done in the arrangement."""
     lying = {
         one.id: ThingState(id=one.id, kind=one.kind, position=one.position, support=one.support) for one in objects
     }
@@ -115,14 +115,14 @@ def max_bearers(destinations: Collection[str], house: HouseSpec) -> tuple[Thing,
 
 
 def why_impossible(job: Job, house: HouseSpec) -> str:
-    """Why no arrangement of the house can do the job, empty when one can."""
+    """Why the job cannot be done by any arrangement in the house; empty when it can be."""
     rooms = {room.id: room for room in house.rooms}
     if job.relation == "at":
         valid = set(rooms)
     else:
         things = [thing for thing in house.things if catalog.kind(thing.kind).receptacle]
         valid = {thing.id for thing in things} | {thing.kind for thing in things}
-    # One of several that will do has to be there; a kind that this house lacks does no harm.
+    # One destination has to be in the house; the others may be kinds that it lacks.
     if job.destinations and not valid.intersection(job.destinations):
         return f"has destinations {', '.join(job.destinations)}; the house has {', '.join(sorted(valid))}"
     if job.place is not None and not any(plane.inside(job.place[:2], room.polygon) for room in house.rooms):
@@ -133,18 +133,18 @@ def why_impossible(job: Job, house: HouseSpec) -> str:
 
 
 def carrying_time(house: HouseSpec, placement: Placement, job: Job) -> float:
-    """The least time [s] of one job for somebody who stands next to the object; inf when it cannot be done."""
+    """The least time [s] of one job for a body that stands next to the object; inf when it cannot be done."""
     lying = next((thing for thing in house.things if thing.id == placement.support), None)
     shut = placement.relation == "in" and lying is not None and catalog.kind(lying.kind).hides
     way, pace = carrying_way(house, placement, job), rules.PACE_M_S
-    if job.hands > 1:  # by a handle, from farther off; and it need not come all the way
+    if job.hands > 1:  # by a handle, from farther away; and it may stop short of the place
         way -= catalog.kind(placement.kind).size[0] + TOGETHER_M
         pace *= rules.HANDLE_PACE
     return max(way, 0.0) / pace + (2 + shut) * rules.HANDLING_S
 
 
 def carrying_way(house: HouseSpec, placement: Placement, job: Job) -> float:
-    """The least way [m], less the grid's slack, from within reach of the object to where it can be put down."""
+    """The least way [m], less the grid's slack, from within reach of the object to a place to put it down."""
     ground = ReachableFloor.of(house)
     near, (ends, walk) = ground.touching(placement), _way(house, job.relation, job.destinations, job.place)
     if not (near.any() and ends.any()):

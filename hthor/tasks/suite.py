@@ -13,7 +13,7 @@ from hthor.types import TaskSpec
 
 
 class SuiteFile(Struct, frozen=True, kw_only=True):
-    """What a suite's file holds; ``sha256`` is the hash of the tasks' canonical JSON, 64 hexadecimal digits."""
+    """The content of a suite's file; ``sha256`` is the hash of the tasks' canonical JSON, 64 hexadecimal digits."""
 
     name: str
     version: int
@@ -22,12 +22,12 @@ class SuiteFile(Struct, frozen=True, kw_only=True):
 
 
 class Suite(SuiteFile, frozen=True, kw_only=True):
-    """A named list of tasks. ``houses`` finds their houses by name; it has a folder where the suite brings its own."""
+    """A named list of tasks. ``houses`` finds their houses by name; it has a folder if the suite has its own houses."""
 
     houses: HouseLibrary = OURS
 
     def with_tasks(self, tasks: tuple[TaskSpec, ...]) -> Suite:
-        """The suite with some of its tasks only, and the hash of these."""
+        """The suite with only these of its tasks, and their hash."""
         return make_suite(self.name, self.version, tasks, self.houses)
 
 
@@ -37,7 +37,7 @@ def make_suite(name: str, version: int, tasks: tuple[TaskSpec, ...], houses: Hou
 
 
 def encode_suite(suite: Suite) -> bytes:
-    """The suite's file: one task a line, so that a change of one task is a change of one line."""
+    """The suite's file: one task per line, so that a change of one task is a change of one line."""
     head = jsonio.canonical({"name": suite.name, "sha256": suite.sha256, "version": suite.version})
     lines = b",\n".join(jsonio.canonical(task) for task in suite.tasks)
     return head[:-1] + b',"tasks":[\n' + lines + b"\n]}\n"

@@ -22,13 +22,13 @@ from hthor.types import HouseSpec, Placement, TaskSpec
 CODE_PART = "tools"
 
 _ALOFT_M = 0.01
-"""How far an object may be above or below the surface it claims to rest on, or in another thing."""
+"""How far an object may be above or below the surface that it names as its support, or inside another thing."""
 _LISTED = 20
-"""Tasks that an error names before it only counts the rest."""
+"""How many tasks an error message names; the others are only counted."""
 
 
 class TaskFault(Struct, frozen=True, kw_only=True):
-    """One thing that is wrong with a task of a suite: its place in the suite, its id, the field and the problem."""
+    """A fault of a task of a suite: the task's index in the suite and its id, the field and the problem."""
 
     index: int
     task: str
@@ -40,7 +40,7 @@ def validate(suite: Suite, file: str) -> None:
     """Check every task against its kind, its house and the catalogue.
 
     Raises:
-        TaskError: naming the first fault, every task that has one, and the command that shows them all.
+        TaskError: names the first fault, the tasks that have faults, and the command that shows all faults.
     """
     if not suite.tasks:
         raise TaskError(file, "tasks", "is empty; a suite needs at least one task")
@@ -50,7 +50,7 @@ def validate(suite: Suite, file: str) -> None:
 
 
 def find_faults(suite: Suite) -> Iterator[TaskFault]:
-    """Everything that is wrong with the tasks of a suite, in its order."""
+    """All faults of a suite's tasks, in the suite's order."""
     seen: set[str] = set()
     loaded: dict[str, HouseSpec | str] = {}
     for index, task in enumerate(suite.tasks):
@@ -66,7 +66,7 @@ def find_faults(suite: Suite) -> Iterator[TaskFault]:
 
 
 def _words(found: Sequence[TaskFault], suite: Suite, file: str) -> str:
-    """The first problem, then all the tasks that have one."""
+    """The first problem, then all tasks that have a problem."""
     ids = list(dict.fromkeys(one.task for one in found))
     if len(ids) == 1:
         return found[0].problem
@@ -76,7 +76,7 @@ def _words(found: Sequence[TaskFault], suite: Suite, file: str) -> str:
 
 
 def task_faults(task: TaskSpec, house: HouseSpec) -> Iterator[tuple[str, str]]:
-    """Everything that is wrong with a task in its house: pairs of a field and a problem."""
+    """All faults of a task in its house: pairs of a field and a problem."""
     if task.house_sha256 != house.sha256:
         yield "house_sha256", f"the task was made for {task.house_sha256}, the house '{task.house}' is {house.sha256}"
         return
@@ -89,7 +89,7 @@ def task_faults(task: TaskSpec, house: HouseSpec) -> Iterator[tuple[str, str]]:
 
 
 def _house(name: str, suite: Suite) -> HouseSpec | str:
-    """The house of that name, or why there is none."""
+    """The house of that name, or why it cannot be loaded."""
     try:
         return suite.houses.load(name)
     except (UnknownName, HouseError) as error:

@@ -1,10 +1,10 @@
 """Where common sense puts each target, as data: belongs, acceptable or out of place.
 
 ``judgement.json`` has a row for each target and each kind of thing that can support it. The verdict follows from the
-row's ``share``: of the target's "in" and "on" relations in the scene priors, the share of this kind; where the priors
-do not name the kind, its share of the target's places in 195 hand-made AI2-THOR scenes. With `BELONGS` or more the
-target belongs there, with `ACCEPTABLE` or more it is acceptable, otherwise it is out of place, like a book in the
-fridge. Food in the sink is acceptable, because people wash it.
+row's ``share``: the kind's share of the target's "in" and "on" relations in the scene priors, or, if the priors do not
+name the kind, its share of the target's places in 195 hand-made AI2-THOR scenes. If the share is `BELONGS` or more, the
+target belongs there; if it is `ACCEPTABLE` or more, the place is acceptable; otherwise the target is out of place, like
+a book in the fridge. Food in the sink is acceptable, because people wash it.
 """
 
 from functools import cache
@@ -19,12 +19,12 @@ from hthor.errors import UnknownName
 Verdict = Literal["belongs", "acceptable", "out"]
 
 BELONGS, ACCEPTABLE = 0.1, 0.03
-"""Least shares of the two better verdicts: one place in ten, and one in thirty-three."""
+"""Least shares of the two better verdicts: one place in 10, and one place in 33."""
 
 
 class CommonsensePlace(Struct, frozen=True, kw_only=True):
-    """One judgement. ``basis`` says what ``share`` was counted in, and is "none" for a kind that neither source knows:
-    it will not do, but nothing is put there to be tidied up either. ``source`` names the row or the count.
+    """One judgement. ``basis`` names the source of ``share``; it is "none" for a kind that neither source has: the
+    target does not belong there, but tidying tasks do not put it there either. ``source`` names the row or the count.
     """
 
     target: str
@@ -41,7 +41,7 @@ class _File(Struct, frozen=True):
 
 @cache
 def all_places() -> tuple[CommonsensePlace, ...]:
-    """All judgements, by target."""
+    """All judgements, ordered by target."""
     data = resources.files(__package__).joinpath("judgement.json").read_bytes()
     return msgspec.json.decode(data, type=_File).rows
 
@@ -60,7 +60,7 @@ def places_of(target: str) -> dict[str, CommonsensePlace]:
 
 
 def usual_places(target: str) -> tuple[str, ...]:
-    """The kinds of things where the target may lie, the likeliest first."""
+    """The kinds of things on or in which the target may lie, the likeliest first."""
     good = [row for row in places_of(target).values() if row.verdict != "out"]
     return tuple(row.kind for row in sorted(good, key=lambda row: (-row.share, row.kind)))
 

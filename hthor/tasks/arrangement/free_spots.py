@@ -1,4 +1,4 @@
-"""A free place for one object, on furniture or on the floor, that everybody can get at."""
+"""A free place for one object, on furniture or on the floor, that every body can reach."""
 
 import functools
 import math
@@ -18,24 +18,24 @@ from hthor.types import HouseSpec, Placement, Room, Thing
 Floats = NDArray[np.float64]
 
 NEAR_M = 0.85
-"""From so near, measured on the plan, a robot with an arm gets at an object; a person gets at it from farther away."""
+"""Distance on the plan from which a robot with an arm reaches an object; a person's reach is longer."""
 LANE_M = 0.35
-"""Half the width of the ways between places on the floor: the broadest robot's radius, and a little more."""
+"""Half the width of the ways between places on the floor: slightly more than the broadest robot's radius."""
 _TRIES = 60
 
 
 def find_spot(
     house: HouseSpec, id: str, kind: str, weigh: Callable[[Thing], float], root: int, done: Sequence[Placement] = ()
 ) -> Placement | None:
-    """A place on or in furniture, clear of ``done`` and of everything else, None when none was found.
+    """A place on or in furniture, clear of ``done`` and of everything else; None when no place was found.
 
-    It rests exactly on a surface, and from free floor less than `NEAR_M` away that the house's start is joined to, the
-    avatar sees it, the fridge's door being open.
+    The object rests exactly on a surface. The avatar can see it, with the fridge's door open, from free floor that is
+    less than `NEAR_M` away and connected to the house's start.
 
     Args:
         id, kind: of the object.
-        weigh: how likely a thing is to bear it, for every thing; zero for never. A thing's surfaces share by size.
-        root: of all draws.
+        weigh: gives each thing's weight in the draw, zero for never; a thing's surfaces share it by size.
+        root: root of all draws.
     """
     rests = SupportSurfaces.of(house).rests
     areas: dict[str, float] = {}
@@ -54,8 +54,8 @@ def find_spot(
 
 
 def is_within_reach(house: HouseSpec, placement: Placement) -> bool:
-    """Whether the object can be seen and is at most `NEAR_M` away from free floor that the house's start is joined to;
-    what it lies shut in being open.
+    """Whether the object can be seen from free floor at most `NEAR_M` away that is connected to the house's start; a
+    closed thing that contains it counts as open.
     """
     ground = ReachableFloor.of(house)
     holder = next((thing for thing in house.things if thing.id == placement.support), None)
@@ -70,7 +70,7 @@ def is_within_reach(house: HouseSpec, placement: Placement) -> bool:
 def find_floor_spot(
     house: HouseSpec, id: str, kind: str, room: Room, clear: float, root: int, near: Thing | None = None
 ) -> Placement | None:
-    """A place on a room's floor with ``clear`` [m] free all round the object's middle, or None.
+    """A place on a room's floor, free within ``clear`` [m] of the object's middle, or None.
 
     With ``near`` only the places nearest to that thing are used.
     """
@@ -87,19 +87,19 @@ def find_floor_spot(
 
 
 def room_of(house: HouseSpec, thing_id: str) -> str:
-    """The id of the room that a thing stands in, empty for what is nowhere."""
+    """The id of the room that a thing stands in, empty if it is in no room."""
     return next((thing.room for thing in house.things if thing.id == thing_id), "")
 
 
 def unique_things(house: HouseSpec, kinds: Iterable[str]) -> tuple[Thing, ...]:
-    """The things of those kinds that occur only once in the house, so that "the" is unambiguous."""
+    """The things of these kinds that are the only ones of their kind in the house, so that "the" is unambiguous."""
     rows = [[thing for thing in house.things if thing.kind == kind] for kind in kinds]
     return tuple(row[0] for row in rows if len(row) == 1)
 
 
 @functools.lru_cache(maxsize=64)
 def _room_floor(house: HouseSpec, room: Room, clear: float) -> Floats:
-    """(N, 2) [m] middles of cells of a room with ``clear`` [m] free all round, from which broad bodies get about."""
+    """(N, 2) [m] middles of a room's cells that are free within ``clear`` [m], on floor that broad bodies can leave."""
     wide, lane = FreeSpace.of(house, clear, HEIGHT_M), FreeSpace.of(house, LANE_M, HEIGHT_M)
     if not lane.free.any():
         return np.zeros((0, 2))

@@ -20,7 +20,7 @@ EDGE_M = 0.01
 GAP_M = 0.01
 """Least free space around an object."""
 LOW_M, HIGH_M = 0.25, 1.45
-"""Heights of surfaces that objects are put on: what anybody reaches and sees."""
+"""Heights of surfaces that objects are put on, which everybody can reach and see."""
 _LIFT_M, _ALOFT_M = 1e-4, 1e-3
 NEAR_M = 1.0
 """Two things are near each other within this distance on the plan."""
@@ -45,10 +45,10 @@ class SupportSurface(Struct, frozen=True, kw_only=True):
 
 
 class SupportSurfaces:
-    """The resting places of a house and what already stands on them.
+    """The surfaces of a house on which objects may rest, and what already stands on them.
 
     Attributes:
-        all: every surface. rests: those at a height that objects are put on.
+        all: every surface. rests: the surfaces between `LOW_M` and `HIGH_M`, on which objects are put.
     """
 
     def __init__(self, house: HouseSpec) -> None:
@@ -63,7 +63,7 @@ class SupportSurfaces:
     @staticmethod
     @functools.lru_cache(maxsize=32)
     def of(house: HouseSpec) -> SupportSurfaces:
-        """The same as the constructor, worked out once a process."""
+        """The same as the constructor, computed once per process."""
         return SupportSurfaces(house)
 
     def fits(self, rest: SupportSurface, placement: Placement, others: Iterable[Placement]) -> bool:
@@ -71,14 +71,14 @@ class SupportSurfaces:
         return rests_on(placement, rest) and self._clear(placement, others)
 
     def lies(self, house: HouseSpec, placement: Placement, others: Iterable[Placement]) -> bool:
-        """Whether the object lies on the floor of a room of the house, whole, and touches nothing."""
+        """Whether the whole object lies on the floor of one room of the house, and touches nothing."""
         body = footprint(placement)
         corners = rectangle(body.centre, body.size, body.yaw)
         in_room = any(all(inside(corner, room.polygon) for corner in corners) for room in house.rooms)
         return in_room and abs(body.low - _LIFT_M) <= _ALOFT_M and self._clear(placement, others)
 
     def within(self, placement: Placement, deep: float) -> str:
-        """Id of a thing of the house that the object is more than ``deep`` [m] in, empty for none."""
+        """Id of a thing of the house that the object overlaps by more than ``deep`` [m], empty if there is none."""
         body = footprint(placement)
         rivals = (number for number in self._about(body) if penetration(body, self._solids[number]) > deep)
         return next((self._owners[number] for number in rivals), "")
@@ -89,7 +89,7 @@ class SupportSurfaces:
         return not any(overlap_depth(body, rival) > 0.0 for rival in [*rivals, *(footprint(other) for other in others)])
 
     def _about(self, body: Slab) -> list[int]:
-        """Numbers of the solids that may touch a box: a circle round each meets a circle round it."""
+        """Indices of the solids that may touch a box: the circles around both footprints overlap."""
         reach = math.hypot(*body.size) / 2 + _LIFT_M
         gaps = np.hypot(self._x - body.centre[0], self._y - body.centre[1])
         return list(map(int, np.flatnonzero(gaps < reach + self._radius)))
@@ -101,7 +101,7 @@ def supports_of(thing: Thing) -> tuple[SupportSurface, ...]:
 
 
 def as_thing(placement: Placement) -> Thing:
-    """An object of a task as if it were a thing of its house, for what rests on it."""
+    """An object of a task as a thing of its house, so that another object can rest on it."""
     size = catalog.kind(placement.kind).size
     return Thing(
         id=placement.id,
@@ -115,7 +115,7 @@ def as_thing(placement: Placement) -> Thing:
 
 
 def rests_on(placement: Placement, rest: SupportSurface, slip: float = 1e-6) -> bool:
-    """Whether the object's bottom lies on the surface, its footprint `EDGE_M` inside, its top under the clearance."""
+    """Whether the object's bottom is on the surface, its footprint `EDGE_M` inside, its top under the clearance."""
     size = catalog.kind(placement.kind).size
     x, y, z = to_local(placement.position, rest.thing.centre, rest.thing.yaw)
     turn = placement.yaw - rest.thing.yaw
@@ -151,7 +151,7 @@ def place_on_floor(kind: str, place: Vec2, yaw: float) -> Placement:
 
 
 def footprint(placement: Placement, gap: float = 0.0) -> Slab:
-    """The object as an upright box, wider by ``gap`` [m] all round and lifted off what it rests on."""
+    """The object as an upright box, wider by ``gap`` [m] on all sides and lifted slightly off its support."""
     w, d, h = catalog.kind(placement.kind).size
     x, y, z = placement.position
     return Slab((x, y), (w + 2 * gap, d + 2 * gap), placement.yaw, z - h / 2 + _LIFT_M, z + h / 2 + gap)

@@ -1,7 +1,7 @@
-"""The floor an all-knowing person walks on: where they can stand to see, to reach and to put down.
+"""The floor that an omniscient person walks on: where they can stand to see, to reach and to put down.
 
-Places are told by cells of the free-space grid. A person anywhere in a cell counts as standing at its middle, so every
-range is widened and every leg of a walk shortened by half a cell's diagonal: what comes out is never too long.
+Places are cells of the free-space grid. A person anywhere in a cell counts as standing at its middle, so every range
+is widened and every leg of a walk is shortened by half a cell's diagonal: the computed walks are never too long.
 """
 
 from __future__ import annotations
@@ -21,13 +21,13 @@ from hthor.houses.space.geodesic import DistanceField, Geodesics
 from hthor.types import HouseSpec, Placement, Thing, Vec2
 
 RADIUS_M = 0.20
-"""Of the person's avatar, as far as tasks need it: an all-knowing person with this body sets T*."""
+"""Radius of the person's avatar. T* follows from an omniscient person with this body and the sizes below."""
 HEIGHT_M = 1.75
 EYE_M = 1.6
 REACH_M = 1.2
 """Horizontal reach [m] from the body's axis, to an object's centre or to the nearest point of a surface."""
 START_MARGIN_M = 0.30
-"""Free floor around the place where any body starts."""
+"""Radius of free floor around every start."""
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
 
@@ -45,12 +45,12 @@ class ReachableFloor:
     @staticmethod
     @functools.lru_cache(maxsize=32)
     def of(house: HouseSpec) -> ReachableFloor:
-        """The same as the constructor, worked out once a process."""
+        """The same as the constructor, computed once per process."""
         return ReachableFloor(house)
 
     @functools.cached_property
     def joined(self) -> Bools:
-        """The floor that the house's start is joined to."""
+        """The floor that is connected to the house's start."""
         return self.space.component(*self.space.nearest_free(self.house.start.x, self.house.start.y))
 
     def seeing(
@@ -79,7 +79,7 @@ class ReachableFloor:
         return self._around(thing.centre[:2], thing.size[:2], thing.yaw)
 
     def serving(self, kind: str) -> Bools:
-        """Where the nearest point of any surface of any thing of the kind is within reach."""
+        """Where the nearest point of any surface of any thing of this kind is within reach."""
         mask = np.zeros(self.space.free.shape, dtype=bool)
         for thing in self.house.things:
             if thing.kind == kind:
@@ -96,7 +96,7 @@ class ReachableFloor:
         return self._around(centre, (0.0, 0.0), 0.0, radius)
 
     def _around(self, centre: Vec2, size: Vec2, yaw: float, radius: float = REACH_M + SLACK_M) -> Bools:
-        """Free cells with their middle within ``radius`` of a turned rectangle."""
+        """Free cells whose middle is within ``radius`` of a turned rectangle."""
         columns, rows = self._axes
         dx, dy = columns[None, :] - centre[0], rows[:, None] - centre[1]
         cos, sin = math.cos(yaw), math.sin(yaw)
@@ -130,7 +130,7 @@ class Walk:
         return np.maximum(self._left(np.asarray(starts, dtype=float).reshape(-1, 2), 0) - slack, 0.0)
 
     def _left(self, places: Floats, stop: int) -> Floats:
-        """What is left of the walk at ``places`` when the stops before ``stop`` are done."""
+        """(N,) Length of the rest of the walk from ``places``, with the stops before ``stop`` done."""
         if stop == len(self._stops):
             return np.zeros(len(places))
         lengths = self._fields[stop].at(places)
@@ -146,7 +146,7 @@ class Walk:
 
 
 def entry_cells(mask: Bools, free: Bools) -> Bools:
-    """The cells of a mask through which one enters it."""
+    """The cells of a mask through which a walk can enter it."""
     out = np.zeros_like(mask)
     outside = free & ~mask
     out[1:, :] |= outside[:-1, :]
@@ -158,7 +158,7 @@ def entry_cells(mask: Bools, free: Bools) -> Bools:
 
 @functools.lru_cache(maxsize=64)
 def lines_of_sight(house: HouseSpec, opened: frozenset[str]) -> visibility.LinesOfSight:
-    """Lines of sight past every opaque part of the house's walls and things, worked out once a process.
+    """Lines of sight past every opaque part of the house's walls and things, computed once per process.
 
     The doors of things whose ids are ``opened`` are left out, as if they were open.
     """

@@ -1,4 +1,4 @@
-"""One relation of a scene graph as a pose: where a target can be on, in or near what it is to be."""
+"""Finds a pose for one relation of a scene graph: a place for a target on, in or near its reference."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -15,17 +15,17 @@ from hthor.tasks.arrangement.reachability import ReachableFloor
 from hthor.types import HouseSpec, Placement, Thing, Vec2
 
 TRIES = 60
-"""Poses that are tried for a relation."""
+"""How many poses are tried for a relation."""
 _ODD = 0.005
-"""The weight of surfaces where people do not put an object, where it is to be near something and nothing else is."""
+"""Weight of surfaces on which people do not put an object, for objects that only have to be near something."""
 
 
 class PlacementRequest(Struct, frozen=True, kw_only=True):
-    """What is to be placed how: a relation, the kind of thing that the target must not rest on or in, and the ids of
-    the objects placed before that have to be near it.
+    """A target to be placed: its relation ``row``, the kind ``ban`` of things that it must not rest on or in, and
+    ``waiting``, the ids of objects placed before that have to be near it.
 
-    ``careful`` asks that what is near is in the same room, and that nothing rests on what itself can be picked up, but
-    where the relation says so, and what that lies on is not banned either.
+    ``careful`` adds rules: what is near is in the same room; nothing rests on a thing that can be picked up, unless the
+    relation says so, nor on such a thing that itself lies on a banned kind.
     """
 
     row: Triplet
@@ -38,11 +38,11 @@ class PlacementRequest(Struct, frozen=True, kw_only=True):
 def find_placement(
     house: HouseSpec, root: int, wish: PlacementRequest, done: Sequence[Placement], *, first: bool = False
 ) -> Placement | None:
-    """A pose for one relation, None where none was found.
+    """A pose for one relation; None when no pose was found.
 
     Args:
-        root: of all draws. done: what is placed already.
-        first: whether an object may also be placed where what it is to be near to is still to come.
+        root: root of all draws. done: the objects placed so far.
+        first: whether an object may be placed before the target that it has to be near.
     """
     row = wish.row
     for rest, mark, attempt in _rests(house, root, wish, done, first):
@@ -60,7 +60,7 @@ def _rests(
 ) -> Iterator[tuple[SupportSurface, Thing | Placement | None, int]]:
     """Surfaces to try, large ones more often, each with what the object must be near to, and the attempt's number.
 
-    What is only to be near something rests where people put such an object, if there is such a place.
+    An object that only has to be near something rests where people put such objects, if there is such a place.
     """
     relation, reference = wish.row.relation, wish.row.reference
     pairs = _pairs(house, wish, done, first)
@@ -76,7 +76,7 @@ def _rests(
 def _pairs(
     house: HouseSpec, wish: PlacementRequest, done: Sequence[Placement], first: bool
 ) -> list[tuple[SupportSurface, Thing | Placement | None]]:
-    """Surfaces that would do, each with what the object is near to there."""
+    """Surfaces that suit the relation, each with the thing or object that has to be near, or None."""
     reference = wish.row.reference
     rests = [rest for rest in SupportSurfaces.of(house).rests if rest.thing.kind != wish.ban]
     if wish.careful and wish.ban:
@@ -100,7 +100,7 @@ def is_near_enough(
     wish: PlacementRequest,
     done: Sequence[Placement],
 ) -> bool:
-    """Whether a placement is near to what it is to be near to, and to what was to be near to it."""
+    """Whether a placement is near its reference ``mark``, and near the objects that wait for it."""
     place = (placement.position[0], placement.position[1])
     marks = [*(() if mark is None else (mark,)), *(one for one in done if one.id in wish.waiting)]
     if any(_distance(place, one) > NEAR_M for one in marks):
@@ -109,14 +109,14 @@ def is_near_enough(
 
 
 def is_reachable(house: HouseSpec, placement: Placement, rest: SupportSurface) -> bool:
-    """Whether the person can stand somewhere, all that is shut being open, to see it close by and to reach it."""
+    """Whether the person can stand at a place to see and reach the object, once the thing that contains it is open."""
     ground = ReachableFloor.of(house)
     opened = frozenset({rest.thing.id}) if rest.surface.inside else frozenset[str]()
     return bool((ground.seeing(placement, opened) & ground.touching(placement) & ground.joined).any())
 
 
 def _beneath(house: HouseSpec, thing: Thing) -> str:
-    """The kind of what a thing lies on, empty for what stands on the floor."""
+    """The kind of the thing that a thing lies on, empty if it stands on the floor."""
     return next((other.kind for other in house.things if other.id == thing.parent), "")
 
 

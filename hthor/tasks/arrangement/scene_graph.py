@@ -1,4 +1,4 @@
-"""Scene graphs: which relation of the priors puts each target where, drawn by weight."""
+"""Scene graphs: for each target, the relation of the priors that decides its place, drawn by weight."""
 
 from collections.abc import Iterator, Mapping, Set
 from functools import cache
@@ -30,7 +30,7 @@ def draw_triplet(target: str, kinds: Set[str], root: int) -> Triplet:
 
     Raises:
         UnknownName: when ``target`` is not one of the six.
-        ValueError: when no reference of the target is there.
+        ValueError: when no reference of the target is among ``kinds``.
     """
     first = next(triplets_in_random_order(target, kinds, root), None)
     if first is None:
@@ -56,9 +56,9 @@ def sample_graph(kinds: Set[str], root: int, fixed: Triplet | None = None) -> di
 
 
 def placement_order(graph: Mapping[str, Triplet], root: int) -> list[str]:
-    """The targets in an order in which each comes after what it is near, where the graph lets it, mixed otherwise.
+    """The targets in random order, but each after the target that it has to be near, if the graph allows that.
 
-    In a ring of targets that are near one another, one comes first and the last has to be near both neighbours.
+    In a ring of targets that are near one another, one comes first, and the last has to be near both neighbours.
     """
     left = [catalog.TARGETS[number] for number in seeds.shuffled(len(catalog.TARGETS), root, "order")]
     done: list[str] = []
@@ -70,7 +70,7 @@ def placement_order(graph: Mapping[str, Triplet], root: int) -> list[str]:
 
 
 def find_triplet(target: str, relation: str, reference: str) -> Triplet:
-    """The row of the table.
+    """The row of the priors' table.
 
     Raises:
         KeyError: when the table has no such row. UnknownName: when ``target`` is not one of the six.

@@ -1,9 +1,9 @@
 """Spreading the six targets over a house as the scene priors say.
 
-Where a house has no place for a relation, a thing brought along or the floor helps. Where a tomato is to be on a plate
-and shall go to the dining table, and the house's only plate is there, the task brings another plate, elsewhere. Where
-the remote control is to be near the television and shall go to the TV stand, and no other surface is within a metre, it
-has slipped to the floor.
+If a house has no place for a relation, the task adds a thing or uses the floor. For example, a tomato has to be on a
+plate and its destination is the dining table, where the house's only plate is: the task adds another plate, elsewhere.
+Or the remote control has to be near the television, its destination is the TV stand, and no other surface is within a
+metre: it lies on the floor.
 """
 
 import math
@@ -36,21 +36,21 @@ from hthor.tasks.arrangement.relation_placement import (
 from hthor.types import HouseSpec, Placement
 
 BROUGHT = "brought"
-"""Begins the id of a thing that a task brings along, such as ``brought_plate``."""
+"""Begins the id of a thing that a task adds to the house, such as ``brought_plate``."""
 _ARM_M = 2.1
-"""From the eye to what lies on the floor within reach, at most."""
+"""Greatest distance from the eye to an object on the floor within reach."""
 CODE_PART = "tools"
 
 _MOST_TRIES = 2000
-"""Poses that are tried for a relation that a task is about."""
+"""How many poses are tried for the relation of a task's own target."""
 _GRAPHS = 40
-"""Scene graphs that are tried before a relation counts as impossible."""
+"""How many scene graphs are tried before a relation counts as impossible."""
 
 __all__ = ["NEAR_M", "arrange"]
 
 
 def on_floor(house: HouseSpec, root: int, wish: PlacementRequest, done: Sequence[Placement]) -> Placement | None:
-    """A pose on the floor near a thing of the house, None where none was found."""
+    """A pose on the floor near a thing of the house; None when no pose was found."""
     row, ground = wish.row, ReachableFloor.of(house)
     marks = [thing for thing in house.things if thing.kind == row.reference]
     for attempt in range(wish.tries if marks and row.relation == "near" else 0):
@@ -70,8 +70,8 @@ def on_floor(house: HouseSpec, root: int, wish: PlacementRequest, done: Sequence
 def on_brought(
     house: HouseSpec, root: int, wish: PlacementRequest, done: Sequence[Placement]
 ) -> tuple[Placement, Placement] | None:
-    """The target on or near a thing brought along, and that thing, which lies where people put the target; None where
-    that has no place either.
+    """The target on or near an extra thing, and that thing, which lies where people put the target; None if that has no
+    place either.
     """
     row, shelves = wish.row, SupportSurfaces.of(house)
     if not catalog.kind(row.reference).pickable:
@@ -99,7 +99,7 @@ def _with(
     rest: SupportSurface,
     done: Sequence[Placement],
 ) -> Placement | None:
-    """The target near the thing brought along, or on it; None where that has no room."""
+    """The target near the extra thing ``under``, or on it; None if it has no room there."""
     if wish.row.relation == "near":
         return find_placement(house, root, msgspec.structs.replace(wish, tries=TRIES), [*done, under])
     top = supports_of(as_thing(under))[0]
@@ -116,24 +116,24 @@ def arrange(
     fixed: Triplet | None = None,
     serial: bool = False,
 ) -> tuple[Placement, ...]:
-    """A placement for each target, in the catalogue's order, and for what a task brings along.
+    """A placement for each target, in the catalogue's order, then for the things that the task adds.
 
     A scene graph is drawn by the priors' weights among the triplets whose reference the house or the task has; then for
     each relation a pose that rests exactly on a surface, touches nothing, and can be reached and seen by the person's
-    avatar, the fridge's door being open. What is near something is in the same room. Where a relation has no such pose,
-    that target's is drawn again, unless it is ``fixed``: then the whole graph is, but where no graph helps because of
-    what is banned, see `hthor.tasks.arrangement.fallback_placement`.
+    avatar with the fridge's door open. Objects near each other are in the same room. If a relation has no such pose,
+    the target's relation is drawn again; if it is ``fixed``, `on_brought` and `on_floor` are tried if there is a ban,
+    then the whole graph is drawn again.
 
     Args:
         house: the floor plan.
-        root: of all draws.
+        root: root of all draws.
         bans: for a target, the kind of thing that it must not rest on or in.
         fixed: a triplet that must hold.
-        serial: draw one target after the other, with what is placed by then as the targets to be near to, which makes
-            that rarer than the priors say, through walls too, and record nothing of it: the manner of ``smoke``.
+        serial: draw one target after the other, as ``smoke`` does: a target is near only targets placed before it
+            (so more rarely than the priors say), also through walls, and the placement does not record it.
 
     Raises:
-        HthorError: when a target fits nowhere, or ``fixed`` cannot be.
+        HthorError: when a target has no place, or ``fixed`` is impossible.
     """
     bans = bans or {}
     if serial:
@@ -169,7 +169,7 @@ def _serial(house: HouseSpec, root: int, bans: Mapping[str, str]) -> list[Placem
 
 
 def _spread(house: HouseSpec, root: int, bans: Mapping[str, str], fixed: Triplet | None) -> list[Placement] | None:
-    """All targets by one scene graph, None where a target has no place."""
+    """All targets by one scene graph; None when a target has no place."""
     kinds = scene_graph.kinds_present(house)
     if not all(scene_graph.applicable_triplets(target, kinds) for target in catalog.TARGETS):
         return None
@@ -198,7 +198,7 @@ def _spread(house: HouseSpec, root: int, bans: Mapping[str, str], fixed: Triplet
 
 
 def _makeshift(house: HouseSpec, root: int, wish: PlacementRequest, done: Sequence[Placement]) -> tuple[Placement, ...]:
-    """What helps where the house's own surfaces do not because some are banned; () where nothing does."""
+    """Placements off the house's own surfaces, where a ban leaves no place on these; () if there are none either."""
     if not wish.ban or wish.row.reference in catalog.TARGETS:
         return ()
     both = on_brought(house, root, wish, done)

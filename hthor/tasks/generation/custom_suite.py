@@ -15,17 +15,17 @@ from hthor.tasks.generation.suite_specs import FIND, MOVE, SuiteSpec, TaskOrder,
 from hthor.types import Goal, HouseSpec, TaskSpec
 
 VERSION = 1
-"""Grows when the same recipe gives another suite."""
+"""Increased when the same recipe gives a different suite."""
 SEARCHES = 0.26
-"""The share of searches where no kind is given, as in the suite ``standard``."""
+"""The share of searches if no kind is given, as in the suite ``standard``."""
 _ROOT = 4
 _LAPS = 10
-"""How often a task is drawn before its goal is given up in its house."""
+"""How often a task is drawn before its goal is abandoned in its house."""
 
 
 class Recipe(Struct, frozen=True, kw_only=True):
-    """A custom suite to be made: its name, how many ``tasks`` in each house, their ``kinds`` by name (none: searches
-    and deliveries as in ``standard``), their difficulty (empty: any), and the seed of all random draws.
+    """A custom suite to be made: its name, how many ``tasks`` in each house, the names of their ``kinds`` (if empty,
+    searches and deliveries as in ``standard``), their difficulty (empty for any), and the seed of all random draws.
     """
 
     name: str
@@ -36,10 +36,10 @@ class Recipe(Struct, frozen=True, kw_only=True):
 
 
 def make_tasks(recipe: Recipe, house: HouseSpec, possible: IsPossible = accept_any) -> tuple[TaskSpec, ...]:
-    """The tasks of one house, no two of them alike; what is not ``possible`` is drawn again.
+    """The tasks of one house, no two of them alike; tasks that are not ``possible`` are drawn again.
 
     Raises:
-        HthorError: when the house has no room for so many.
+        HthorError: when the house has no room for that many tasks.
     """
     orders = functools.partial(_orders, recipe)
     spec = SuiteSpec(name=recipe.name, version=VERSION, root=seeds.derive(_ROOT, recipe.seed), houses=(), orders=orders)
@@ -50,7 +50,7 @@ def make_tasks(recipe: Recipe, house: HouseSpec, possible: IsPossible = accept_a
 
 
 def _orders(recipe: Recipe, spec: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
-    """What is to be made in a house."""
+    """The tasks to be made in a house."""
     rows: list[TaskOrder] = []
     for kind, count in _counts(recipe):
         if not count:
@@ -82,7 +82,7 @@ class _House:
         self.done: list[TaskSpec] = []
 
     def add(self, order: TaskOrder) -> None:
-        """Make one more task, with another goal where the ordered one cannot be met in this house.
+        """Make one more task, with another goal if the ordered goal cannot be met in this house.
 
         Raises:
             HthorError: when no goal gives a task.
@@ -109,7 +109,7 @@ class _House:
         raise HthorError(f"{named}: {reason}. Ask for fewer or for others.")
 
     def _goals(self, order: TaskOrder) -> list[Goal | None]:
-        """The ordered goal, then the others of its kind, without those that were given up before."""
+        """The ordered goal, then the others of its kind, without goals that were abandoned before."""
         if order.goal is None:
             return [None]
         known = plugins.load("task kind", order.kind).goals(self._house)

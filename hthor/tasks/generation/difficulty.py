@@ -1,4 +1,4 @@
-"""How difficult a task is: its least time, and how many likelier places there are to search before the target's."""
+"""How difficult a task is: its least time, and how many likelier places a person searches before the target's."""
 
 import functools
 from collections import Counter, defaultdict
@@ -17,38 +17,38 @@ from hthor.types import HouseSpec, Placement, TaskSpec
 Level = Literal["easy", "medium", "hard"]
 
 SEARCH_S = 20.0
-"""What it is worth [s of the least time] to look at all places where people expect the target before its own: about as
-much as the success of people without a robot says."""
+"""[s] How much a task's score rises if all other expected places are searched first: about as much as the success of
+people without a robot suggests."""
 MEDIUM_S, HARD_S = 22.0, 29.0
-"""Where medium and hard begin: about a third of all tasks of `navigation` and `manipulation` lie in each stratum."""
+"""Scores at which medium and hard begin: each stratum has about a third of `navigation` and `manipulation`."""
 _PACE_M_S, _LOOK_S = 0.4, 5.0
-"""Speed of the searcher, and how long [s] it takes to look at a place: our choice."""
+"""Speed of the searcher [m/s] and time to look at a place [s]: chosen by us."""
 
 
 class Difficulty(Struct, frozen=True, kw_only=True):
-    """The ``least`` time [s], and the share [0, 1] of the priors' mass that a searcher meets before the target."""
+    """The ``least`` time [s], and the share [0, 1] of the priors' mass that is searched ``before`` the target."""
 
     least: float
     before: float
 
     @property
     def score(self) -> float:
-        """Both in one number [s]."""
+        """The least time plus `SEARCH_S` times ``before`` [s]."""
         return self.least + SEARCH_S * self.before
 
     @property
     def level(self) -> Level:
-        """The stratum."""
+        """The stratum of this score."""
         return "easy" if self.score < MEDIUM_S else "medium" if self.score < HARD_S else "hard"
 
 
 def level_of(task: TaskSpec, house: HouseSpec, kind: TaskKind | None = None) -> Level:
-    """The stratum of a task in its house; ``kind`` is the task's, found by its name when absent."""
+    """The stratum of a task in its house; ``kind`` is the task's kind, loaded by its name if None."""
     return measure_difficulty(task, house, kind).level
 
 
 def measure_difficulty(task: TaskSpec, house: HouseSpec, kind: TaskKind | None = None) -> Difficulty:
-    """What the stratum follows from; of several targets the mean."""
+    """The measures that give a task's stratum; averaged over several targets."""
     own: TaskKind = kind or plugins.load("task kind", task.kind)
     wanted = {job.target for job in task.goal.todo}
     targets = [placement for placement in task.objects if placement.id in wanted]
@@ -59,7 +59,7 @@ def measure_difficulty(task: TaskSpec, house: HouseSpec, kind: TaskKind | None =
 def _before(task: TaskSpec, target: Placement, house: HouseSpec) -> float:
     """The share [0, 1] of the prior mass that a sensible searcher looks at before the target's place.
 
-    Places are searched by mass per second of walking there from the start and looking; ties count by half.
+    Places are searched in order of mass per second of walking there from the start and looking; ties count half.
     """
     mass = prior_mass(house, target.kind)
     ways = _ways(house, (task.human_start.x, task.human_start.y))
@@ -74,10 +74,10 @@ def _before(task: TaskSpec, target: Placement, house: HouseSpec) -> float:
 
 @functools.lru_cache(maxsize=256)
 def prior_mass(house: HouseSpec, kind: str) -> dict[str, float]:
-    """By id of a house's things, how much of the priors' mass of a kind of object lies there.
+    """How much of the priors' mass of a kind of object lies at each thing of a house, by the thing's id.
 
-    The weight of a triplet is shared among the things of its reference's kind; what is near another target is where
-    that one is *on* or *in*. For kinds without priors all surfaces count the same.
+    The weight of a triplet is shared among the things of its reference's kind; the weight of "near another target" goes
+    to the things that the other target is *on* or *in*. For kinds without priors, all surfaces count the same.
     """
     if kind not in catalog.TARGETS:
         return {thing.id: 1.0 for thing in house.things if catalog.kind(thing.kind).rests(thing.size)}
@@ -103,7 +103,7 @@ def _ways(house: HouseSpec, start: tuple[float, float]) -> dict[str, float]:
 
 @functools.lru_cache(maxsize=32)
 def _beside(house: HouseSpec) -> NDArray[np.float64]:
-    """(N, 2) [m] for each thing the place nearest to its middle where somebody can stand."""
+    """(N, 2) [m] For each thing, the place nearest to its middle where a person can stand."""
     space = ReachableFloor.of(house).space
     floor = space.component(*space.nearest_free(house.start.x, house.start.y))
     return np.array([space.nearest_free(*thing.centre[:2], floor) for thing in house.things]).reshape(-1, 2)

@@ -18,17 +18,17 @@ ArePossible = Callable[[Sequence[TaskSpec]], Sequence[bool]]
 
 
 def make_fresh_suite(name: str, root: int, count: int, possible: ArePossible) -> Suite:
-    """A suite of so many tasks by the recipe of one of hthor's own, which shares no draw with it.
+    """A suite of ``count`` new tasks by the recipe of one of hthor's own suites, with which it shares no draw.
 
     Houses, kinds of task, goals and difficulty follow the specification; arrangements and starts are new. A task that
     cannot be done is drawn again.
 
     Args:
-        name: of a suite of hthor's own. root: what everything is drawn from.
+        name: a suite of hthor's own. root: root of all draws.
 
     Raises:
         UnknownName: when no recipe has that name.
-        HthorError: when the recipe does not give so many tasks.
+        HthorError: when the recipe does not give that many tasks.
     """
     spec = _spec(name)
     again = msgspec.structs.replace(spec, root=seeds.derive(spec.root, "fresh", root), redrawn=())
@@ -53,7 +53,7 @@ def _spec(name: str) -> SuiteSpec:
 
 
 def _drafts(spec: SuiteSpec, numbers: Sequence[int], lap: int) -> Iterator[tuple[int, TaskSpec]]:
-    """A task for each of these numbers, as far as its house takes one: of as many houses and orders as there are."""
+    """A task for each of these numbers, spread over all houses and orders; left out if its house has no room."""
     shelves = [(house, order) for house in spec.houses for order in spec.orders(spec, houses.load(house))]
     order_of = seeds.shuffled(len(shelves), spec.root, "orders")
     for number in numbers:

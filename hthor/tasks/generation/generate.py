@@ -1,7 +1,7 @@
 """Making tasks and suites of them: goals, arrangements and starts, drawn by name.
 
-``python -m hthor.tasks.generation.generate smoke`` writes ``suites/data/smoke.json`` again, byte for byte the same as
-long as the houses, the catalogue, the rules and this code are. A second argument names another file to write.
+``python -m hthor.tasks.generation.generate smoke`` writes ``suites/data/smoke.json`` again, with the same bytes as long
+as the houses, the catalogue, the rules and this code stay the same. A second argument names another file to write.
 """
 
 import sys
@@ -25,24 +25,24 @@ from hthor.tasks.suites import library
 from hthor.types import Goal, HouseSpec, Placement, TaskSpec
 
 EASY_S, HARD_S = 4.0, 20.5
-"""Least times that the easiest and the hardest task of a house are aimed at; a small house falls short of these."""
+"""Least times intended for the easiest and the hardest task of a house; a small house does not reach the latter."""
 _CLOSE_S = 0.5
 Split = Literal["", "seen", "new"]
 _TRIES = 20
 
 
 def build_suite(spec: SuiteSpec) -> Suite:
-    """The suite that a specification describes: its houses' tasks in turn, the first of each, then the second of each.
+    """The suite that a specification describes: the first task of each house, then the second of each, and so on.
 
     Raises:
-        HthorError: when a house cannot take one of its tasks.
+        HthorError: when a house has no room for one of its tasks.
     """
     columns = [house_tasks(spec, houses.load(name)) for name in spec.houses]
     return make_suite(spec.name, spec.version, tuple(in_turn(columns)))
 
 
 def house_tasks(spec: SuiteSpec, house: HouseSpec) -> tuple[TaskSpec, ...]:
-    """One house's tasks of a spec."""
+    """The tasks of a specification in one house."""
     return tuple(make_ordered_task(spec, house, order) for order in spec.orders(spec, house))
 
 
@@ -52,7 +52,7 @@ def make_ordered_task(
     """One task of a suite, independent of its other tasks.
 
     Args:
-        lap: how often it was drawn before; as `SuiteSpec.redrawn` says when None. split: as `make_task`.
+        lap: how often it was drawn before; None for the number in `SuiteSpec.redrawn`. split: as for `make_task`.
     """
     word, laps = ("again", dict(spec.redrawn).get(order.name, 0)) if lap is None else ("lap", lap)
     return make_task(
@@ -91,20 +91,20 @@ def make_task(
     """A task of any kind, fixed by ``root`` and ``name``.
 
     Args:
-        goal: what to do; None lets the kind draw it, with an arrangement of its own (`TaskKind.draw`).
+        goal: the goal; if None, the kind draws a goal and an arrangement (`TaskKind.draw`).
         name: the task's id, such as ``navigation/alder/apple-in-fridge``.
         fixed: a triplet that must hold for the goal's target.
-        share: how hard, in [0, 1]: the least time is aimed at that share of the way from `EASY_S` to `HARD_S`; drawn
+        share: how hard, in [0, 1]: the intended least time is at that share of the way from `EASY_S` to `HARD_S`; drawn
             when None.
-        robots: for how many robots there are starts.
-        candidates: of how many arrangements the one whose time is nearest to that is taken, unless one is near enough.
-        level: the stratum of difficulty that it must be of, if any.
-        split: whether the house is one of the ten scenes; empty when the suite does not say.
-        serial: as `hthor.tasks.arrangement.target_arrangement.arrange` has it.
-        record_difficulty: whether the task says how difficult it is.
+        robots: how many robots have start poses.
+        candidates: how many arrangements are compared, to take the nearest to that time; a near one ends the search.
+        level: the required stratum of difficulty, empty for any.
+        split: whether the house is one of the ten scenes; empty when the suite does not record that.
+        serial: as for `hthor.tasks.arrangement.target_arrangement.arrange`.
+        record_difficulty: whether the task records its difficulty.
 
     Raises:
-        HthorError: when the house has no room for it: no arrangement, or no place to start from.
+        HthorError: when the house has no arrangement or no start poses for it.
     """
     hardness = seeds.draw(root, name, "share") if share is None else share
     wanted = EASY_S + hardness * (HARD_S - EASY_S)

@@ -1,6 +1,6 @@
 """Suites made from a secret salt, in newly generated houses.
 
-Everything is derived from the salt and the suite's name: each house and its tasks from roots of their own, under ids
+Everything is derived from the salt and the suite's name: each house and its tasks have their own roots, and ids
 that reveal nothing. So the same salt gives the same bytes, and knowing one house does not help to predict the next.
 """
 
@@ -32,10 +32,10 @@ from hthor.tasks.suites.commitment import COMMITMENT, Commitment, Salt
 from hthor.types import HouseSpec, TaskSpec
 
 VERSION = 1
-"""Grows when the same salt gives another suite."""
+"""Increased when the same salt gives a different suite."""
 SUITE = "suite.json"
 ROOMS = (4, 5, 5, 4, 6, 4, 5, 7, 6, 5)
-"""Rooms of the first ten houses, and of every ten after them: as many of each size as among the scenes."""
+"""Numbers of rooms of each ten houses in a row, distributed as those of the ten scenes."""
 SEARCHES = 0.26
 """The share of searches among the tasks of a house, as in the suite ``standard``."""
 _TRIES = 40
@@ -54,7 +54,7 @@ MapHouses = Callable[[Callable[["HouseOrder"], "HouseTasks"], Iterable["HouseOrd
 
 
 class Proof(Struct, frozen=True, kw_only=True):
-    """Proves what is drawn: ``house`` returns what is wrong with a house, ``task`` whether a task can be done in it."""
+    """Checks the draws: ``house`` returns the findings about a house, ``task`` whether a task can be done in it."""
 
     house: Callable[[HouseSpec], Sequence[Finding]]
     task: IsPossible
@@ -81,7 +81,7 @@ class HouseTasks(Struct, frozen=True, kw_only=True):
 def write_suite(
     order: SuiteOrder, salt: Salt, folder: Path, files: Mapping[str, bytes], made_with: Mapping[str, str]
 ) -> Path:
-    """Write a suite's files to its folder, and the commitment to them and to the salt; gives the commitment's path."""
+    """Write a suite's files and the commitment to them and to the salt; returns the commitment's path."""
     for path, data in files.items():
         jsonio.write(folder / path, data)
     jsonio.write(folder / COMMITMENT, jsonio.pretty(make_commitment(order, salt, files, made_with)))
@@ -107,7 +107,7 @@ def make_files(order: SuiteOrder, salt: Salt, proof: Proof, each: MapHouses = ma
     """The files of a suite by their path in its folder: ``suite.json`` and ``houses/*.json``.
 
     Raises:
-        HthorError: when the order cannot be met.
+        HthorError: when the order is impossible.
     """
     parts = list(each(functools.partial(make_house_tasks, proof=proof), house_orders(order, salt)))
     columns = [[_named(task, order, salt, number) for number, task in enumerate(one.tasks)] for one in parts]
@@ -119,7 +119,7 @@ def house_orders(order: SuiteOrder, salt: Salt) -> tuple[HouseOrder, ...]:
     """The houses to be made for an order, with their ids and roots derived from the salt.
 
     Raises:
-        HthorError: when the order cannot be met.
+        HthorError: when the order is impossible.
     """
     _check(order)
     found = []
@@ -144,7 +144,7 @@ def make_house_tasks(lot: HouseOrder, proof: Proof) -> HouseTasks:
     """One house and its tasks, from the first root that gives a valid house with room for all of them.
 
     Raises:
-        HthorError: when no root does.
+        HthorError: when no root gives such a house.
     """
     problem = ""
     for house_root, tasks_root in lot.roots:
@@ -216,7 +216,7 @@ def check_name(name: str) -> None:
     """Check that no suite of hthor's own has the name.
 
     Raises:
-        HthorError: when one has it.
+        HthorError: when such a suite exists.
     """
     if name in library.suite_names():
         raise HthorError(f"'{name}' is a suite of hthor's own; choose another name, such as official-2027a.")
@@ -226,7 +226,7 @@ def check_salt_outside(path: Path, folder: Path) -> None:
     """Check that a salt is not in the folder that will be published.
 
     Raises:
-        TaskError: when it is.
+        TaskError: when it is in that folder.
     """
     if path.resolve().is_relative_to(folder.resolve()):
         raise TaskError(str(path), "$", f"the salt is in {folder}, which will be published; keep it elsewhere")

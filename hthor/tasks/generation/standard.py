@@ -1,7 +1,7 @@
 """The suite ``standard``: 2000 tasks in the ten scenes and the ten unseen houses.
 
-``python -m hthor.tasks.generation.standard`` writes ``suites/data/standard.json`` again, byte for byte the
-same while houses, catalogue, rules and task generation are the same. An argument names another file to write.
+``python -m hthor.tasks.generation.standard`` writes ``suites/data/standard.json`` again, with the same bytes while
+houses, catalogue, rules and task generation are the same. An argument names another file to write.
 """
 
 import math
@@ -26,7 +26,7 @@ from hthor.types import HouseSpec, TaskSpec
 UNSEEN = ("aspen", "beech", "cherry", "fir", "holly", "larch", "oak", "pine", "spruce", "yew")
 """The ten houses that are not among the scenes."""
 ALIKE_M = 1.0
-"""Tasks with the same goal and the same place of the target differ when the person starts this far away."""
+"""Tasks with the same goal and the same place of the target differ if their starts are at least this far apart."""
 _LAPS = 50
 REDRAWN = {
     "standard/maple/navigation-12": 1,
@@ -43,7 +43,7 @@ SPEC = SuiteSpec(
     houses=(*SCENES, *UNSEEN),
     orders=by_count(("object_goal_navigation", 26), ("mobile_manipulation", 74)),
 )
-"""A hundred tasks a house, of the two kinds as many as in the paper's 565 and 1583: 26 to 74 in a hundred."""
+"""100 tasks per house; of these, 26 are searches and 74 deliveries, the ratio of the paper's 565 and 1583."""
 
 
 IsPossible = Callable[[TaskSpec, HouseSpec], bool]
@@ -51,15 +51,15 @@ IsPossible = Callable[[TaskSpec, HouseSpec], bool]
 
 
 def accept_any(_task: TaskSpec, _house: HouseSpec) -> bool:
-    """Whether a task can be done, when that is not checked: always."""
+    """Accept every task, without a check."""
     return True
 
 
 def build_suite() -> Suite:
-    """The suite, validated; made by one process a CPU.
+    """The suite, validated; made by one process per CPU.
 
     Raises:
-        HthorError: when a house cannot take one of its tasks.
+        HthorError: when a house has no room for one of its tasks.
     """
     with ProcessPoolExecutor(len(os.sched_getaffinity(0)), get_context("spawn")) as pool:
         columns = list(pool.map(house_tasks, SPEC.houses))
@@ -76,10 +76,10 @@ def house_tasks(name: str) -> tuple[TaskSpec, ...]:
 def make_tasks(
     spec: SuiteSpec, house: HouseSpec, split: Literal["seen", "new"], possible: IsPossible = accept_any
 ) -> Iterator[TaskSpec]:
-    """One house's tasks of a suite one by one, no two of them alike; what is not ``possible`` is drawn again.
+    """One house's tasks of a suite, no two of them alike; tasks that are not ``possible`` are drawn again.
 
     Raises:
-        HthorError: when the house cannot take one of its tasks, or not so many that differ.
+        HthorError: when the house has no room for one of its tasks, or for that many different ones.
     """
     done: list[TaskSpec] = []
     for order in spec.orders(spec, house):

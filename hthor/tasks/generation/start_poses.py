@@ -1,4 +1,4 @@
-"""Start poses of the person and the robots, chosen so that the least time is near a wanted one."""
+"""Start poses of the person and the robots, chosen so that the least time is near an intended time."""
 
 import math
 
@@ -15,7 +15,7 @@ from hthor.types import Goal, HouseSpec, Placement, Pose
 Floats = NDArray[np.float64]
 
 AWAY_M = 3.0
-"""Least way of a start from the target: to a place from which it is in reach, and on to it as the crow flies."""
+"""Least distance of a start from the target: the way to a place within reach of it, plus the straight rest."""
 APART_M = 1.2
 """Least distance between two starts."""
 _STARTS = 400
@@ -39,16 +39,16 @@ def draw_start_poses(
     robots: int,
     strict: bool = True,
 ) -> StartPoses | None:
-    """The starts of the person and of ``robots`` robots, the least time as near to ``wanted`` [s] as the floor allows.
+    """Starts of the person and of ``robots`` robots, with the least time as near to ``wanted`` [s] as the floor allows.
 
-    The person starts on ample floor, `AWAY_M` from the target, and does not have it in view and close by.
+    The person starts on ample floor, at least `AWAY_M` from the target, and does not see it from close by.
 
     Args:
-        root: of all draws.
-        strict: whether those two wishes must come true; otherwise one that leaves no place is dropped.
+        root: root of all draws.
+        strict: whether the last two conditions must hold; otherwise a condition that leaves no place is dropped.
 
     Returns:
-        None where the goal is met already, or cannot be met, from any place to start from.
+        None when the goal is met already at every possible start, or cannot be met from any.
     """
     if kind.solved(goal, objects, house):
         return None
@@ -74,7 +74,7 @@ def draw_start_poses(
 def _possible(
     kind: TaskKind, house: HouseSpec, objects: tuple[Placement, ...], goal: Goal, places: Floats
 ) -> tuple[Floats, Floats]:
-    """Those of the places from which the goal can be met, and the least time [s] from each."""
+    """The places from which the goal can be met, and the least time [s] from each."""
     if not len(places):
         return places, np.zeros(0)
     times = kind.least_times(house, objects, goal)(places)
@@ -83,7 +83,7 @@ def _possible(
 
 
 def _away(house: HouseSpec, target: Placement, places: Floats) -> Floats:
-    """Those of the places that are `AWAY_M` from the target, by way of a cell where its reach begins."""
+    """The places that are at least `AWAY_M` from the target, by way of a cell from which it can just be reached."""
     ground = ReachableFloor.of(house)
     reach = ground.space.centres(entry_cells(ground.touching(target), ground.space.free))
     rest = np.hypot(reach[:, 0] - target.position[0], reach[:, 1] - target.position[1])
@@ -99,7 +99,7 @@ def _unseen(house: HouseSpec, target: Placement, places: Floats) -> Floats:
 
 
 def _places(house: HouseSpec, root: int) -> Floats:
-    """(N, 2) [m] places to start from, in random order: ample free floor that the house's start is joined to."""
+    """(N, 2) [m] places to start from, in random order: ample free floor connected to the house's start."""
     ground, ample = ReachableFloor.of(house), FreeSpace.of(house, START_MARGIN_M, HEIGHT_M)
     joined = ground.space.component(*ground.space.nearest_free(house.start.x, house.start.y))
     cells = ample.centres(ample.free & joined & (ample.components == _largest(ample)))

@@ -23,14 +23,14 @@ SCENES = ("alder", "birch", "cedar", "elder", "hazel", "juniper", "linden", "map
 """The ten scenes of the benchmark."""
 FIND, MOVE = "object_goal_navigation", "mobile_manipulation"
 ROBOTS = 4
-"""Starts for robots in every task, the first for the first robot."""
+"""Number of robots' start poses in every task; the first is for the first robot."""
 
 
 class TaskOrder(Struct, frozen=True, kw_only=True):
-    """One task to be made. ``share`` [0, 1] says how hard it shall be, from an easy start to a hard one.
+    """One task to be made. ``share`` [0, 1] says how hard it will be, from easy starts (0) to hard ones (1).
 
-    ``goal`` is None where the kind draws it itself. ``fixed`` is a triplet that must hold for the target, ``level`` the
-    stratum of difficulty that the task must be of, if any.
+    ``goal`` is None if the kind draws it. ``fixed`` is a triplet that must hold for the target; ``level`` is the
+    required stratum of difficulty, empty for any.
     """
 
     name: str
@@ -44,9 +44,9 @@ class TaskOrder(Struct, frozen=True, kw_only=True):
 class SuiteSpec(Struct, frozen=True, kw_only=True):
     """A suite to be made in ``houses``, every draw from ``root``.
 
-    ``orders`` lists a house's tasks. ``robots`` is how many of them a task has starts for, ``candidates`` how many
-    arrangements are compared for how hard they are. ``serial`` as
-    `hthor.tasks.arrangement.target_arrangement.arrange` has it. ``record_difficulty`` says whether tasks record their
+    ``orders`` lists a house's tasks. ``robots`` is the number of robots' start poses in a task, ``candidates`` how many
+    arrangements are compared by difficulty. ``serial`` is explained in
+    `hthor.tasks.arrangement.target_arrangement.arrange`. ``record_difficulty`` says whether tasks record their
     difficulty. ``redrawn`` says how often a task was drawn again because ``hthor tasks check`` found that it cannot be
     done in the simulated world: small things hide the target, or the way takes too long.
     """
@@ -64,7 +64,7 @@ class SuiteSpec(Struct, frozen=True, kw_only=True):
 
 
 def by_count(*counts: tuple[str, int]) -> Callable[[SuiteSpec, HouseSpec], list[TaskOrder]]:
-    """Orders for so many tasks of each kind in a house, the kinds spread evenly over the list."""
+    """Orders for the given number of tasks of each kind per house, the kinds spread evenly over the list."""
 
     def orders(spec: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
         shelves: list[tuple[float, int, TaskOrder]] = []
@@ -83,7 +83,7 @@ def by_count(*counts: tuple[str, int]) -> Callable[[SuiteSpec, HouseSpec], list[
 
 
 def by_kind(kind: str, count: int) -> Callable[[SuiteSpec, HouseSpec], list[TaskOrder]]:
-    """Orders for so many tasks in a house, of a kind that draws goals and arrangements itself."""
+    """Orders for ``count`` tasks per house, of a kind that draws goals and arrangements itself."""
 
     def orders(spec: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
         names = [f"{spec.name}/{house.id}/{number + 1:02d}" for number in range(count)]
@@ -93,10 +93,10 @@ def by_kind(kind: str, count: int) -> Callable[[SuiteSpec, HouseSpec], list[Task
 
 
 def by_level(kind: str, *hands: tuple[tuple[Level, float], ...]) -> Callable[[SuiteSpec, HouseSpec], list[TaskOrder]]:
-    """A house's tasks of one kind, each of a given stratum of difficulty, in an order of its own.
+    """A house's tasks of one kind, each with a given stratum of difficulty, in an order drawn for the house.
 
     Args:
-        hands: strata and shares (as `Order.share`) of a house's tasks: of the first house, the second, and over again.
+        hands: strata and shares (as `TaskOrder.share`) of a house's tasks; houses use them in turn.
     """
 
     def orders(spec: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
@@ -114,7 +114,7 @@ def by_level(kind: str, *hands: tuple[tuple[Level, float], ...]) -> Callable[[Su
 
 
 def each_triplet(spec: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
-    """A search for each target in each way in which the house can have it."""
+    """A search for each target with each triplet that is possible in the house."""
     kinds = scene_graph.kinds_present(house)
     return [
         _exact(spec, house, FIND, Goal(target=target, relation="find"), row, scene_graph.triplet_words(row))
@@ -124,7 +124,7 @@ def each_triplet(spec: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
 
 
 def each_template(spec: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
-    """Each template from each place where its target can be, except its destination."""
+    """Each task template with each possible place of its target, except its destination."""
     kind: TaskKind = plugins.load("task kind", MOVE)
     kinds = scene_graph.kinds_present(house)
     return [
@@ -141,7 +141,7 @@ def _exact(spec: SuiteSpec, house: HouseSpec, kind: str, goal: Goal, row: Triple
 
 
 def _goals(kind: TaskKind, house: HouseSpec, count: int, root: int) -> list[Goal]:
-    """As many goals as wanted, each of the benchmark's once before any comes again, no target twice running."""
+    """``count`` goals in random order: each of the kind's goals once before any is repeated."""
     known = kind.goals(house)
     if not known:
         raise HthorError(f"house '{house.id}' has nothing for a task of kind '{kind.name}'")
@@ -200,4 +200,4 @@ SUITE_SPECS = {
         SuiteSpec(name="carry", version=1, root=20240615, houses=SCENES, orders=by_kind("collaborative_carrying", 2)),
     )
 }
-"""The suites that are made here, by name."""
+"""The suites that this package makes, by name."""

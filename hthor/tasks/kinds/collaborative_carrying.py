@@ -1,13 +1,12 @@
-"""Carry a trunk that is too heavy for one to another room, together.
+"""Carry a trunk, too heavy for one body, to another room together.
 
-The goal's only job, for which it takes two bodies with hands (see `hthor.world.carrying.joint_carrying` for the
-rules)::
+The goal has one job, which needs two bodies with hands (see `hthor.world.carrying.joint_carrying` for the rules)::
 
     Job(target="trunk", relation="at", destinations=("room|5",), place=(2.4, 6.1, 0.2), hands=2)
 
-The trunk stands on the floor of another room. It has arrived when it stands in the room of that id, in nobody's
-hands, within `hthor.tasks.subgoals.TOGETHER_M` of the place, which is beside a piece of furniture that the
-instruction names. Progress is the share of the way, as the crow flies, that the trunk has come.
+At first the trunk stands on the floor of another room. It has arrived when it stands in the destination room, in
+nobody's hands, within `hthor.tasks.subgoals.TOGETHER_M` of the place, which is next to a piece of furniture that the
+instruction names. Progress is the share of the straight distance that the trunk has covered.
 """
 
 import math
@@ -21,13 +20,13 @@ from hthor.types import Goal, HouseSpec, Job, Placement, Snapshot, TaskSpec
 
 TRUNK = "trunk"
 BESIDE = ("sofa", "bed", "dining_table", "desk", "tv_stand", "coffee_table", "armchair", "dresser", "wardrobe")
-"""Kinds of things that the trunk is brought to, where the house has one of the kind."""
+"""Kinds of things that the trunk is brought to, if the house has exactly one of the kind."""
 CLEAR_M = 0.6
-"""Free floor all round the trunk's middle, so that it can be got hold of at both ends."""
+"""Radius of free floor around the trunk's middle, so that both ends can be grasped."""
 LEAST_M, MOST_M = 4.0, 14.0
-"""How long the way is from the trunk to where it goes, for who takes hold of it."""
+"""Bounds of the walking distance from within reach of the trunk to its destination."""
 TIME_LIMIT_S = 180.0
-"""Twice the usual limit: two have to meet first, and then go slowly, with a load and round corners."""
+"""Twice the usual limit: two bodies have to meet first, and then walk slowly, with a load and round corners."""
 _TRIES = 80
 
 

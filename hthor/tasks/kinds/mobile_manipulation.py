@@ -1,4 +1,4 @@
-"""Pick an object and place it in or on a thing of a kind: done when it rests there.
+"""Pick an object and place it in or on a thing of a given kind: done when it rests there.
 
 The least time is that of a person who knows where everything is:
 
@@ -6,7 +6,7 @@ The least time is that of a person who knows where everything is:
   within the avatar's reach of the target (horizontally, to its centre) to a cell within reach of the nearest point of
   any surface of any thing of the destination's kind; the two cells are chosen together;
 - `rules.HANDLING_S` each to pick and to place, and to open a fridge that the target lies in, or must go into;
-- less the slack of the 5 cm grid (half a cell's diagonal a range and a leg), so that it is a lower bound.
+- less the slack of the 5 cm grid (half a cell's diagonal per range and per leg), so that it is a lower bound.
 
 Turning, recognising and reading cost nothing, and lines of sight do not matter.
 """

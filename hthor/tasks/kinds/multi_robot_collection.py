@@ -9,7 +9,7 @@ that rest there; the goal is met when all three do.
 
 In half of the tasks one apple is in the closed fridge: a robot that cannot open it has to ask for help. The apples
 lie in different rooms, so far apart that an omniscient person who walks at `PACE_M_S` cannot bring all three in
-time (`alone`), while a person and a robot with hands who share them well can with time to spare (`team`).
+time (`alone`). A person and a robot with hands who divide them well finish with time to spare (`team`).
 """
 
 # ruff: noqa: ARG002 - the instruction does not say where the apples are; the signatures are those of every kind
@@ -27,20 +27,20 @@ from hthor.tasks.subgoals import JobKind, carrying_way
 from hthor.types import Goal, HouseSpec, Job, Placement, Pose, TaskSpec, Thing
 
 PLACES = ("dining_table", "counter_top", "coffee_table", "desk", "tv_stand")
-"""Kinds of things that apples are gathered on, where the house has one of the kind."""
+"""Kinds of things that apples are gathered on, if the house has exactly one of the kind."""
 APPLES = ("apple", "apple_2", "apple_3")
 FRIDGE_SHARE = 0.5
-"""In so many of the tasks an apple is in the fridge."""
+"""Share of the tasks in which an apple is in the fridge."""
 PACE_M_S = 0.4
-"""How fast people in a headset are under way, stops included (docs/humans.md)."""
+"""Mean speed of people in a headset, stops included (docs/humans.md)."""
 GUIDED_M_S, ROBOT_M_S = 0.25, 0.52
-"""How fast a person is who has to be told the way, and a robot with hands, with its turns."""
+"""Mean speeds of a person guided by a robot, and of a robot with hands, turns included."""
 TOLD_S, GRASP_S = 20.0, 2.5
-"""Until a person has heard where an apple is; and how long a person or a robot takes to pick or place one."""
+"""Time until a person has been told where an apple is; time of a person or a robot to pick or place an apple."""
 ALONE_S, TEAM_S = 92.0, 64.0
-"""Least time of a person alone, and most of a person with a robot."""
+"""Least `alone` time, and greatest `team` time, of an accepted task."""
 LEAST_M, MOST_M = 17.0, 23.0
-"""From how far in all the apples come: less is too easy for a person alone, more is too hard for two."""
+"""Bounds of the apples' ways in total: less is too easy for a person alone, more is too hard for two."""
 _SOME = 0.02
 _TRIES = 200
 
@@ -84,7 +84,7 @@ def _goal(place: Thing) -> Goal:
 
 
 def _apples(house: HouseSpec, place: Thing, root: int, cold: bool) -> tuple[Placement, ...]:
-    """Three apples in different rooms, none of them where the place is; none at all where that was not found."""
+    """Three apples in different rooms, none in the room of ``place``; empty when no such places were found."""
     expected = {place: weight for (how, place), weight in priors.weights("apple").items() if how != "near"}
     taken, done = {place.room}, list[Placement]()
     for number in seeds.shuffled(len(APPLES), root, "order"):
@@ -93,7 +93,7 @@ def _apples(house: HouseSpec, place: Thing, root: int, cold: bool) -> tuple[Plac
         def weigh(thing: Thing, fridge: bool = fridge) -> float:
             if (thing.kind == "fridge") != fridge or (thing.room in taken and not fridge) or thing.id == place.id:
                 return 0.0
-            far = math.dist(thing.centre, place.centre)  # what is near would be thrown away for being too easy
+            far = math.dist(thing.centre, place.centre)  # tasks with near apples would be rejected as too easy
             return max(expected.get(thing.kind, 0.0), _SOME) * far
 
         found = find_spot(house, APPLES[number], "apple", weigh, seeds.derive(root, "apple", number), done)
@@ -105,13 +105,13 @@ def _apples(house: HouseSpec, place: Thing, root: int, cold: bool) -> tuple[Plac
 
 
 def ways(house: HouseSpec, objects: tuple[Placement, ...], goal: Goal) -> list[float]:
-    """How far [m] each job's apple is to be carried."""
+    """How far [m] each job's apple has to be carried."""
     there = {placement.id: placement for placement in objects}
     return [carrying_way(house, there[job.target], job) for job in goal.jobs]
 
 
 def alone(task: TaskSpec, house: HouseSpec) -> float:
-    """The least time [s] of an all-knowing person at `PACE_M_S` who brings one apple after the other, without a robot.
+    """The least time [s] of an omniscient person at `PACE_M_S` who brings one apple after the other, without a robot.
 
     Each pick, each place and the fridge's opening take `rules.HANDLING_S`.
     """
@@ -121,7 +121,7 @@ def alone(task: TaskSpec, house: HouseSpec) -> float:
 
 
 def team(task: TaskSpec, house: HouseSpec) -> float:
-    """The time [s] of a guided person and of the first robot with the best division of the apples between them."""
+    """The time [s] of a guided person and the first robot with the best division of the apples between them."""
     carried, every = ways(house, task.objects, task.goal), range(len(task.objects))
     person = _first_ways(task, house, task.human_start)
     robot = _first_ways(task, house, task.robot_starts[0])
@@ -136,7 +136,7 @@ def team(task: TaskSpec, house: HouseSpec) -> float:
 
 
 def _round(first: list[float], carried: list[float], own: Iterable[int]) -> float:
-    """The least way [m] of who fetches ``own`` apples one after the other, ``first`` being the ways to each."""
+    """The least way [m] to fetch the ``own`` apples in turn; ``first`` are the ways if an apple is fetched first."""
     own = list(own)
     return min((first[k] - carried[k] for k in own), default=0.0) + 2 * sum(carried[k] for k in own)
 

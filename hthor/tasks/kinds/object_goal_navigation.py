@@ -7,12 +7,12 @@ The least time is that of a person who knows where everything is:
   space, and no wall or furniture lies between the eyes and its centre or a point near its top;
 - for a target in a closed fridge: by way of a cell within reach of the fridge, plus `rules.HANDLING_S` to open it, and
   the target is then seen as if the fridge had no door;
-- less the slack of the 5 cm grid (half a cell's diagonal a range and a leg), so that it is a lower bound.
+- less the slack of the 5 cm grid (half a cell's diagonal per range and per leg), so that it is a lower bound.
 
 Turning, recognising and reading cost nothing.
 """
 
-# ruff: noqa: ARG002 - a search asks nothing of the house; the signatures are those of every kind
+# ruff: noqa: ARG002 - a search does not need the house; the signatures are those of every kind
 
 from hthor import catalog, rules
 from hthor.tasks.kind import LeastTimes, TaskKind, target_of

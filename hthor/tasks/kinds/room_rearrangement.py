@@ -1,14 +1,14 @@
-"""Put a shuffled house back as a tour of the tidy one has recorded it.
+"""Put the objects of a shuffled house back to the places recorded in a tour of the tidy house.
 
-The goal's jobs are that record: one for every target that the tour has met, those included that were not moved since,
-and which those are nobody is told, but that the first of them was::
+The goal's jobs are that record: one job for every target, moved since or not. Nobody is told which targets were moved,
+except that the target of the first job was::
 
     Job(target="mug", relation="on", destinations=("desk",), place=(5.2348, 8.1624, 0.79))
 
-Whatever was moved, and the place that it came from, is within an arm's reach. A target is back when it rests on or
-in the same thing within `hthor.tasks.subgoals.PLACE_M` of its recorded place. As in AI2-THOR's rearrangement
-challenge there are two scores. The share fixed, `progress`, counts the targets that were moved, less those that
-somebody displaced since. Strict success, `met`, is that everything is in its place.
+Moved targets and the places that they came from are within an arm's reach. A target is back when it rests on or in the
+same thing within `hthor.tasks.subgoals.PLACE_M` of its recorded place. As in AI2-THOR's rearrangement challenge there
+are two scores. The share fixed, `progress`, counts the moved targets that are back, less those that somebody displaced
+since. Strict success, `met`, is that every target is in its place.
 """
 
 import math
@@ -23,13 +23,13 @@ from hthor.tasks.subgoals import JobKind
 from hthor.types import Goal, HouseSpec, Job, Placement, Thing
 
 FEWEST, MOST = 2, 4
-"""So many of the six targets are shuffled."""
+"""Least and greatest number of the six targets that are moved."""
 MOVED_M = 1.5
-"""As far at least is a shuffled target from its place."""
+"""Least distance on the plan of a moved target from its place."""
 TIME_LIMIT_S = 180.0
-"""Twice the usual limit: two to four objects are to be found and carried, not one."""
+"""Twice the usual limit: two to four objects have to be found and carried, not one."""
 DEEP = frozenset({"sink"})
-"""From these nothing is moved: one sees into them from few places, so hands hardly find the same spot again."""
+"""Nothing is moved out of these: people see into them from few places, so they hardly find the same spot again."""
 _TRIES = 20
 
 
@@ -62,7 +62,7 @@ class RoomRearrangement(JobKind):
 
 
 def record(house: HouseSpec, tidy: Sequence[Placement], first: str, root: int) -> Goal:
-    """What a tour of the tidy house notes down: for each object what it is on or in, and where; ``first`` leads."""
+    """The record of a tour of the tidy house: each object's support and place, that of ``first`` at the head."""
     order = sorted(seeds.shuffled(len(tidy), root, "record"), key=lambda number: tidy[number].id != first)
     jobs = tuple(
         Job(target=one.id, relation=one.relation, destinations=(one.support,), place=one.position)
@@ -73,7 +73,7 @@ def record(house: HouseSpec, tidy: Sequence[Placement], first: str, root: int) -
 
 
 def _shuffled(house: HouseSpec, tidy: Sequence[Placement], moved: Sequence[str], root: int) -> tuple[Placement, ...]:
-    """The same with some of the targets elsewhere, off the recorded places of all; empty where they find no room."""
+    """The tidy house with ``moved`` targets elsewhere, off all recorded places; empty when they find no room."""
     there = {one.id: one for one in tidy}
     for id in moved:
         home = there[id]
@@ -86,7 +86,7 @@ def _shuffled(house: HouseSpec, tidy: Sequence[Placement], moved: Sequence[str],
         if found is None or math.dist(found.position[:2], home.position[:2]) < MOVED_M:
             return ()
         there[id] = found
-    # what was near what by the priors is no longer so
+    # the relations "near" of the priors no longer hold
     return tuple(msgspec.structs.replace(there[one.id], near="") for one in tidy)
 
 

@@ -1,14 +1,14 @@
-"""Put what is out of place where common sense expects it.
+"""Put objects that are out of place where common sense expects them.
 
-There is no reference: any place that the judgement (`hthor.tasks.arrangement.commonsense_places`, as data) allows
-will do. The goal's jobs say so of every target, those included that lie well already, and which those are nobody is
-told, but that the first of them does not::
+There is no reference arrangement: every place that the data of `hthor.tasks.arrangement.commonsense_places` allow is
+right. The goal has one job for every target, out of place or not. Nobody is told which targets are out of place, except
+that the target of the first job is::
 
     Job(target="remote_control", relation="on", destinations=("coffee_table", "side_table", "sofa", ...))
 
-with the kinds of things where the target may lie as far as the house has them, the likeliest first; the relation is
-that of the likeliest. Progress counts the targets that were out of place, less those that somebody misplaced since; the
-goal is met when common sense finds nothing to object to.
+The destinations are the kinds of things in the house where the target may lie, the likeliest first; the relation is
+that of the likeliest. Progress counts the targets that are back of those that were out of place, less those that
+somebody misplaced since; the goal is met when no target is out of place.
 """
 
 from hthor import catalog, seeds
@@ -19,9 +19,9 @@ from hthor.tasks.subgoals import JobKind
 from hthor.types import Goal, HouseSpec, Job, Placement, Thing
 
 FEWEST, MOST = 2, 4
-"""So many of the six targets are out of place."""
+"""Least and greatest number of the six targets that are out of place."""
 TIME_LIMIT_S = 180.0
-"""Twice the usual limit: two to four objects are to be found and carried, not one."""
+"""Twice the usual limit: two to four objects have to be found and carried, not one."""
 _TRIES = 20
 
 
@@ -66,7 +66,7 @@ def _goal(house: HouseSpec, first: str, root: int) -> Goal:
 
 
 def _strewn(house: HouseSpec, order: list[str], count: int, root: int) -> tuple[Placement, ...]:
-    """The first ``count`` targets out of place and the others where they belong; empty where one finds no room."""
+    """The first ``count`` targets out of place and the others where they belong; empty when a target finds no room."""
     done: list[Placement] = []
     for rank, target in enumerate(order):
 

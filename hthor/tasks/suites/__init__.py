@@ -1,1 +1,1 @@
-"""Suites of tasks: those that ship, secret ones, and one's own."""
+"""Suites of tasks: shipped suites, secret suites, and a user's own."""

@@ -1,8 +1,8 @@
-"""A secret salt, and what is published about the suite that is made from it.
+"""A secret salt, and the files published about the suite that is made from it.
 
 The salt's commitment is SHA-256 over a fixed prefix and the salt: it neither reveals a salt of 128 bits or more, nor
 can a second salt with the same commitment be found. Roots of random draws come from HMAC-SHA256 with the salt as the
-key, 128 bits for each purpose: somebody who knows one root, or everything made from it, learns nothing about the salt
+key, 128 bits for each purpose: knowing one root, or everything made from it, tells nothing about the salt
 or other roots.
 
 ``commitment.json`` fixes the salt and every file of the suite by hashes that reveal neither. It can be published before
@@ -29,13 +29,13 @@ from hthor.seeds import Name
 LEAST_CHARACTERS, LEAST_BITS = 32, 128
 _TO_COMMIT, _TO_DRAW = b"hthor.commitment/1\0", b"hthor.root/1\0"
 _FRAME = 8
-"""Bytes that zlib adds to what it packs."""
+"""Bytes that zlib adds to compressed data."""
 COMMITMENT, REVEALED = "commitment.json", "revealed.json"
 _COMMITTED, _PUBLISHED = "hthor.commitment/1", "hthor.revealed/1"
 
 
 class Salt:
-    """A secret text. It is shown by nothing but `reveal`: not when printed, and not in a traceback."""
+    """A secret text. Only `reveal` shows it: printing and tracebacks do not."""
 
     __slots__ = ("_bytes",)
 
@@ -58,11 +58,11 @@ class Salt:
         return int.from_bytes(self._mac(purpose)[:16], "little", signed=True)
 
     def word(self, digits: int, *purpose: Name) -> str:
-        """So many hexadecimal digits for one purpose: an opaque id."""
+        """An opaque id for one purpose, with this number of hexadecimal digits."""
         return self._mac(purpose).hex()[:digits]
 
     def reveal(self) -> str:
-        """The salt itself, for the day when it is published."""
+        """The salt itself, to be published at the end."""
         return self._bytes.decode("ascii")
 
     def _mac(self, purpose: tuple[Name, ...]) -> bytes:
@@ -73,7 +73,7 @@ def create_salt(path: Path) -> None:
     """Write a new salt of 256 bits to a file that only its owner can read.
 
     Raises:
-        HthorError: when there is such a file already; a salt that something was made of must not be lost.
+        HthorError: when the file exists already; a salt that something was made from must not be lost.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
     try:
@@ -88,7 +88,7 @@ def read_salt(path: Path) -> Salt:
     """The salt in a file: its text, without the white space around it.
 
     Raises:
-        HthorError: when the file cannot be read, or what it holds could be guessed; the salt is never part of the
+        HthorError: when the file cannot be read, or its text could be guessed; the salt is never part of the
             message.
     """
     advice = "'hthor suite salt --out FILE' makes a good one."
@@ -110,9 +110,9 @@ def read_salt(path: Path) -> Salt:
 
 
 def estimate_bits(text: str) -> float:
-    """How much a text seems to hold [bit], by its letters' frequencies and by how far it can be packed.
+    """Estimated entropy of a text [bit], from its letters' frequencies and from how far it can be compressed.
 
-    It finds blunders, such as one letter repeated, but takes a line of a poem for random text.
+    It finds gross errors, such as one letter repeated, but cannot tell a line of a poem from random text.
     """
     data = text.encode("ascii")
     letters = -sum(count * math.log2(count / len(data)) for count in Counter(data).values())
@@ -121,7 +121,7 @@ def estimate_bits(text: str) -> float:
 
 
 def is_exposed(path: Path) -> bool:
-    """Whether others than the owner can read the file."""
+    """Whether users other than the owner can read the file."""
     return bool(path.stat().st_mode & (stat.S_IRGRP | stat.S_IROTH))
 
 
@@ -130,7 +130,7 @@ class Commitment(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     ``salt`` is `Salt.commitment`; ``houses`` and ``tasks`` are how many there are; ``suite_sha256`` is the hash that
     results name; ``files`` holds the SHA-256 of every file by its path in the suite's folder; ``made_with`` the
-    versions of what made them.
+    versions of the software that made them.
     """
 
     schema: str = _COMMITTED
@@ -169,7 +169,7 @@ def read_revealed_salt(folder: Path) -> Salt | None:
     """The salt that was published in a suite's folder, None when none was.
 
     Raises:
-        TaskError: when the file is there and cannot be read.
+        TaskError: when the file exists but cannot be read.
     """
     path = folder / REVEALED
     if not path.exists():
@@ -185,7 +185,7 @@ def reveal_salt(folder: Path, salt: Salt) -> Path:
     """Publish the salt of the suite in a folder: write ``revealed.json``.
 
     Raises:
-        TaskError: when it is not the salt that the suite's commitment is to; nothing is written then.
+        TaskError: when it is not the salt in the suite's commitment; nothing is written then.
     """
     held = load_commitment(folder / COMMITMENT)
     if salt.commitment() != held.salt:
@@ -196,7 +196,7 @@ def reveal_salt(folder: Path, salt: Salt) -> Path:
 
 
 def find_changes(folder: Path, held: Commitment) -> Iterator[tuple[str, str]]:
-    """What in a suite's folder is not as it was committed to: pairs of a file and a problem."""
+    """The differences of a suite's folder from its commitment: pairs of a file and a problem."""
     for path, digest in held.files.items():
         if not (folder / path).is_file():
             yield path, "is missing"

@@ -1,4 +1,4 @@
-"""Suites by name or from a file: read, verified by their hash and, where they are the user's own, validated."""
+"""Suites by name or from a file: read, verified by their hash and, for a user's own, validated."""
 
 import difflib
 from pathlib import Path
@@ -61,7 +61,7 @@ def find_task(id: str, name_or_path: str | Path | None = None) -> tuple[Suite, T
     """The task of that id, in one suite or in any that comes with hthor, and the suite it is in.
 
     Raises:
-        UnknownName: when there is none; names the nearest.
+        UnknownName: when there is no such task; names similar ids.
     """
     names = suite_names() if name_or_path is None else (name_or_path,)
     ids: list[str] = []
@@ -76,22 +76,22 @@ def find_task(id: str, name_or_path: str | Path | None = None) -> tuple[Suite, T
 
 
 def house_files(name_or_path: str | Path) -> dict[str, bytes]:
-    """The house files that a suite brings along, by name such as ``h1c0ffee.json``; empty for a suite of hthor's own.
+    """The house files that belong to a suite, by name such as ``h1c0ffee.json``; empty for a suite of hthor's own.
 
-    The excerpt of an asset database that may lie beside them is included.
+    An excerpt of an asset database next to them is included.
     """
     path, _ = _locate(name_or_path)
     return {file.name: file.read_bytes() for file in sorted(houses_folder(path).glob("*.json"))}
 
 
 def houses_folder(path: Path) -> Path:
-    """The folder of the houses of this suite file: ``mine.houses`` for ``mine.json``, else ``houses`` beside it."""
+    """The folder of the houses of this suite file: ``mine.houses`` for ``mine.json``, else ``houses`` next to it."""
     own = path.with_suffix(".houses")
     return own if own.is_dir() else path.with_name("houses")
 
 
 def suite_path(name: str) -> Path:
-    """Where the suite of that name lies, or would lie."""
+    """The path of the suite of that name, whether it exists or not."""
     return _FOLDER / f"{name}.json"
 
 

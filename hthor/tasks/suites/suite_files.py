@@ -1,4 +1,4 @@
-"""The files of a suite of one's own: the tasks, copies of the houses, and what these need of an asset database."""
+"""The files of a user's own suite: the tasks, copies of the houses, and their excerpt of an asset database."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -21,18 +21,18 @@ _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,60}")
 
 
 class HouseSource(Struct, frozen=True, kw_only=True):
-    """A house to make tasks in: what it is loaded by, and its file where that is the user's own, else None."""
+    """A house to make tasks in: the name or path that loads it, and its file if it is the user's own, else None."""
 
     given: str
     file: Path | None
 
 
 def find_sources(given: Sequence[str]) -> tuple[HouseSource, ...]:
-    """The houses that are named, each a name of ours or the path of a house file.
+    """The requested houses, each given by the name of one of hthor's houses or the path of a house file.
 
     Raises:
         UnknownName, HouseError: as `hthor.houses.load`.
-        HthorError: when two have one name, or a file has the name of one of hthor's own houses.
+        HthorError: when two have the same name, or a file has the name of one of hthor's own houses.
     """
     ours = {*houses.names(), *houses.names("unseen")}
     found = [HouseSource(given=one, file=None if one in ours else Path(one)) for one in given]
@@ -50,10 +50,10 @@ def find_sources(given: Sequence[str]) -> tuple[HouseSource, ...]:
 
 
 def check_name(name: str) -> str:
-    """The name, if a suite can be called so.
+    """The name itself, if it is valid for a new suite.
 
     Raises:
-        HthorError: when it cannot.
+        HthorError: when it is not valid.
     """
     if not _NAME.fullmatch(name):
         raise HthorError(f"'{name}' cannot be a suite's name; valid: letters, digits, '-', '_' and '.', at most 61.")
@@ -65,7 +65,7 @@ def check_name(name: str) -> str:
 def make_files(
     name: str, version: int, found: Sequence[HouseSource], columns: Sequence[Sequence[TaskSpec]]
 ) -> dict[str, bytes]:
-    """The files of a suite by their path in its folder: the suite, its houses, and what it needs of an asset database.
+    """The files of a suite by their path in its folder: the suite, its houses, an excerpt of an asset database.
 
     ``columns`` are the tasks of each of the houses ``found``.
     """
@@ -77,7 +77,7 @@ def make_files(
 
 
 def write_files(out: Path, made: Mapping[str, bytes]) -> Path:
-    """Write a suite's files, the houses first; gives the path of the suite.
+    """Write a suite's files, the houses first; returns the path of the suite.
 
     ``out`` is ``mine.json``, with its houses in ``mine.houses``; or a folder, with the suite in ``suite.json``.
     """
@@ -90,10 +90,10 @@ def write_files(out: Path, made: Mapping[str, bytes]) -> Path:
 
 
 def check_unused(out: Path) -> None:
-    """See that nothing is where a suite is to be written.
+    """Check that the path of a new suite is free.
 
     Raises:
-        HthorError: when something is.
+        HthorError: when a file or folder is there.
     """
     for path in (out, out.with_suffix(".houses")) if out.suffix == ".json" else (out,):
         if path.exists() and (path.is_file() or any(path.iterdir())):
@@ -101,7 +101,7 @@ def check_unused(out: Path) -> None:
 
 
 def _excerpt(own: Sequence[Path]) -> bytes:
-    """What houses of the user's own need of an asset database; each may have its own."""
+    """The rows of asset databases that the user's own houses need; each house may have its own database."""
     types: dict[str, dict[str, Any]] = {}
     for path in own:
         document, _ = schema.read_house_file(path, str(path))
