@@ -12,6 +12,7 @@ import time
 from pathlib import Path
 
 import pytest
+from command_line import run, start
 from typer.testing import CliRunner
 
 from hthor import code_identity, houses, plugins, tasks
@@ -23,22 +24,9 @@ from hthor.guest.confinement import LEVELS
 from hthor.humans.population import kinds, population_file
 from scripts import cli_reference
 
-FAKES = Path(__file__).parents[1] / "support" / "command_fakes.py"
 WITHOUT_JSON = {
     "hthor agent serve": "serves until it is stopped, and has nothing to tell",
 }
-
-
-def start(*words: str, play: str = "player") -> subprocess.Popen[str]:
-    command = [sys.executable, str(FAKES), play, *words]
-    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-
-
-def run(*words: str, play: str = "player") -> tuple[int, object, str]:
-    """Exit code, the one document on standard output, and what is said to people."""
-    process = start(*words, "--json", play=play)
-    out, err = process.communicate(timeout=100)
-    return process.returncode, json.loads(out), err
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from test_cli import Said, hthor  # noqa: F401
+from command_line import Said
 
 from hthor import houses
 
@@ -23,7 +23,7 @@ def name() -> str:
     return houses.names()[0]
 
 
-def test_the_list_counts_rooms_floor_and_things(hthor):  # noqa: F811
+def test_the_list_counts_rooms_floor_and_things(hthor):
     rows = _data(hthor("houses", "list", "--json"))
     assert [row["name"] for row in rows] == list(houses.names())
     table = hthor("houses", "list").out
@@ -33,7 +33,7 @@ def test_the_list_counts_rooms_floor_and_things(hthor):  # noqa: F811
         assert str(row["things"]) in table
 
 
-def test_a_lenient_check_and_a_strict_one(hthor, samples):  # noqa: F811
+def test_a_lenient_check_and_a_strict_one(hthor, samples):
     file = str(samples[0])
     assert hthor("houses", "check", file).code == 0
     strict = hthor("houses", "check", file, "--strict")
@@ -42,14 +42,14 @@ def test_a_lenient_check_and_a_strict_one(hthor, samples):  # noqa: F811
     assert "(thing-floats)" in strict.out
 
 
-def test_a_full_check_asks_the_engine(hthor, samples):  # noqa: F811
+def test_a_full_check_asks_the_engine(hthor, samples):
     document = json.loads(hthor("houses", "check", str(samples[0]), "--full", "--json").out)
     assert not document["sound"]
     assert document["radius"] == 0.25
     assert "penetration" in {finding["rule"] for finding in document["findings"]}
 
 
-def test_many_warnings_are_cut_short_and_counted(hthor, tmp_path: Path, name: str):  # noqa: F811
+def test_many_warnings_are_cut_short_and_counted(hthor, tmp_path: Path, name: str):
     document = json.loads((Path(houses.__file__).parent / "data" / f"{name}.json").read_bytes())
     for number in range(7):
         row = {"id": f"in-wall-{number}", "assetId": "hthor_bin_60x60x40", "position": {"x": 0.0, "y": 0.2, "z": 2.0}}
@@ -62,7 +62,7 @@ def test_many_warnings_are_cut_short_and_counted(hthor, tmp_path: Path, name: st
     assert "3 more (thing-in-wall)" in said.out
 
 
-def test_a_house_from_above(hthor, tmp_path: Path, name: str):  # noqa: F811
+def test_a_house_from_above(hthor, tmp_path: Path, name: str):
     path = tmp_path / "from above.png"
     assert hthor("houses", "show", name, "--out", str(path), "--scale", "10").out.strip() == str(path)
     assert path.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
@@ -71,7 +71,7 @@ def test_a_house_from_above(hthor, tmp_path: Path, name: str):  # noqa: F811
     assert ".png" in wrong.err
 
 
-def test_a_census_side_by_side(hthor, samples):  # noqa: F811
+def test_a_census_side_by_side(hthor, samples):
     columns = _data(hthor("houses", "census", str(samples[0]), "--json"))
     assert [column["houses"] for column in columns] == [len(houses.names()), 1]
     said = hthor("houses", "census", str(samples[0]))
@@ -80,7 +80,7 @@ def test_a_census_side_by_side(hthor, samples):  # noqa: F811
     assert "start to receptacle, m" in said.out
 
 
-def test_a_house_is_made_proved_and_made_again(hthor, tmp_path: Path):  # noqa: F811
+def test_a_house_is_made_proved_and_made_again(hthor, tmp_path: Path):
     path = tmp_path / "deep" / "mine.json"
     said = hthor("houses", "generate", "--seed", "3", "--rooms", "4", "--out", str(path))
     assert said.code == 0
@@ -92,7 +92,7 @@ def test_a_house_is_made_proved_and_made_again(hthor, tmp_path: Path):  # noqa: 
     assert "standard output: 4 rooms" in again.err
 
 
-def test_several_houses_go_into_a_folder(hthor, tmp_path: Path):  # noqa: F811
+def test_several_houses_go_into_a_folder(hthor, tmp_path: Path):
     rows = _data(hthor("houses", "generate", "--seed", "4", "--count", "2", "--out", str(tmp_path), "--json"))
     assert [(row["seed"], len(row["rooms"])) for row in rows] == [(4, 4), (5, 5)]
     assert sorted(path.name for path in tmp_path.iterdir()) == ["home-4-4.json", "home-5-5.json"]
@@ -113,7 +113,7 @@ def test_several_houses_go_into_a_folder(hthor, tmp_path: Path):  # noqa: F811
         (("generat",), ("No such command 'generat'", "generate")),
     ],
 )
-def test_mistakes_are_told(hthor, words: tuple[str, ...], hints: tuple[str, ...]):  # noqa: F811
+def test_mistakes_are_told(hthor, words: tuple[str, ...], hints: tuple[str, ...]):
     said = hthor("houses", *words)
     assert said.code == 2
     assert said.out == "" or "--json" in words

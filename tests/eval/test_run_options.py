@@ -12,10 +12,10 @@ from typing import Any
 import guest_agents
 import msgspec
 import pytest
+from command_line import run
 from eval_fakes import persons, suite
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from test_cli_contract import run
 from typer.testing import CliRunner
 
 from hthor import tasks

@@ -12,7 +12,7 @@ import world_house as tiny
 from fake_flat import BODY, FURNITURE, Flat, play
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from test_sight import house, slowly
+from random_solids import house, slowly
 from world_house import COFFEE, FRIDGE, TABLE, do, on, task, wait
 
 from hthor import seeds

@@ -10,10 +10,10 @@ from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree
 
-import eval_fakes as fakes
 import msgspec
 import numpy as np
 import pytest
+from report_fakes import PUBLISHED, run
 from typer.testing import CliRunner
 
 from hthor import houses, jsonio
@@ -22,29 +22,10 @@ from hthor.errors import HthorError, RunError, UnknownName
 from hthor.eval.records import trial_record
 from hthor.guest import Isolation
 from hthor.report.analysis import build, load_runs, trial_selection
-from hthor.report.analysis.document import Findings, Published, Share
+from hthor.report.analysis.document import Findings
 from hthor.report.drawing import render_trial
 from hthor.report.html import matplotlib_svg
 from hthor.report.page import camera_frames, case_study, figure_index, headline, key_moments, page, write_report
-
-PUBLISHED = Published(
-    name="study",
-    source="A study",
-    sha256="12" * 32,
-    suite="paper",
-    figures={"sr none": 0.638, "sr oracle": 0.914},
-    counts={"sr none": Share(k=37, n=58), "sr oracle": Share(k=53, n=58)},
-)
-
-
-def run(folder: Path, name: str, *, absent: bool = False, seed: int = 0, count: int = 20, people: str = "") -> Path:
-    """A whole run's folder without playing it."""
-    plan, dealt = fakes.run_of(count, name=name, absent=absent, seed=seed)
-    plan = msgspec.structs.replace(plan, humans=msgspec.structs.replace(plan.humans, name=people or plan.humans.name))
-    jsonio.write(folder / "run.json", jsonio.pretty(plan))
-    made = [trial_record.make_record(trial, fakes.episode(trial)) for session in dealt for trial in session.trials]
-    jsonio.write(folder / "trials.jsonl", b"".join(trial_record.encode(one) for one in made))
-    return folder
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -19,7 +19,7 @@ from matplotlib.axis import Axis, Tick
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.text import Annotation, Text
-from test_pages import PUBLISHED, run
+from report_fakes import PUBLISHED, run
 
 from hthor import houses
 from hthor.episode import EpisodeLog, Fault
