@@ -1,6 +1,6 @@
-"""The leaderboard: runs as entries that anybody can check, a list of them with ranks, and a page.
+"""The leaderboard: runs as entries that anybody can check, a ranked list of the entries, and a page.
 
-An entry is one file. It holds the outcome of every trial and a hash of every trial's record, so that its numbers and
-the ranks are computed from entries alone, and any trial that is drawn later can be replayed and compared. Begin with
+An entry is one file. It contains the outcome of every trial and a hash of every trial's record. So its numbers and the
+ranks are computed from entries alone, and any trial can later be replayed and compared. Begin reading with
 `hthor.leaderboard.entries.entry`.
 """

@@ -1,4 +1,4 @@
-"""Checks a board's entries against their form, schema and spelling, and the rules of `invariants`."""
+"""Checks a board's entries: their form, schema and spelling, and the rules of `invariants`."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -21,11 +21,11 @@ from hthor.tasks.suites import library
 from hthor.types import TaskSpec
 
 SPELLING = "$ (canonical form)"
-"""The field that is named when only the spelling is wrong."""
+"""The field that a problem names if only the spelling is wrong."""
 
 
 class _Held(Struct, frozen=True, kw_only=True):
-    """An entry that can be read, and its columns."""
+    """An entry that can be read, and its columns of outcomes."""
 
     path: Path
     entry: Entry
@@ -33,7 +33,7 @@ class _Held(Struct, frozen=True, kw_only=True):
 
 
 def check_board(board: Path, paths: Sequence[Path] = (), *, submissions: Path | None = None) -> list[Problem]:
-    """Everything that is wrong with these entries, or with all of a board's.
+    """Every problem of these entries, or of all entries of the board if ``paths`` is empty.
 
     Args:
         board: its other entries are searched for controls. submissions: folder of the agents' files, if there is one.
@@ -46,7 +46,7 @@ def check_board(board: Path, paths: Sequence[Path] = (), *, submissions: Path | 
         wrong = list(form_problems(path))
         found += wrong
         held += [] if any(one.field != SPELLING for one in wrong) else list(_read(path, found))
-    for path in others:  # checked when they are asked for; what cannot be read cannot be a control
+    for path in others:  # these are not checked here; a file that cannot be read cannot be a control
         trusted += list(_read(path, []))
     sizes = {one: made.tasks for one, made in files.read_commitments(board).items()}
     taken = admission.load_admission(board)
@@ -87,7 +87,7 @@ def _laws(
 
 
 def _controls(other: Entry, entry: Entry) -> bool:
-    """Whether the other is the control of the entry's uplift: the same trials, without a robot."""
+    """Whether the other entry is the control of the entry's uplift: the same trials, without a robot."""
     named = entry.uplift is not None and entry.uplift.control == other.hashes.run
     return (
         named
@@ -102,7 +102,7 @@ def _code(entry: Entry) -> tuple[str, str]:
 
 
 def _suite(entry: Entry, sizes: dict[str, int]) -> invariants.Problems:
-    """The suite is one of ours or committed to, and the run has all of its tasks."""
+    """The suite is hthor's own or has a commitment on the board, and the run has all of its tasks."""
     suite = entry.run.suite
     if suite.name in tasks.suite_names():
         ours = library.read_suite(suite.name)
@@ -121,7 +121,7 @@ def _suite(entry: Entry, sizes: dict[str, int]) -> invariants.Problems:
 
 
 def _tasks(entry: Entry) -> list[TaskSpec]:
-    """The task of each trial, where the suite is one of hthor's own in its current version; a secret one is unknown."""
+    """The task of each trial if the suite is hthor's own in its current version; else empty, as for a secret suite."""
     if entry.run.suite.name not in tasks.suite_names():
         return []
     ours = library.read_suite(entry.run.suite.name)
@@ -137,7 +137,7 @@ def _submitted(entry: Entry, folder: Path) -> invariants.Problems:
 
 
 def form_problems(path: Path) -> Iterator[Problem]:
-    """What is wrong with the form of an entry's file."""
+    """Problems of the form of an entry's file."""
     try:
         entry = files.read_form(path)
     except BoardError as error:
@@ -170,6 +170,6 @@ def fix_forms(paths: Sequence[Path]) -> list[Path]:
 
 
 def _strictly(path: Path, entry: Entry) -> Iterator[Problem]:
-    """What the schema requires beyond the types of the fields."""
+    """Violations of the schema's rules that the types of the fields do not express."""
     for field, problem in schema.schema_problems(path.read_bytes(), entry):
         yield Problem(file=str(path), field=field, problem=problem)

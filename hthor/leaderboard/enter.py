@@ -1,4 +1,4 @@
-"""Makes an entry from a run's folder, scored from the run's log."""
+"""Makes an entry from a run's folder; the scores are computed from the run's log."""
 
 import itertools
 import re
@@ -28,19 +28,19 @@ from hthor.leaderboard.submission.submission import Submission
 _SHOWN = 3
 _PACKAGE = Path(hthor.__file__).resolve().parent
 OURS = "hthor.agents."
-"""Package of the agents that are references."""
+"""Package of hthor's own agents, whose entries are references."""
 
 
 def add_runs(folder: Path, board: Path, submission: Submission | None = None) -> list[tuple[Entry, Path]]:
-    """Put a run, or every run in a folder of runs, on the board: their entries and the entries' files.
+    """Add a run, or every run in a folder of runs, to the board; return the entries and their files.
 
-    The control of each is added too when the board has none yet. Adding a run twice changes nothing. The list is not
-    rebuilt.
+    The control of each run is added too if the board does not have it. Adding a run twice changes nothing. The list is
+    not rebuilt.
 
     Raises:
-        RunError: when there is no run, it is not whole, or has no control.
-        BoardError: when the run has settings other than the benchmark's, or its entry is not in order; then nothing is
-            written.
+        RunError: if there is no run, or a run is incomplete or has no control.
+        BoardError: if the run has settings other than the benchmark's, or its entry is not valid;
+        then nothing is written.
     """
     made: dict[Path, Entry] = {}
     for run in _runs(folder):
@@ -60,7 +60,7 @@ def add_runs(folder: Path, board: Path, submission: Submission | None = None) ->
 
 
 def make_entry(folder: Path, submission: Submission | None = None) -> Entry:
-    """The entry of one run."""
+    """Make the entry of one run."""
     run = RunFolder(folder)
     config = run.config
     lines, kept = run.lines()
@@ -121,7 +121,7 @@ def _runs(folder: Path) -> list[Path]:
 
 
 def _refuse(board: Path, made: Mapping[Path, Entry]) -> None:
-    """Check entries before they are on the board: one that is not in order would prevent building the board."""
+    """Check entries before they are on the board: an invalid entry would prevent building the board."""
     with tempfile.TemporaryDirectory() as drafts:
         drawn = {Path(drafts) / path.name: path for path in made}
         for draft, path in drawn.items():
@@ -146,7 +146,7 @@ def _whole(folder: Path, config: RunConfig, there: int) -> None:
 
 
 def _crew(config: RunConfig) -> tuple[str, ...]:
-    """The bodies that the suite is made for; official suites have searches and deliveries, which are the scout's."""
+    """The robots that the suite is made for; the tasks of official suites are for the scout."""
     try:
         chosen = task_selection.select_tasks(config.suite.name, "")
     except HthorError:
@@ -168,10 +168,10 @@ def _same_files(folder: Path, agents: Sequence[Manifest], submission: Submission
 
 
 def _there(entry: Entry, path: Path) -> bool:
-    """Whether the board has this entry already, added by any commit.
+    """Whether the board already has this entry, no matter at which commit it was added.
 
     Raises:
-        BoardError: when it has a different entry of the same run, which is not overwritten: it may be the true one.
+        BoardError: if it has a different entry of the same run, which may be the true one and is not overwritten.
     """
     if not path.is_file():
         return False
@@ -203,14 +203,14 @@ def _slug(name: str) -> str:
 
 
 def current_harness(package: Path = _PACKAGE) -> Harness:
-    """Version, commit and state of the hthor of this process; the commit is the last one that touched the package."""
+    """Version, commit and state of the hthor in this process; the commit is the last one that changed the package."""
     commit = _git(package, "log", "-1", "--format=%H", "--", ".") or ""
     changed = _git(package, "status", "--porcelain", "--", ".") if commit else ""
     return Harness(version=hthor.__version__, commit=commit, dirty=bool(changed))
 
 
 def _git(package: Path, *words: str) -> str | None:
-    """The output of git, None when git is absent or the package is in no repository."""
+    """The output of git; None if git is not installed or the package is in no repository."""
     try:
         done = subprocess.run(["git", "-C", str(package), *words], capture_output=True, text=True, check=False)
     except OSError:

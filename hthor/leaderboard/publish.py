@@ -1,4 +1,4 @@
-"""Builds the list, the schema and the page from the entries, and recomputes entries when statistics have changed."""
+"""Builds the list, the schema and the page from the entries, and recomputes entries after changes in statistics."""
 
 from pathlib import Path
 
@@ -18,7 +18,7 @@ def build_board(board: Path) -> list[Path]:
     """Write the list, the schema and the page of a board; return their paths.
 
     Raises:
-        BoardError: when entries are not in order, naming all that is wrong.
+        BoardError: if entries are not valid; lists all problems.
     """
     written = []
     for name, data in board_files(board).items():
@@ -30,7 +30,7 @@ def build_board(board: Path) -> list[Path]:
 
 
 def board_files(board: Path) -> dict[str, bytes]:
-    """The contents of these files, by name."""
+    """The contents of a board's list, schema and page, by file name."""
     files.raise_problems(board_check.check_board(board))
     entries = [files.read_entry(path) for path in files.entry_paths(board)]
     found = listing.make_board(entries, verification.load_records(board), admission.load_admission(board))
@@ -56,10 +56,10 @@ def differences(board: Path) -> list[Problem]:
 
 
 def rescore(board: Path) -> list[Path]:
-    """Rewrite every entry whose numbers change, and return the paths; the outcomes of its trials stay as they are.
+    """Rewrite every entry whose numbers change, and return the paths; the outcomes of trials do not change.
 
     Raises:
-        BoardError: when an entry cannot be read.
+        BoardError: if an entry cannot be read.
     """
     held = [(path, files.read_entry(path)) for path in files.entry_paths(files.check_folder(board))]
     changed = []

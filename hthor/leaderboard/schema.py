@@ -1,6 +1,6 @@
-"""The JSON schema of an entry and of the list, made from their records, and a check of the same rules.
+"""The JSON schema of an entry and of the list, made from their records, and a check with the same rules.
 
-What records cannot express, such as that a share lies between 0 and 1, is in a table here.
+Rules that records cannot express, such as that a share is between 0 and 1, are in a table here.
 """
 
 import re
@@ -20,14 +20,14 @@ from hthor.leaderboard.ranking.board import Board
 from hthor.types import RobotSeat
 
 NEVER = "shard"
-"""The one field of a run that no entry has: an entry is a whole run."""
+"""The only field of a run that entries never have: an entry is a whole run."""
 _MAYBE = {
     record.__name__: {field.name for field in msgspec.structs.fields(record) if field.default is msgspec.UNSET}
     for record in (RunConfig, RobotSeat, Trials)
 }
 """Fields that may be left out."""
 _SHOWN = 60
-"""Characters of a wrong value that a message shows."""
+"""Characters of a wrong value that a message shows at most."""
 _HASH = {"pattern": "^([0-9a-f]{64})?$"}
 _RULES: tuple[tuple[type[Struct], str, dict[str, Any]], ...] = (
     (Estimate, "n", {"minimum": 0}),
@@ -40,17 +40,17 @@ _RULES: tuple[tuple[type[Struct], str, dict[str, Any]], ...] = (
     *((Counts, name, {"minimum": 0}) for name in ("trials", "successes", "messages", "faults")),
 )
 _MORE = {(record.__name__, field): rule for record, field, rule in _RULES}
-"""Further rules for fields of records."""
+"""Rules for fields of records, in addition to their types."""
 
 
 def field_rules(record: str, field: str) -> dict[str, Any]:
-    """What a field of a record must satisfy beyond its type, as keywords of JSON schema; empty for nothing."""
+    """The rules for a field of a record in addition to its type, as keywords of JSON schema; may be empty."""
     more = _MORE.get((record, field), {})
     return more | _HASH if field == "sha256" or field.endswith("_sha256") else more
 
 
 def json_schema() -> dict[str, Any]:
-    """The schema, draft 2020-12: either document is described under ``$defs``."""
+    """The schema, draft 2020-12, with both kinds of document under ``$defs``."""
     (entry, board), found = msgspec.json.schema_components((Entry, Board), ref_template="#/$defs/{name}")
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
@@ -62,13 +62,13 @@ def json_schema() -> dict[str, Any]:
 
 
 def document_schema(kind: str) -> dict[str, Any]:
-    """The schema of one kind of document, "Entry" or "Board", whose errors name the field better."""
+    """The schema of one kind of document, "Entry" or "Board"; its errors name the field more precisely."""
     whole = json_schema()
     return {"$schema": whole["$schema"], "$ref": f"#/$defs/{kind}", "$defs": whole["$defs"]}
 
 
 def _strict(name: str, record: dict[str, Any]) -> dict[str, Any]:
-    """The schema of a record in which every field is required and no other is allowed."""
+    """The schema of a record in which every field is required and no other field is allowed."""
     held = {field: _demanding(name, field, one) for field, one in record["properties"].items() if field != NEVER}
     about = {"description": record["description"].split("\n")[0]} if "description" in record else {}
     return {
@@ -90,13 +90,13 @@ def _demanding(name: str, field: str, schema: dict[str, Any]) -> dict[str, Any]:
 
 
 def schema_problems(data: bytes, entry: Entry) -> Iterator[tuple[str, str]]:
-    """Pairs of a field and what is wrong there, in an entry that was read from this file's content."""
+    """Problems, as pairs of a field and a description, of the file content from which an entry was read."""
     there: Any = documents.decode(data, Any)  # type: ignore[arg-type]
     yield from _fields(there, entry, "")
 
 
 def _fields(there: Any, held: Any, where: str) -> Iterator[tuple[str, str]]:
-    """Compare a document with the record that was made of it, part by part."""
+    """Compare a document with the record that was made from it, part by part."""
     if isinstance(held, Struct):
         names = [field.name for field in msgspec.structs.fields(held)]
         parts = {name: getattr(held, name) for name in names}
@@ -116,7 +116,7 @@ def _fields(there: Any, held: Any, where: str) -> Iterator[tuple[str, str]]:
 
 
 def _problem(value: Any, demands: dict[str, Any]) -> str:
-    """What a field's value violates; None is judged by its type alone."""
+    """Which rule a field's value violates; None is checked by its type alone."""
     if value is None:
         return ""
     shown = f"{value!r:.{_SHOWN}}"

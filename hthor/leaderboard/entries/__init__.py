@@ -1,1 +1,1 @@
-"""An entry: its record, outcomes, metrics, schema and laws."""
+"""An entry: its record, outcomes, metrics and schema, and the rules that it must satisfy."""

@@ -1,4 +1,4 @@
-"""Columns of small whole numbers as text: booleans as bits, numbers in a few bytes each."""
+"""Packs columns of small whole numbers into text: booleans as bits, numbers in a few bytes each."""
 
 import base64
 import binascii
@@ -10,15 +10,15 @@ LABELS_MAX = len(_DIGITS)
 
 
 def pack_bits(values: np.ndarray) -> str:
-    """A column of booleans, eight to a byte, the first in the highest bit; base64."""
+    """Pack a column of booleans: eight per byte, the first in the highest bit; base64."""
     return _text(np.packbits(values.astype(bool)).tobytes())
 
 
 def unpack_bits(text: str, count: int) -> np.ndarray:
-    """The column that `bits` made, (count,) bool.
+    """The column that `pack_bits` packed, (count,) bool.
 
     Raises:
-        ValueError: when the text does not hold so many, or its unused bits are not zero.
+        ValueError: if the text does not have ``count`` values, or its unused bits are not zero.
     """
     held = np.unpackbits(np.frombuffer(_data(text, -(-count // 8)), dtype=np.uint8))
     if held[count:].any():
@@ -27,10 +27,10 @@ def unpack_bits(text: str, count: int) -> np.ndarray:
 
 
 def pack_numbers(values: np.ndarray, size: int) -> str:
-    """A column of whole numbers, ``size`` bytes each, the lowest first; base64.
+    """Pack a column of whole numbers: ``size`` bytes each, the lowest byte first; base64.
 
     Raises:
-        ValueError: when one of them does not fit.
+        ValueError: if a number does not fit into ``size`` bytes.
     """
     whole = values.astype(np.int64)
     if (whole < 0).any() or (whole >= 1 << (8 * size)).any():
@@ -39,10 +39,10 @@ def pack_numbers(values: np.ndarray, size: int) -> str:
 
 
 def unpack_numbers(text: str, count: int, size: int) -> np.ndarray:
-    """The column that `numbers` made, (count,) int64.
+    """The column that `pack_numbers` packed, (count,) int64.
 
     Raises:
-        ValueError: when the text does not hold so many.
+        ValueError: if the text does not have ``count`` values.
     """
     held = np.frombuffer(_data(text, count * size), dtype=np.uint8).reshape(count, size).astype(np.int64)
     whole: np.ndarray = (held << (8 * np.arange(size))).sum(axis=1)
@@ -50,30 +50,30 @@ def unpack_numbers(text: str, count: int, size: int) -> np.ndarray:
 
 
 def pack_pieces(parts: list[bytes]) -> str:
-    """Pieces of equal length, one after the other; base64."""
+    """Join pieces of equal length, one after the other; base64."""
     return _text(b"".join(parts))
 
 
 def unpack_pieces(text: str, count: int, size: int) -> list[bytes]:
-    """The pieces that `pieces` joined.
+    """The pieces that `pack_pieces` joined.
 
     Raises:
-        ValueError: when the text does not hold so many.
+        ValueError: if the text does not have ``count`` pieces.
     """
     held = _data(text, count * size)
     return [held[start : start + size] for start in range(0, len(held), size)]
 
 
 def pack_labels(values: list[int]) -> str:
-    """A column of numbers below `LABELS_MAX`, a character each."""
+    """Pack a column of numbers below `LABELS_MAX`, one character each."""
     return "".join(_DIGITS[value] for value in values)
 
 
 def unpack_labels(text: str, count: int, most: int) -> np.ndarray:
-    """The column that `digits` made, (count,) int64.
+    """The column that `pack_labels` packed, (count,) int64.
 
     Raises:
-        ValueError: when there are not so many, or one is not below ``most``.
+        ValueError: if the text does not have ``count`` values, or a value is not below ``most``.
     """
     if len(text) != count:
         raise ValueError(f"has {len(text)} characters for {count} trials")

@@ -1,4 +1,4 @@
-"""The record of an entry. Its schema is made from these records, see `hthor.leaderboard.schema`."""
+"""The record of an entry; `hthor.leaderboard.schema` makes the JSON schema from it."""
 
 from typing import Annotated, Final, Literal
 
@@ -30,7 +30,7 @@ Columns = Annotated[str, Meta(pattern="^[0-9a-z]*$")]
 class Agent(Struct, frozen=True, kw_only=True):
     """The agent, described by its authors. Only the name is required.
 
-    ``team`` submits it; without one its authors are the team. ``deterministic``: it repeats its actions exactly.
+    ``team`` submits the agent; if empty, the authors are the team. ``deterministic``: it repeats its actions exactly.
     """
 
     name: Word
@@ -46,7 +46,7 @@ class Agent(Struct, frozen=True, kw_only=True):
 class Harness(Struct, frozen=True, kw_only=True):
     """The hthor that ran: its version, the last commit that changed it, and whether it had uncommitted changes.
 
-    Nothing in an entry proves this: it is a claim unless an official run made the entry. ``commit`` is empty where
+    An entry contains no proof of this: it is a claim unless an official run made the entry. ``commit`` is empty if
     hthor was not in a repository.
     """
 
@@ -56,7 +56,7 @@ class Harness(Struct, frozen=True, kw_only=True):
 
 
 class Hashes(Struct, frozen=True, kw_only=True):
-    """Hashes of the configuration and of all lines of the log, and the Merkle root of the rows of `Trials`."""
+    """Hashes of the run config and of all lines of the log, and the Merkle root of the rows of `Trials`."""
 
     run: Sha256
     trials: Sha256
@@ -64,20 +64,20 @@ class Hashes(Struct, frozen=True, kw_only=True):
 
 
 class Labels(Struct, frozen=True, kw_only=True):
-    """A property of each trial: its possible values, and each trial's value as a character, 0 for the first."""
+    """A property of each trial: its possible values, and each trial's value as a character, 0 for the first value."""
 
     names: tuple[Label, ...]
     of: Columns
 
 
 class Trials(Struct, frozen=True, kw_only=True):
-    """The outcome of each trial, in the order of people and their trials, in columns as `column_packing` makes them.
+    """The outcome of each trial, ordered by participant and then by trial, in columns packed by `column_packing`.
 
     Bits: ``met`` the goal was met, ``adopted`` a message was accepted, ``faulty`` an agent failed. Numbers: ``twsr``
-    in millionths (3 bytes), ``time`` in tenths of a second (2 bytes), ``trust`` (1 byte, 0 for none). Of the
-    robots' messages: how many were ``sent`` (2 bytes), ``accepted`` by the person, and ``useful``, which is accepted,
-    true and new to them (1 byte each, 255 for as many or more). ``leaves`` are the first 8 bytes of the SHA-256 of each
-    line of the log. ``time_limit_s`` is the mean time limit of the tasks [s].
+    in millionths (3 bytes), ``time`` in tenths of a second (2 bytes), ``trust`` (1 byte, 0 for none). Numbers of
+    robots' messages: ``sent`` (2 bytes), ``accepted`` by the person, and ``useful``: accepted, true and new to the
+    person (1 byte each, 255 for 255 or more). ``leaves`` are the first 8 bytes of the SHA-256 of each line of the log.
+    ``time_limit_s`` is the mean time limit of the tasks [s].
     """
 
     count: Annotated[int, Meta(ge=1)]
@@ -103,7 +103,7 @@ class Group(Struct, frozen=True, kw_only=True):
 
 
 class Metrics(Struct, frozen=True, kw_only=True):
-    """The metrics that follow from `Trials`; see `hthor.eval.metrics`."""
+    """The metrics that are computed from `Trials`; see `hthor.eval.metrics`."""
 
     sr: Estimate
     twsr: Estimate
@@ -116,8 +116,8 @@ class Metrics(Struct, frozen=True, kw_only=True):
 class Counts(Struct, frozen=True, kw_only=True):
     """Numbers of trials, of trials with the goal met, of robots' messages, and of trials with an agent that failed.
 
-    ``faults_by_kind`` counts faults by kind, ``replays`` the sessions that were restarted: both are claims, which
-    nothing in an entry proves.
+    ``faults_by_kind`` counts faults by kind, ``replays`` counts restarted sessions: both are claims, which an entry
+    does not prove.
     """
 
     trials: Count
@@ -129,22 +129,22 @@ class Counts(Struct, frozen=True, kw_only=True):
 
 
 class Entry(Struct, frozen=True, kw_only=True):
-    """A whole run on the board. ``id`` is its file's name without the ending.
+    """A whole run on the board. ``id`` is the name of the entry's file without its ending.
 
-    The results of replaying its trials are in files of their own, see `hthor.leaderboard.entries.verification`.
+    The results of replaying its trials are in separate files, see `hthor.leaderboard.entries.verification`.
 
     Attributes:
-        reference: whether it is one of hthor's own agents, which others are compared with and which have no rank.
-        submission: the folder under submissions/ that the agent came from, empty for none.
-        files: everything that was submitted with it.
-        agents: the files of its agents, with those that they opened while running; none for hthor's own.
-        run: the run's configuration, as its run.json.
-        mode: whether the world waited for the agent (lockstep) or its thinking took time (realtime).
+        reference: whether the agent is hthor's own; others are compared with it, and it has no rank.
+        submission: the folder in submissions/ from which the agent came; empty if there is none.
+        files: all files that were submitted with the agent.
+        agents: the files of its agents, including those that they opened while running; none for hthor's own agents.
+        run: the run's configuration, as in its run.json.
+        mode: whether the world waited for the agent (lockstep) or its computing took simulated time (realtime).
         overrides: settings other than the benchmark's; empty in a valid entry.
-        platforms: where it ran; empty where that was not noted. isolation: how the agent was isolated. Both are claims
-            unless an official run made the entry.
-        splits: by property and value, such as "difficulty" and "hard".
-        uplift: over the same people at the same tasks without a robot; None where there is no robot.
+        platforms: where the run was played; empty if it did not record this. isolation: how the agent was isolated.
+        Both are claims unless an official run made the entry.
+        splits: scores by property and value, such as "difficulty" and "hard".
+        uplift: over the same people at the same tasks without a robot; None if the run has no robot.
     """
 
     schema: Literal["hthor.entry/6"] = SCHEMA
@@ -169,22 +169,22 @@ class Entry(Struct, frozen=True, kw_only=True):
 
     @property
     def digest(self) -> str:
-        """Hash of everything that was submitted, without the numbers that follow from it: statistics may change."""
+        """Hash of everything submitted, without the numbers computed from it, because statistics may change."""
         held = {name: getattr(self, name) for name in self.__struct_fields__ if name not in _FOLLOW}
         return jsonio.sha256({**held, "control": self.uplift.control if self.uplift else ""})
 
     @property
     def code(self) -> tuple[str, ...]:
-        """Hashes of its agents' code."""
+        """Hashes of the code of its agents."""
         return tuple(dict.fromkeys(robot.agent.sha256 for robot in self.run.robots))
 
     @property
     def team(self) -> str:
-        """Who submitted it, for ranks: the team, else the authors, else the agent's name."""
+        """The name of the submitter for ranks: the team, else the authors, else the agent's name."""
         about = self.agent
         return about.team or ", ".join(sorted(about.authors)) or about.name
 
     @property
     def alone(self) -> bool:
-        """Whether there was no robot."""
+        """Whether the run had no robot."""
         return not self.run.seats

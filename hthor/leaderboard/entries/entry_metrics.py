@@ -16,14 +16,14 @@ from hthor.leaderboard.entries.entry import Entry, Group
 from hthor.leaderboard.entries.trial_outcomes import Outcomes
 
 MEASURED = ("sr", "twsr", "adoption", "usefulness", "time_s", "trust")
-"""Metrics that can be worked out from what an entry carries."""
+"""Metrics that can be computed from the contents of an entry."""
 _MILLION = 1_000_000
 
 
 def metric_values(held: Outcomes, metric: str, *, alone: bool) -> np.ndarray:
-    """A metric's value in each trial (N,), none (0,) where it has no meaning without a robot.
+    """A metric's value in each trial, (N,); empty, (0,), if the metric has no meaning without a robot.
 
-    Usefulness has one only in trials with a message that was accepted: (M,), see `asked`.
+    Usefulness has a value only in trials in which a message was accepted, (M,); see `accepted_trials`.
     """
     if alone and metric in ("adoption", "usefulness", "trust"):
         return np.zeros(0)
@@ -41,18 +41,18 @@ def metric_values(held: Outcomes, metric: str, *, alone: bool) -> np.ndarray:
 
 
 def accepted_trials(held: Outcomes) -> np.ndarray:
-    """The trials in which a message was accepted, as places."""
+    """Indices of the trials in which a message was accepted."""
     return np.flatnonzero(held.accepted > 0)
 
 
 def trial_participants(count: int, participants: int) -> list[int]:
-    """Whose each trial is, where every task is done once."""
+    """The participant of each trial, if every task is done once."""
     sizes = [sessions.count_trials(count, [person]) for person in range(participants)]
     return [person for person, size in enumerate(sizes) for _ in range(size)]
 
 
 def entry_scores(held: Outcomes, participants: Sequence[int], *, alone: bool) -> dict[str, Estimate]:
-    """Means and intervals of all that is `MEASURED`."""
+    """Means and intervals of all metrics in `MEASURED`."""
     owners = {"usefulness": [participants[place] for place in accepted_trials(held).tolist()]}
     return {
         metric: _estimate(
@@ -63,7 +63,7 @@ def entry_scores(held: Outcomes, participants: Sequence[int], *, alone: bool) ->
 
 
 def split_scores(held: Outcomes, participants: Sequence[int]) -> dict[str, dict[str, Group]]:
-    """The same of success, for the trials that have a property in common."""
+    """Success rates of the trials that have a property in common, by property and value."""
     found: dict[str, dict[str, Group]] = {}
     for name, (names, codes) in held.labels.items():
         found[name] = {}
@@ -76,7 +76,7 @@ def split_scores(held: Outcomes, participants: Sequence[int]) -> dict[str, dict[
 
 
 def entry_uplift(entry: Entry, held: Outcomes, control: Entry, without: Outcomes) -> Uplift:
-    """What the robots add to people who do the same tasks without one."""
+    """How the metrics differ from those of the same people at the same tasks without a robot."""
     participants = np.array(trial_participants(entry.trials.count, entry.run.participants), dtype=np.int64)
     tasks = np.arange(entry.trials.count, dtype=np.int64)
     found = {

@@ -1,4 +1,4 @@
-"""The board's files: where they are, and how they are read and written."""
+"""The board's files: their paths, and how to read and write them."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -18,11 +18,11 @@ _T = TypeVar("_T")
 
 
 class BoardError(HthorError):
-    """Files of the leaderboard that are not accepted."""
+    """Files of the leaderboard are not accepted."""
 
 
 class Problem(Struct, frozen=True, kw_only=True):
-    """What is wrong: the file, the field ($ for the whole file), and what was expected there."""
+    """A problem: the file, the field ($ for the whole file), and what is wrong there."""
 
     file: str
     field: str
@@ -30,15 +30,15 @@ class Problem(Struct, frozen=True, kw_only=True):
 
     @property
     def line(self) -> str:
-        """All of it on one line."""
+        """The whole problem on one line."""
         return f"{self.file}: {self.field}: {self.problem}"
 
 
 def raise_problems(found: Iterable[Problem]) -> None:
-    """Raise the problems as one error; do nothing when there are none.
+    """Raise the problems as one error; do nothing if there are none.
 
     Raises:
-        BoardError: names them all.
+        BoardError: if there are problems; names them all.
     """
     held = list(found)
     if held:
@@ -46,15 +46,15 @@ def raise_problems(found: Iterable[Problem]) -> None:
 
 
 def entry_paths(board: Path) -> list[Path]:
-    """The entries' files, by name."""
+    """The paths of the entries' files, sorted by name."""
     return sorted((board / ENTRIES).glob("*.json"))
 
 
 def check_folder(board: Path) -> Path:
-    """The board's folder.
+    """Check that the board's folder exists, and return it.
 
     Raises:
-        BoardError: when there is none, so that a mistyped path does not pass as an empty board.
+        BoardError: if it does not exist, so that a mistyped path is not treated as an empty board.
     """
     if not board.is_dir():
         raise BoardError(f"{board} is not a folder. Name the board with --board; 'hthor leaderboard add' creates one.")
@@ -62,10 +62,10 @@ def check_folder(board: Path) -> Path:
 
 
 def read_entry(path: Path) -> Entry:
-    """An entry from its file.
+    """Read an entry from its file.
 
     Raises:
-        BoardError: when it cannot be read, or a column of its trials cannot, naming the field.
+        BoardError: if the file, or a column of its trials, cannot be read; names the field.
     """
     entry = read_form(path)
     try:
@@ -76,19 +76,19 @@ def read_entry(path: Path) -> Entry:
 
 
 def read_form(path: Path) -> Entry:
-    """An entry from its file; the columns of its trials may hold anything.
+    """Read an entry from its file without checking the columns of its trials.
 
     Raises:
-        BoardError: when it cannot be read, naming the field.
+        BoardError: if the file cannot be read; names the field.
     """
     return documents.read(path, Entry, BoardError)
 
 
 def parse_document(data: bytes, shown: str, sort: type[_T]) -> _T:
-    """A document of this sort.
+    """Read a document of this type.
 
     Raises:
-        BoardError: when it is none, naming the field.
+        BoardError: if it is not such a document; names the field.
     """
     return documents.parse(data, sort, BoardError, shown=shown)
 
@@ -99,6 +99,6 @@ def write_document(path: Path, document: object) -> None:
 
 
 def read_commitments(board: Path) -> dict[str, Commitment]:
-    """The board's commitments to official suites, by the hash of the suite."""
+    """The board's commitments to official suites, by the hashes of the suites."""
     held = [commitment.load_commitment(path) for path in sorted((board / SUITES).glob("*.json"))]
     return {one.suite_sha256: one for one in held}

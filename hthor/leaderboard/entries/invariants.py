@@ -1,6 +1,6 @@
-"""Rules that an entry must satisfy beyond its schema: every number follows from the outcomes of its trials.
+"""Rules that an entry must satisfy beyond its schema: every number must follow from the outcomes of its trials.
 
-Each rule yields its problems as pairs of a field and what is wrong there, so that all of them can be listed.
+Each rule yields problems as pairs of a field and a description, so that all of them can be listed.
 """
 
 import math
@@ -23,12 +23,12 @@ from hthor.types import TaskSpec
 
 Problems = Iterator[tuple[str, str]]
 _NEAR = 2e-6
-"""Numbers have six decimals; the last may differ from machine to machine."""
+"""Numbers have six decimals; the last decimal may differ from machine to machine."""
 _MILLION = 1_000_000
 
 
 def check_hashes(entry: Entry, held: Outcomes) -> Problems:
-    """The hashes agree with the contents."""
+    """Check that the hashes agree with the contents."""
     if (now := entry.run.sha256) != entry.hashes.run:
         yield "hashes.run", f"is {entry.hashes.run[:10]}, but the hash of 'run' is {now[:10]}"
     if not entry.id.endswith(f"-{entry.hashes.run[:10]}"):
@@ -38,7 +38,7 @@ def check_hashes(entry: Entry, held: Outcomes) -> Problems:
 
 
 def check_sizes(entry: Entry, held: Outcomes) -> Problems:
-    """The run is whole, with every task once, and the counts agree with the trials."""
+    """Check that the run is complete, with every task once, and that the counts agree with the trials."""
     trials, counts = entry.trials.count, entry.counts
     for field, value in (
         ("run.trials", entry.run.trials),
@@ -64,10 +64,10 @@ def check_sizes(entry: Entry, held: Outcomes) -> Problems:
 
 
 def check_outcomes(entry: Entry, held: Outcomes, tasks: Sequence[TaskSpec] = ()) -> Problems:
-    """The outcomes of a trial are consistent: no time-weighted success without success, and so on.
+    """Check that each trial's outcomes are consistent: no time-weighted success without success, and so on.
 
     Args:
-        tasks: of each trial, where the suite is known; then time, T* and labels are checked too.
+        tasks: the task of each trial, if the suite is known; then time, T* and labels are checked too.
     """
     for field, wrong, problem in (
         ("trials.twsr", ~held.met & (held.twsr > 0), "not met, but time-weighted success above 0"),
@@ -85,7 +85,7 @@ def check_outcomes(entry: Entry, held: Outcomes, tasks: Sequence[TaskSpec] = ())
 
 
 def _of_tasks(held: Outcomes, tasks: Sequence[TaskSpec]) -> Problems:
-    """Times, time-weighted success and labels against the tasks themselves."""
+    """Check times, time-weighted success and labels against the tasks."""
     limits = np.array([round(task.time_limit / rules.TICK_S) for task in tasks])
     yield from _first("trials.time", held.time > limits, "longer than the time limit")
     yield from _first("trials.time", ~held.met & (held.time != limits), "not met, but not until the time limit")
@@ -103,14 +103,14 @@ def _of_tasks(held: Outcomes, tasks: Sequence[TaskSpec]) -> Problems:
 
 
 def _first(field: str, wrong: np.ndarray, problem: str) -> Problems:
-    """The first trial with the problem, and how many there are."""
+    """The index of the first trial with the problem, and how many trials have it."""
     places = np.flatnonzero(wrong)
     if len(places):
         yield field, f"{problem}: in {len(places)} trials, the first is trial {int(places[0])}"
 
 
 def check_settings(entry: Entry) -> Problems:
-    """All settings are the benchmark's, and references are hthor's own agents."""
+    """Check that all settings are the benchmark's, and that references are hthor's own agents."""
     for name, value in overrides.overridden_settings(entry.run).items():
         yield "run", f"{name} is {value}, and such runs are not ranked"
     ours = all(robot.agent.source.startswith("hthor.agents.") for robot in entry.run.robots)
@@ -121,7 +121,7 @@ def check_settings(entry: Entry) -> Problems:
 
 
 def check_agents(entry: Entry) -> Problems:
-    """Agents consist of the files that the run began with, and of nothing that was not submitted."""
+    """Check that agents consist of the files that the run started with, and that all of these were submitted."""
     for place, (known, listed) in enumerate(zip(entry.run.agents, entry.agents, strict=False)):
         if not set(known.files) <= set(listed.files) or known.sha256 != listed.sha256:
             yield f"agents[{place}]", f"lacks files of run.agents[{place}], or has others"
@@ -134,7 +134,7 @@ def check_agents(entry: Entry) -> Problems:
 
 
 def foreign_files(files: Sequence[File], handed_in: Sequence[File]) -> list[str]:
-    """Files of an agent that were not submitted, or differ from the submitted ones, in words."""
+    """Files of an agent that were not submitted, or that differ from the submitted ones, in words."""
     there = {file.path: file.sha256 for file in handed_in}
     return [
         f"{file.path} is not there" if file.path not in there else f"{file.path} is another file"
@@ -144,14 +144,14 @@ def foreign_files(files: Sequence[File], handed_in: Sequence[File]) -> list[str]
 
 
 def check_metrics(entry: Entry, held: Outcomes) -> Problems:
-    """Means lie in their intervals, and metrics recomputed from the trials are the same."""
+    """Check that means are within their intervals, and that metrics recomputed from the trials are the same."""
     for field, one in entry_estimates(entry):
         if one.mean is not None and one.ci95 is not None and not one.ci95[0] <= one.mean <= one.ci95[1]:
             yield field, f"the mean {one.mean} is not inside the interval {one.ci95[0]} to {one.ci95[1]}"
         if one.n > entry.trials.count:
             yield f"{field}.n", f"is {one.n}, more than the {entry.trials.count} trials"
     if entry.run.participants != participants_needed(entry.trials.count):
-        return  # the person of each trial is not known
+        return  # the participant of each trial is not known
     participants = entry_metrics.trial_participants(entry.trials.count, entry.run.participants)
     for metric, fresh in entry_metrics.entry_scores(held, participants, alone=entry.alone).items():
         yield from differences(f"metrics.{metric}", getattr(entry.metrics, metric), fresh)
@@ -159,7 +159,7 @@ def check_metrics(entry: Entry, held: Outcomes) -> Problems:
 
 
 def check_uplift(entry: Entry, held: Outcomes, control: Entry | None, without: Outcomes | None) -> Problems:
-    """The uplift is over people without a robot at the same tasks, and is the same when recomputed."""
+    """Check that the uplift is over people without a robot at the same tasks, and is the same when recomputed."""
     if entry.alone or entry.uplift is None:
         if entry.alone != (entry.uplift is None):
             yield "uplift", "is absent" if entry.uplift is None else "is there, but there is no robot"
@@ -173,13 +173,13 @@ def check_uplift(entry: Entry, held: Outcomes, control: Entry | None, without: O
 
 
 def entry_estimates(entry: Entry) -> Iterator[tuple[str, Estimate]]:
-    """Every estimate of an entry, with its field."""
+    """Every estimate in an entry, with its field."""
     for name in entry.metrics.__struct_fields__:
         yield f"metrics.{name}", getattr(entry.metrics, name)
 
 
 def differences(field: str, there: Any, here: Any) -> Problems:
-    """Where two documents differ by more than a last decimal."""
+    """Where two documents differ by more than rounding."""
     yield from _unlike(field, msgspec.to_builtins(there), msgspec.to_builtins(here))
 
 

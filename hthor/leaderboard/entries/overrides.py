@@ -1,4 +1,4 @@
-"""Settings of a run other than the benchmark's, with which it cannot be ranked."""
+"""Finds settings of a run that differ from the benchmark's; a run with such settings cannot be ranked."""
 
 import functools
 from collections.abc import Mapping
@@ -12,11 +12,11 @@ from hthor.types.detector_specs import OWN
 
 
 def overridden_settings(config: RunConfig, team: tuple[str, ...] = (), played: int | None = None) -> dict[str, str]:
-    """Settings other than the benchmark's, with their values.
+    """Settings that differ from the benchmark's, with their values.
 
     Args:
-        team: the bodies that the suite is made for, empty when that is not known.
-        played: how many different tasks were played, where that is known.
+        team: the robots that the suite is made for; empty if that is not known.
+        played: how many different tasks were played, if that is known.
     """
     found: dict[str, str] = {}
     if config.participants != participants_needed(suite_size(config) or played or config.trials):
@@ -47,7 +47,7 @@ def overridden_settings(config: RunConfig, team: tuple[str, ...] = (), played: i
 
 
 def refusal(folder: Path, config: RunConfig, found: Mapping[str, str]) -> str:
-    """Why such a run is not accepted, and which run would be."""
+    """Say why such a run is not accepted, and which run would be."""
     options = [f"--{name.replace('_', '-')} {value}" for name, value in found.items()]
     listed = f"{', '.join(options[:-1])} and {options[-1]}" if len(options) > 1 else options[0]
     why = "entries are compared trial by trial, so they all have the benchmark's settings"
@@ -61,7 +61,7 @@ def refusal(folder: Path, config: RunConfig, found: Mapping[str, str]) -> str:
 
 
 def suite_size(config: RunConfig) -> int | None:
-    """How many tasks the suite has; None of one that does not ship with hthor in this version."""
+    """How many tasks the suite has; None if the suite is not part of this version of hthor."""
     if config.suite.name not in tasks.suite_names():
         return None
     sha256, size = _size(config.suite.name)
@@ -70,6 +70,6 @@ def suite_size(config: RunConfig) -> int | None:
 
 @functools.cache
 def _size(name: str) -> tuple[str, int]:
-    """The hash of a suite that ships, and how many tasks it has."""
+    """The hash of a suite that is part of hthor, and how many tasks it has."""
     suite = library.read_suite(name)
     return suite.sha256, len(suite.tasks)

@@ -1,4 +1,4 @@
-"""The outcomes of trials as columns: from records, into an entry, and back."""
+"""Outcomes of trials as columns: made from records, packed into an entry, and unpacked again."""
 
 import hashlib
 from collections.abc import Callable, Iterable, Sequence
@@ -18,20 +18,20 @@ from hthor.tasks import Suite
 from hthor.types import TaskSpec
 
 LEAF = 8
-"""Bytes of a record's hash that are kept; too many to find another record with the same bytes and other outcomes."""
+"""Bytes of a record's hash that are kept: enough to make it infeasible to find another record with the same bytes."""
 PROPERTIES = ("difficulty", "kind", "split")
-"""Properties of a task by which its trials are grouped."""
+"""Properties of tasks by which trials are grouped."""
 UNKNOWN = "unknown"
 _ORDER = ("easy", "medium", "hard", "seen", "new")
 _MILLION = 1_000_000
 _SIZES = {"twsr": 3, "time": 2, "trust": 1, "sent": 2, "accepted": 1, "useful": 1}
-"""Bytes of a number in each column."""
-_LEAF, _NODE = b"\x00", b"\x01"  # so that no inner node can pass for a row
+"""Bytes per number in each column."""
+_LEAF, _NODE = b"\x00", b"\x01"  # so that an inner node cannot be taken for a row
 _MESSAGES = ("sent", "accepted", "useful")
 
 
 class Unreadable(ValueError):
-    """A column with wrong contents. ``field`` is its name."""
+    """A column has wrong contents. ``field`` is its name."""
 
     def __init__(self, field: str, problem: str) -> None:
         self.field = field
@@ -39,10 +39,10 @@ class Unreadable(ValueError):
 
 
 class Outcomes(Struct, frozen=True, kw_only=True):
-    """Columns of equal length: bool, or whole numbers as `hthor.leaderboard.entries.entry.Trials` has them.
+    """Columns of equal length: bool, or whole numbers in the units of `hthor.leaderboard.entries.entry.Trials`.
 
-    ``labels`` holds, for each property, its values and each trial's as an index. ``time_limit_s`` is the mean time
-    limit [s], None where it is not known.
+    ``labels`` has, for each property, its possible values and each trial's value as an index. ``time_limit_s`` is the
+    mean time limit [s], None if it is not known.
     """
 
     met: np.ndarray
@@ -68,17 +68,17 @@ class Outcomes(Struct, frozen=True, kw_only=True):
 
     @property
     def merkle(self) -> str:
-        """The root of all rows."""
+        """The Merkle root of all rows."""
         return merkle_root(self.rows)
 
 
 def outcome_bytes(row: bytes) -> bytes:
-    """The part of a row that holds the trial's outcome."""
+    """The part of a row that contains the trial's outcome."""
     return row[:-LEAF]
 
 
 def make_outcomes(records: Sequence[TrialRecord], leaves: Iterable[bytes]) -> Outcomes:
-    """The columns of records, with the hashes of their lines."""
+    """Make the columns from records and the hashes of their lines."""
     values = {
         metric: np.nan_to_num(trial_metrics.column((one.metrics for one in records), metric))
         for metric in ("sr", "adoption", "twsr", "time_s", "trust", *_MESSAGES)
@@ -98,23 +98,23 @@ def make_outcomes(records: Sequence[TrialRecord], leaves: Iterable[bytes]) -> Ou
 
 
 def task_labels(tasks: Sequence[TaskSpec]) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
-    """The labels of these tasks, as in `Outcomes`."""
+    """The labels of these tasks, in the form of `Outcomes.labels`."""
     return {name: _labels([getattr(task, name) or UNKNOWN for task in tasks]) for name in PROPERTIES}
 
 
 def tasks_of_trials(suite: Suite, entry: Entry) -> list[TaskSpec]:
-    """The task of each trial, in the order in which an entry holds its trials."""
+    """The task of each trial, in the order of an entry's trials."""
     hands = sessions.assign_many(suite.tasks, entry.run.seed, range(entry.run.participants))
     return [suite.tasks[number] for hand in hands for number in hand]
 
 
 def leaf_hash(line: bytes) -> bytes:
-    """The bytes that are kept of the hash of a record's line."""
+    """The part of the hash of a record's line that entries keep."""
     return hashlib.sha256(line).digest()[:LEAF]
 
 
 def pack(held: Outcomes) -> Trials:
-    """The columns as an entry has them."""
+    """Pack the columns for an entry."""
     return Trials(
         count=len(held.met),
         met=column_packing.pack_bits(held.met),
@@ -131,10 +131,10 @@ def pack(held: Outcomes) -> Trials:
 
 
 def unpack(trials: Trials) -> Outcomes:
-    """The columns of an entry.
+    """Unpack the columns of an entry.
 
     Raises:
-        Unreadable: when one of them has wrong contents.
+        Unreadable: if a column has wrong contents.
     """
     count = trials.count
     bits = {
@@ -167,13 +167,13 @@ def _read(field: str, read: Callable[..., Any], *given: Any) -> Any:
 
 
 def _counted(values: np.ndarray, name: str) -> np.ndarray:
-    """Counts, cut to what their column can hold."""
+    """Counts, cut to the largest number that their column can contain."""
     counts: np.ndarray = np.minimum(values, (1 << (8 * _SIZES[name])) - 1)
     return counts
 
 
 def _whole(values: np.ndarray) -> np.ndarray:
-    """Whole numbers that differ from the values only by what a float loses."""
+    """The values as integers, with float rounding errors removed."""
     held = np.round(values)
     if (np.abs(held - values) > 1e-3).any():
         raise ValueError("a trial's value is finer than an entry can hold")
@@ -186,9 +186,9 @@ def _labels(values: Sequence[str]) -> tuple[tuple[str, ...], np.ndarray]:
 
 
 def merkle_root(rows: Sequence[bytes]) -> str:
-    """The root of the rows' Merkle tree, 64 hexadecimal digits; a row without a partner moves up as it is.
+    """The root of the rows' Merkle tree, 64 hexadecimal digits; a row without a partner moves up unchanged.
 
-    No row can be changed, moved or removed without changing the root.
+    Changing, moving or removing a row changes the root.
     """
     level = [hashlib.sha256(_LEAF + row).digest() for row in rows]
     if not level:

@@ -1,7 +1,7 @@
 """Files that the keeper of a board writes: verifications and refutations of entries.
 
-They are separate from the entries, and no submission may touch them. An entry does not contain its own verification, so
-nobody can submit one, and removing something from an entry does not bring a refuted run back.
+They are separate from the entries, and no submission may change them. An entry does not contain its own verification.
+So nobody can submit a verification, and editing an entry does not bring a refuted run back.
 """
 
 from pathlib import Path
@@ -16,21 +16,21 @@ from hthor.leaderboard.entries.entry import Count, Entry, Sha256, Text, Word
 VERIFICATIONS: Final = "verifications"
 REFUTATIONS: Final = "refutations"
 MIN_DETECTION: Final = 0.95
-"""The least probability of catching three false outcomes in sixty, for an entry to be ranked."""
+"""The probability of catching three false outcomes in sixty that an entry needs at least to be ranked."""
 Tier = Literal["V1", "V2", "V3"]
 _T = TypeVar("_T")
 Share = Annotated[float, Meta(ge=0.0, le=1.0)]
 
 
 class Replayed(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Trials that were replayed.
+    """The result of replaying trials.
 
     Attributes:
-        tier: V1 byte for byte on the same platform, V2 by outcomes on another, V3 statistical.
-        passed: whether they confirm the entry.
-        drawn: trials of the sample. compared: these, and those before them in the same sessions. equal: of the
-            compared, those with the same outcome; same_bytes: with the same record.
-        caught: the probability that such a draw refutes an entry in which one outcome in twenty is false.
+        tier: V1 byte for byte on the same platform, V2 by outcomes on another platform, V3 statistical.
+        passed: whether the replayed trials confirm the entry.
+        drawn: trials in the sample. compared: these, and the trials before them in the same sessions. equal: compared
+        trials with the same outcome. same_bytes: compared trials with the same record.
+        caught: the probability that such a sample refutes an entry in which one outcome in twenty is false.
         why: the verdict in words.
     """
 
@@ -45,14 +45,14 @@ class Replayed(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Fresh(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The agent's results at tasks that were drawn after it was submitted, by the recipe of the entry's suite.
+    """The agent's results at tasks drawn after its submission, by the same recipe as the entry's suite.
 
     Attributes:
-        suite: hash of the fresh tasks. n: how many.
+        suite: hash of the fresh tasks. n: how many tasks.
         sr, twsr: the results. claimed_sr, claimed_twsr: the entry's means.
-        fell: whether the results are lower than chance explains, at the level of 1 %.
-        detectable: the drop of success that so many tasks detect with a power of 80 %, by simulation; None where they
-            detect none.
+        fell: whether the results are lower than chance explains, at the 1 % level.
+        detectable: the drop of success that this many tasks detect with a power of 80 %, by simulation; None if they
+        detect no drop.
         why: the verdict in words.
     """
 
@@ -71,12 +71,12 @@ class Verification(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
     """The result of verifying an entry, in ``verifications/ID.json``.
 
     Attributes:
-        id: the entry's. entry: hash of its contents at that time.
-        draw: the public word that everything was drawn with.
-        trials: of the agent. control: of the people without a robot, None where the entry is the control itself.
-        fresh: results at unseen tasks, None when none were run.
-        official: whether the official workflow made the entry, so that isolation, platform and commit are no claims.
-        platform: hash of the verifier's. by, date: as the verifier gave them.
+        id: of the entry. entry: hash of the entry's contents at that time.
+        draw: the public random word from which all samples were drawn.
+        trials: those of the agent. control: those of people without a robot, None if the entry is the control itself.
+        fresh: results at unseen tasks, None if none were played.
+        official: whether the official workflow made the entry; then isolation, platform and commit are not mere claims.
+        platform: hash of the verifier's platform. by, date: who verified and when, as the verifier stated.
     """
 
     schema: Literal["hthor.verification/1"] = "hthor.verification/1"
@@ -93,17 +93,17 @@ class Verification(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
 
     @property
     def refuted(self) -> bool:
-        """Whether the entry's claims are false, about the agent or its control."""
+        """Whether claims about the agent or its control are false."""
         return not all(one.passed for one in self._played)
 
     @property
     def fell(self) -> bool:
-        """Whether the agent did worse at tasks that it cannot have known before."""
+        """Whether the agent did worse at tasks that it could not know before."""
         return self.fresh is not None and self.fresh.fell
 
     @property
     def caught(self) -> float:
-        """The probability that a forged entry would have been caught: the smaller of agent and control."""
+        """The probability that a forged entry would have been caught: the lower one of agent and control."""
         return min(one.caught for one in self._played)
 
     @property
@@ -112,9 +112,9 @@ class Verification(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True
 
 
 class Refutation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """A run that was refuted, in ``refutations/MERKLE.json``; it remains when the entry's file is removed.
+    """A refuted run, in ``refutations/MERKLE.json``; the file stays when the entry's file is removed.
 
-    ``merkle`` and ``run`` are as in `Hashes`, ``code`` are the hashes of the agents, ``entry`` that of the whole entry.
+    ``merkle`` and ``run`` are as in `Hashes`; ``code`` are the agents' hashes, ``entry`` is the whole entry's.
     """
 
     schema: Literal["hthor.refutation/1"] = "hthor.refutation/1"
@@ -132,7 +132,7 @@ class Refutation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     def applies_to(self, entry: Entry, verified: Verification | None) -> bool:
         """Whether it applies to this entry: the same outcomes under any name, or the same run until that is verified.
 
-        The agent's true results can be submitted later and stand once they are verified; the false ones never do.
+        So the agent's true results can be submitted later and are valid once verified; the false results never are.
         """
         if self.merkle == entry.hashes.merkle:
             return True
@@ -141,18 +141,18 @@ class Refutation(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class KeeperRecords(Struct, frozen=True, kw_only=True):
-    """Everything that a board's keeper wrote: verifications by the entry's id, and refutations."""
+    """Everything that a board's keeper wrote: verifications by the entries' ids, and refutations."""
 
     verifications: dict[str, Verification]
     refutations: tuple[Refutation, ...]
 
     def verification_of(self, entry: Entry) -> Verification | None:
-        """The verification of exactly this entry, not of an earlier file of the same name."""
+        """The verification of exactly this entry, not of an earlier file with the same name; None if there is none."""
         found = self.verifications.get(entry.id)
         return found if found is not None and found.entry == entry.digest else None
 
     def refutation_of(self, entry: Entry) -> Refutation | None:
-        """The refutation that applies to an entry."""
+        """The refutation that applies to an entry; None if there is none."""
         verified = self.verification_of(entry)
         return next((one for one in self.refutations if one.applies_to(entry, verified)), None)
 
@@ -161,10 +161,10 @@ NO_RECORDS = KeeperRecords(verifications={}, refutations=())
 
 
 def load_records(board: Path) -> KeeperRecords:
-    """Everything that the keeper of a board wrote.
+    """Read everything that the keeper of a board wrote.
 
     Raises:
-        BoardError: when a file cannot be read, or its name does not agree with its contents.
+        BoardError: if a file cannot be read, or its name does not agree with its contents.
     """
     verified = [_read(path, Verification, "id") for path in sorted((board / VERIFICATIONS).glob("*.json"))]
     refuted = [_read(path, Refutation, "merkle") for path in sorted((board / REFUTATIONS).glob("*.json"))]
@@ -172,19 +172,19 @@ def load_records(board: Path) -> KeeperRecords:
 
 
 def read_verification(path: Path) -> Verification:
-    """A verification from its file.
+    """Read a verification from its file.
 
     Raises:
-        BoardError: when it cannot be read.
+        BoardError: if it cannot be read.
     """
     return files.parse_document(path.read_bytes(), str(path), Verification)
 
 
 def entry_path(board: Path, found: Verification) -> Path:
-    """The file of the entry that a verification belongs to.
+    """The file of the entry to which a verification belongs.
 
     Raises:
-        BoardError: when the board has none.
+        BoardError: if the board has no such entry.
     """
     path = board / files.ENTRIES / f"{found.id}.json"
     if path not in files.entry_paths(board):
@@ -193,10 +193,10 @@ def entry_path(board: Path, found: Verification) -> Path:
 
 
 def write_verification(board: Path, entry: Entry, found: Verification) -> list[Path]:
-    """Write a verification, and a refutation where the entry or its control failed it; return the paths.
+    """Write a verification, and a refutation if the entry or its control failed; return the paths.
 
     Raises:
-        BoardError: when it does not belong to this entry as it is now.
+        BoardError: if the verification does not belong to the entry's present contents.
     """
     if found.id != entry.id or found.entry != entry.digest:
         there = f"{found.id} with the hash {found.entry[:10]}"
@@ -212,7 +212,7 @@ def write_verification(board: Path, entry: Entry, found: Verification) -> list[P
 
 
 def find_control(board: Path, entry: Entry) -> Entry | None:
-    """The entry on the board that is the control of this one; None where there is none."""
+    """The entry on the board that is the control of this one; None if the board has no such entry."""
     if entry.uplift is None:
         return None
     others = (files.read_entry(path) for path in files.entry_paths(board))

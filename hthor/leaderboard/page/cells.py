@@ -1,4 +1,4 @@
-"""The tables of the page: cells with numbers and their intervals, in words and as small drawings; heads that sort."""
+"""The page's tables: cells with numbers and intervals, in words and as small drawings, and headers that sort."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -36,14 +36,14 @@ for(const th of document.querySelectorAll("th[data-k]")){
 
 
 class Cell(Struct, frozen=True):
-    """What is shown, and the number that a column is sorted by."""
+    """The content of a cell, and the number by which its column is sorted."""
 
     shown: Piece
     order: float = 0.0
 
 
 def rank(one: Row, metric: str = "sr") -> Cell:
-    """The rank, the ranks that are not excluded and the tier of verification; or why there is no rank."""
+    """The rank, the ranks that are not excluded and the tier of verification; or the reason why there is no rank."""
     if one.ranks is None:
         return Cell(_soft("ref." if one.reference else DASH, "" if one.reference else one.unranked), _LAST)
     found: Standing = getattr(one.ranks, metric)
@@ -94,7 +94,7 @@ def gain(one: Difference | None, unit: Unit = SHARE) -> Cell:
 
 
 def fresh(one: Row) -> Cell:
-    """Success at tasks that were drawn after the agent was submitted, and whether it dropped."""
+    """Success at tasks that were drawn after the agent's submission, and whether it dropped."""
     found = one.verification.fresh if one.verification else None
     if found is None:
         return Cell(_soft("not yet"), -1.0)
@@ -119,7 +119,7 @@ def checked(one: Row) -> Cell:
 
 
 def isolation(one: Row) -> Cell:
-    """How the agent was isolated: ours are not; for others it is a claim unless the official workflow made the run."""
+    """How the agent was isolated; empty for hthor's own. It is a claim unless the official workflow made the run."""
     if not one.isolation:
         return Cell(_soft("built in"))
     level = float(one.isolation[1:]) if one.isolation[1:].isdigit() else 0.0
@@ -135,7 +135,7 @@ def faults(one: Row) -> Cell:
 
 
 def ties(section: Section) -> str:
-    """Which agents cannot be shown apart, as a sentence; empty for none."""
+    """A sentence that names the agents that the data cannot tell apart; empty if there are none."""
     names = {row.id: row.name for row in section.rows}
     pairs = [
         f"{row.name} and {names[id]}"
@@ -160,7 +160,7 @@ def _small(text: str) -> Markup:
 
 
 def _interval(ends: str, one: Estimate | Difference, unit: Unit) -> Markup:
-    """The interval; pointing at it tells how many trials it is of, and what they could have seen."""
+    """The interval; its tooltip gives the number of trials and the smallest detectable difference."""
     shown = f"n {one.n}, could have seen {format_detectable(one.mde80, unit)}"
     return tag("small", ends, class_="soft", title=shown)
 
@@ -170,26 +170,26 @@ def _minus(text: str) -> str:
 
 
 class Scale(Struct, frozen=True, kw_only=True):
-    """From where to where a column's marks go, in percent."""
+    """The range of a column of drawn intervals [%]."""
 
     low: int
     high: int
 
     def at(self, share: float) -> float:
-        """Where a share lies [px]."""
+        """The horizontal position of a share [px]."""
         part = (100.0 * share - self.low) / (self.high - self.low)
         return round(_EDGE + (_WIDE - 2 * _EDGE) * min(max(part, 0.0), 1.0), 1)
 
 
 def common_scale(some: Iterable[Estimate]) -> Scale:
-    """The tens around all intervals."""
+    """The range of all intervals, rounded outwards to tens."""
     ends = [end for one in some for end in (one.ci95 or ())] or [0.0, 1.0]
     low, high = 10 * math.floor(10 * min(ends)), 10 * math.ceil(10 * max(ends))
     return Scale(low=max(0, low), high=min(100, max(high, low + 10)))
 
 
 def draw_axis(on: Scale) -> Markup:
-    """The head of a column of marks: its ends in numbers."""
+    """The header of a column of drawn intervals: the ends of its range as numbers."""
     look: dict[str, str | int] = {"y": 11, "font_size": 10, "fill": "var(--soft)"}
     ends = (
         tag("text", str(on.low), x=on.at(on.low / 100.0) - 4, **look),
@@ -199,7 +199,7 @@ def draw_axis(on: Scale) -> Markup:
 
 
 def draw_interval(one: Estimate, on: Scale, colour: str) -> Markup:
-    """A dot for the mean, a line for the interval, thin lines at each tenth."""
+    """A dot for the mean, a line for the interval, and thin lines at each tenth."""
     if one.mean is None:
         return NOTHING
     low, high = one.ci95 or (one.mean, one.mean)
@@ -227,12 +227,12 @@ def table(
     words: Iterable[int],
     named: int = 1,
 ) -> Markup:
-    """A table whose heads sort it.
+    """A table whose headers sort it.
 
     Args:
-        head: each column's title and which way it sorts first: 1 up, -1 down, 0 not at all.
+        head: each column's title and its first sorting direction: 1 up, -1 down, 0 not sortable.
         lines: each row's class and cells.
-        words: columns that hold no numbers. named: the column that is the row's name.
+        words: columns without numbers. named: the column with the row's name.
     """
     wordy = set(words)
     tops = [
@@ -256,5 +256,5 @@ def _table_cell(part: Cell, named: bool, wordy: bool) -> Markup:
 
 
 def fold(title: str, *inside: Piece) -> Markup:
-    """Something that is shown when its title is clicked."""
+    """Content that is shown after a click on its title."""
     return tag("details", tag("summary", title), *inside)

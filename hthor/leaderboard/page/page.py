@@ -1,4 +1,4 @@
-"""The leaderboard as one page that needs nothing else: no network, and a script that only sorts."""
+"""The leaderboard as one page that loads nothing: no network, and a script that only sorts tables."""
 
 from hthor.eval.metrics.metric import SECONDS
 from hthor.leaderboard.page import cells
@@ -87,7 +87,7 @@ _HEAD: tuple[tuple[str, int], ...] = (
 
 
 def render(found: Board) -> str:
-    """The page, the same bytes for the same list."""
+    """The page; the same list gives the same bytes."""
     ranked = any(row.ranks for one in found.sections for row in one.rows)
     body = [_section(number, one) for number, one in enumerate(found.sections, 1)]
     title = "hthor leaderboard"
@@ -163,7 +163,7 @@ def _cells(row: Row, on: cells.Scale) -> list[Cell]:
 
 
 def _splits(one: Section) -> Markup:
-    """Success by property, a column each value that any entry has."""
+    """Success by property: one column for each value that any entry has."""
     columns = dict.fromkeys(
         (name, value) for row in one.rows for name, values in row.splits.items() for value in values
     )
@@ -199,7 +199,7 @@ def _origin(row: Row) -> tuple[Piece, ...]:
 
 
 def _refuted(number: int, some: tuple[Struck, ...]) -> Markup:
-    """Entries that do not stand."""
+    """Entries that were refuted."""
     listed = (tag("li", one.name, " (", tag("code", one.id), f"): {one.why}") for one in some)
     return _titled(number, "refuted", "Refuted, and taken off", tag("ul", *listed))
 

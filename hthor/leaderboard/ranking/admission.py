@@ -1,7 +1,7 @@
-"""What a board accepts and what it ranks: lists of people, seeds and suites that its keeper wrote.
+"""Which runs a board accepts and ranks: lists of human populations, seeds and suites, written by its keeper.
 
-Without such lists anybody could open a section of their own: with a seed that suits an agent, with people of the same
-name as ours, on hand-picked tasks. A board without the file accepts what `own` lists.
+Without such lists anybody could open a section of their own: with a seed that suits an agent, with other people under
+the same name, on hand-picked tasks. A board without such a file accepts the lists of `default_admission`.
 """
 
 import functools
@@ -27,7 +27,7 @@ Standing = Literal["ranked", "development"]
 
 
 class Admitted(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Something that is accepted: its name, for readers of the list, and the hash that decides."""
+    """Something that is accepted: its name, for readers of the list, and its hash, which decides."""
 
     name: Word
     sha256: Sha256
@@ -36,15 +36,15 @@ class Admitted(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 class AdmittedSuite(Admitted, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """A suite that is accepted.
 
-    ``standing`` is "ranked" for tasks that no agent can have known when it was submitted, and "development" for public
-    ones, whose entries stand on the board without a rank.
+    ``standing`` is "ranked" if no agent can have known the tasks when it was submitted, and "development" if the tasks
+    are public; entries of development suites are on the board without a rank.
     """
 
     standing: Standing
 
 
 class Admission(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The lists. A run is accepted when its people, its seed and its suite are all on them."""
+    """The lists. A run is accepted if its people, its seed and its suite are all on them."""
 
     schema: Literal["hthor.admission/1"] = _SCHEMA
     people: tuple[Admitted, ...]
@@ -52,13 +52,13 @@ class Admission(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     suites: tuple[AdmittedSuite, ...]
 
     def standing(self, entry: Entry) -> Standing | None:
-        """The standing of an entry's suite; None when it is not on the list."""
+        """The standing of an entry's suite; None if the suite is not on the list."""
         return next((one.standing for one in self.suites if one.sha256 == entry.run.suite.sha256), None)
 
 
 @functools.cache
 def default_admission() -> Admission:
-    """What every board accepts: the people of the benchmark, seed 0, and hthor's own suites, which are public."""
+    """The lists of every board: the people of the benchmark, seed 0, and hthor's own suites, which are public."""
     suites = (library.read_suite(name) for name in tasks.suite_names())
     return Admission(
         people=(Admitted(name=resolve.PROXY, sha256=resolve.resolve_humans(resolve.PROXY).sha256),),
@@ -68,17 +68,17 @@ def default_admission() -> Admission:
 
 
 def load_admission(board: Path) -> Admission:
-    """The lists of a board.
+    """Read the lists of a board.
 
     Raises:
-        BoardError: when the file cannot be read, naming the field.
+        BoardError: if the file cannot be read; names the field.
     """
     path = board / NAME
     return files.parse_document(path.read_bytes(), str(path), Admission) if path.is_file() else default_admission()
 
 
 def extended_admission(board: Path, season: Commitment | None = None) -> Admission:
-    """A board's lists with what this version of hthor brings, and with an official suite that is to be ranked."""
+    """A board's lists, extended by those of this version of hthor and by an official suite that is to be ranked."""
     there, here = load_admission(board), default_admission()
     suites = {one.sha256: one for one in (*here.suites, *there.suites)}
     if season is not None:
@@ -92,7 +92,7 @@ def extended_admission(board: Path, season: Commitment | None = None) -> Admissi
 
 
 def admission_problems(entry: Entry, taken: Admission) -> Iterator[tuple[str, str]]:
-    """Why an entry is not accepted: fields, and what is wrong there."""
+    """Reasons why an entry is not accepted, as pairs of a field and a description."""
     run, how = entry.run, f"see {NAME}, which the board's keeper writes"
     if run.humans.sha256 not in {one.sha256 for one in taken.people}:
         names = ", ".join(dict.fromkeys(one.name for one in taken.people))

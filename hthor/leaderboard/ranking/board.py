@@ -1,4 +1,4 @@
-"""What the list holds: entries in sections of those that can be compared, with their ranks."""
+"""The list of a board: entries in sections that can be compared, with their ranks."""
 
 from typing import Final, Literal
 
@@ -14,10 +14,10 @@ SCHEMA: Final = "hthor.leaderboard/6"
 
 
 class Standing(Struct, frozen=True, kw_only=True):
-    """A place among the agents of a section: 1 is the best.
+    """A rank among the agents of a section; 1 is the best.
 
-    ``interval`` holds the ranks that are not excluded at 95 %; ``ties`` the ids of the agents that cannot be
-    distinguished from this one.
+    ``interval`` has the ranks that are not excluded at 95 %; ``ties`` has the ids of the agents that cannot be
+    distinguished from this agent.
     """
 
     rank: int
@@ -26,14 +26,14 @@ class Standing(Struct, frozen=True, kw_only=True):
 
 
 class Ranks(Struct, frozen=True, kw_only=True):
-    """By success rate, and by time-weighted success."""
+    """Ranks by success rate and by time-weighted success."""
 
     sr: Standing
     twsr: Standing
 
 
 class Gain(Struct, frozen=True, kw_only=True):
-    """Over no robot."""
+    """Differences from the same people at the same tasks without a robot."""
 
     sr: Difference
     twsr: Difference
@@ -50,14 +50,14 @@ class Checked(Struct, frozen=True, kw_only=True):
 
 
 class Row(Struct, frozen=True, kw_only=True):
-    """An entry in short.
+    """A summary of an entry.
 
     Attributes:
-        ranks: None where there is none; ``unranked`` says why.
-        same_as: the id of the entry that is counted in this one's place, as both are one agent; empty for none.
-        faults: trials in which the agent failed. replays: sessions that were restarted, as the run claims.
-        isolation: how the agent was isolated, empty for one that is built in. It and ``harness`` are claims unless the
-            official workflow made the entry.
+        ranks: None if the entry has no rank; ``unranked`` says why.
+        same_as: the id of the entry that is ranked instead, because both are one agent; empty if there is none.
+        faults: trials in which the agent failed. replays: restarted sessions, as the run claims.
+        isolation: how the agent was isolated; empty for hthor's own agents. Isolation and ``harness`` are claims unless
+        the official workflow made the entry.
     """
 
     id: str
@@ -92,13 +92,13 @@ class Row(Struct, frozen=True, kw_only=True):
 
 
 class Section(Struct, frozen=True, kw_only=True):
-    """Entries that played the same trials under the same code, best first; only these can be compared.
+    """Entries that played the same trials with the same code, best first; only entries of one section can be compared.
 
     Attributes:
-        standing: "ranked", or "development" where the tasks are public and no agent has a rank.
-        humans: who the people are, and the hash of all that makes them. calibrated: whether they are known to fit.
-        rules, code: hashes of the benchmark's constants and of the code that can move a score.
-        mode: as in the entries. trials, people: how many.
+        standing: "ranked", or "development" if the tasks are public, so that no agent has a rank.
+        humans: name and hash of the human population. calibrated: whether it is calibrated for the suite.
+        rules, code: hashes of the benchmark's constants and of the code that affects scores.
+        mode: as in the entries. trials, people: how many of them.
     """
 
     standing: Literal["ranked", "development"]
@@ -116,7 +116,7 @@ class Section(Struct, frozen=True, kw_only=True):
 
 
 class Struck(Struct, frozen=True, kw_only=True):
-    """An entry that was refuted and does not stand: its id, the agent's name, and why."""
+    """An entry that was refuted and is not listed: its id, the agent's name, and the reason."""
 
     id: str
     name: str
@@ -124,7 +124,7 @@ class Struck(Struct, frozen=True, kw_only=True):
 
 
 class Board(Struct, frozen=True, kw_only=True):
-    """Every entry. Sections are in order: ranked ones first, then of suites, people, mode and code."""
+    """All entries. Ranked sections come first; then sections are sorted by suite, people, mode and code."""
 
     schema: Literal["hthor.leaderboard/6"] = SCHEMA
     sections: tuple[Section, ...]

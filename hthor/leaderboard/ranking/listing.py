@@ -1,4 +1,4 @@
-"""Makes the list from the entries: sections, ranks, rows; the same entries give the same bytes."""
+"""Makes the list from the entries: sections, ranks and rows; the same entries give the same bytes."""
 
 import itertools
 from collections.abc import Mapping, Sequence
@@ -18,15 +18,15 @@ from hthor.leaderboard.ranking.board import Board, Checked, Gain, Ranks, Row, Se
 _NO_ROBOT = "no robot"
 Key = tuple[str, str, str, str, int, str, str, str]
 ALIKE = 0.9
-"""The share of trials with the same success and nearly the same time from which two agents are one. No robot and the
-frontier robot, the most alike of the references, agree in about half of the trials of ``standard``; see
+"""Two agents count as one if this share of their trials has the same success and nearly the same time. No robot and
+the frontier robot, the most similar references, agree in about half of the trials of ``standard``; see
 docs/leaderboard.md."""
 NEAR_S = 1.0
-"""How far two times may be from each other [s]."""
+"""Largest difference of two times that count as nearly the same [s]."""
 
 
 def comparison_key(entry: Entry) -> Key:
-    """What entries must have in common to be compared."""
+    """The properties that entries must share to be compared."""
     run = entry.run
     people = (run.humans.name, run.humans.sha256, run.seed)
     return (run.suite.name, run.suite.sha256, *people, entry.mode, run.code_sha256, run.rules_sha256)
@@ -35,11 +35,11 @@ def comparison_key(entry: Entry) -> Key:
 def make_board(
     entries: Sequence[Entry], kept: KeeperRecords = verification.NO_RECORDS, taken: Admission | None = None
 ) -> Board:
-    """The list.
+    """Make the list.
 
     Args:
-        kept: what the board's keeper wrote; an entry that was refuted does not stand. taken: which suites are ranked;
-            without it none is.
+        kept: the files of the board's keeper; a refuted entry is not listed. taken: which suites are ranked; none if it
+        is None.
     """
     struck = {entry.id: found for entry in entries if (found := kept.refutation_of(entry)) is not None}
     standing = [entry for entry in entries if entry.id not in struck]
@@ -58,7 +58,7 @@ def make_board(
 
 
 def display_name(entry: Entry) -> str:
-    """What to call an entry's agent."""
+    """The name of an entry's agent on the page."""
     return _NO_ROBOT if entry.reference and entry.alone else entry.agent.name
 
 
@@ -92,7 +92,7 @@ def _section(entries: Sequence[Entry], kept: KeeperRecords, standing: admission.
 
 
 def _unranked(entry: Entry, kept: KeeperRecords, standing: admission.Standing, controls: set[str]) -> str:
-    """Why an entry has no rank; empty for one that can have one."""
+    """The reason why an entry has no rank; empty if it can have a rank."""
     found = kept.verification_of(entry)
     if entry.reference:
         return "reference"
@@ -110,7 +110,7 @@ def _unranked(entry: Entry, kept: KeeperRecords, standing: admission.Standing, c
 
 
 def _ranks(entries: Sequence[Entry]) -> dict[str, Ranks]:
-    """Places of the agents that have one, by the entry's id."""
+    """The ranks of the agents that have one, by the entry's id."""
     if not entries:
         return {}
     held = [trial_outcomes.unpack(entry.trials) for entry in entries]
@@ -165,8 +165,8 @@ def _checked(entry: Entry, kept: KeeperRecords) -> Checked | None:
 
 
 def group_duplicates(entries: Sequence[Entry], held: Sequence[Outcomes]) -> list[list[int]]:
-    """Entries that are one agent, as groups of their places; linked entries are in one group."""
-    from scipy.sparse import csgraph  # comes with the core: scikit-image needs it
+    """Group entries that are one agent, by their indices; entries that are linked through others are in one group."""
+    from scipy.sparse import csgraph  # installed with the core, because scikit-image needs it
 
     alike = np.zeros((len(entries), len(entries)), dtype=bool)
     for one, other in itertools.combinations(range(len(entries)), 2):
@@ -176,7 +176,7 @@ def group_duplicates(entries: Sequence[Entry], held: Sequence[Outcomes]) -> list
 
 
 def representatives(entries: Sequence[Entry], held: Sequence[Outcomes]) -> dict[str, str]:
-    """For each entry by its id, the one that is counted in its place: of a group the best, of equals the first."""
+    """For each entry's id, the id of the entry that is ranked for it: the best of its group, the first of equals."""
     found: dict[str, str] = {}
     for group in group_duplicates(entries, held):
         best = min(
@@ -187,7 +187,7 @@ def representatives(entries: Sequence[Entry], held: Sequence[Outcomes]) -> dict[
 
 
 def similarity(one: Outcomes, other: Outcomes) -> float:
-    """The share of trials in which both did the same: success as much as time, to within `NEAR_S`."""
+    """The share of trials in which both had the same success, and the same time to within `NEAR_S`."""
     if len(one.met) != len(other.met):
         return 0.0
     near = np.abs(one.time - other.time) <= round(NEAR_S / rules.TICK_S)

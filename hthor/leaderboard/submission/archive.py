@@ -1,4 +1,4 @@
-"""Unpacks a .zip or .tar.gz that is submitted: plain files within a folder, of bounded number and size."""
+"""Unpacks a submitted .zip or .tar.gz: only plain files within a folder, in limited number and size."""
 
 import shutil
 import stat
@@ -26,7 +26,7 @@ class _Member(Struct, frozen=True):
 
 
 def is_archive(path: Path) -> bool:
-    """Whether a path is that of an archive, by its name."""
+    """Whether a path has the name of an archive."""
     return path.name.endswith(SUFFIXES) and path.is_file()
 
 
@@ -36,13 +36,13 @@ def stem(path: Path) -> str:
 
 
 def unpack(path: Path, folder: Path, *, most_bytes: int, most_files: int) -> Path:
-    """Unpack an archive into a folder that is not there yet; a single folder around all that it holds is left out.
+    """Unpack an archive into a new folder; if one folder contains everything in the archive, its contents are unpacked.
 
-    Modes, times and owners are not kept, so that the same files give the same folder.
+    File modes, times and owners are dropped, so that the same files give the same folder.
 
     Raises:
-        BoardError: when it is damaged, or holds a link, a path that leads outside, a name twice, or too much; then
-            nothing is left of the folder.
+        BoardError: if the archive is damaged, or contains a link, a path that leads outside, a name twice, or too much;
+        then the folder is removed.
     """
     if folder.exists():
         raise BoardError(f"{folder} is there already; name another folder with --out, or remove it.")
@@ -118,7 +118,7 @@ def _write(path: Path, members: Iterator[_Member], folder: Path, most_bytes: int
 
 
 def _flatten(folder: Path) -> None:
-    """Leave out a single folder that is around all of it, as most archives have one."""
+    """Replace the folder's contents by those of its only subfolder, as most archives have one."""
     held = list(folder.iterdir())
     if len(held) != 1 or not held[0].is_dir():
         return

@@ -1,4 +1,4 @@
-"""A submission: a folder with one agent, its files, and its authors' description. Nothing of it is run here."""
+"""A submission: a folder with one agent, its files, and its authors' description. Its code is never run here."""
 
 import re
 import tempfile
@@ -18,7 +18,7 @@ from hthor.leaderboard.submission import archive
 
 ABOUT, AGENT_FILE = "submission.json", "agent.py"
 MAX_BYTES, MAX_FILES = 64 << 20, 500
-"""All files of a submission together, and how many there may be."""
+"""Largest size of all files of a submission together, and largest number of files."""
 _NAME = re.compile(r"[a-z0-9][a-z0-9_-]{0,39}")
 _PATH = re.compile(r"[A-Za-z0-9_+-][A-Za-z0-9_.+-]*(/[A-Za-z0-9_+-][A-Za-z0-9_.+-]*){0,7}")
 _PATH_MAX = 200
@@ -28,7 +28,7 @@ _LEAST = 'a file with the agent\'s name at least: {"name": "My agent"}'
 
 
 class Submission(Struct, frozen=True, kw_only=True):
-    """A folder of submissions/: its name, the agent's file, who it is, and every submitted file."""
+    """A folder in submissions/: its name, the agent's file, the authors' description, and all submitted files."""
 
     name: str
     path: Path
@@ -42,10 +42,10 @@ class _Said(Agent, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 @contextmanager
 def submission_folder(place: Path) -> Iterator[Path]:
-    """A submission's folder, of an archive for as long as it is needed.
+    """A submission's folder; an archive is unpacked for as long as the context lasts.
 
     Raises:
-        BoardError: when it is an archive that cannot be unpacked.
+        BoardError: if the archive cannot be unpacked.
     """
     if not archive.is_archive(place):
         yield place
@@ -55,10 +55,10 @@ def submission_folder(place: Path) -> Iterator[Path]:
 
 
 def read_submission(folder: Path) -> Submission:
-    """The submission in a folder.
+    """Read the submission in a folder.
 
     Raises:
-        BoardError: when it is not one; lists everything that is wrong.
+        BoardError: if the folder is not a submission; lists all problems.
     """
     raise_problems(submission_problems(folder))
     said = parse_document((folder / ABOUT).read_bytes(), str(folder / ABOUT), _Said)
@@ -67,7 +67,7 @@ def read_submission(folder: Path) -> Submission:
 
 
 def list_files(folder: Path) -> tuple[File, ...]:
-    """Every file in a folder with its hash, sorted: the same however and in whatever order they were packed."""
+    """Every file in a folder with its hash, sorted; the result does not depend on how the files were packed."""
     found = []
     for path in folder.rglob("*"):
         if path.is_file() and not path.is_symlink():
@@ -77,7 +77,7 @@ def list_files(folder: Path) -> tuple[File, ...]:
 
 
 def submission_problems(folder: Path) -> Iterator[Problem]:
-    """Everything that is wrong with a folder as a submission, without running anything of it."""
+    """All problems of a folder as a submission; none of its code is run."""
     shown = str(folder)
     if folder.is_symlink() or not folder.is_dir():
         rule = "is not a folder, and no .zip or .tar.gz of one; a submission is a folder, submissions/NAME"
@@ -138,7 +138,7 @@ def _no_text(path: Path) -> Iterator[str]:
 
 
 def _alike(folder: Path, held: list[Path]) -> Iterator[Problem]:
-    """Names that some file systems take for one."""
+    """Names that some file systems cannot tell apart."""
     seen: dict[str, str] = {}
     for path in held:
         name = path.relative_to(folder).as_posix()

@@ -1,8 +1,8 @@
-"""The probability that a verification would have caught a forged entry, by simulation from what it observed.
+"""The probability that a verification would have caught a forged entry, simulated from the observed trials.
 
-The forger turns one outcome in twenty, three of sixty, into a success, consistently in all numbers, without knowing the
-draw. Chance differences are taken from the observation: where the entry and the replayed trials differ, either could
-have been the claim.
+The forger turns one outcome in twenty (three of sixty) into a success, with all numbers consistent, without knowing
+which trials will be drawn. Random differences between runs are taken from the observed ones: where the entry and the
+replayed trials differ, either of them could have been claimed.
 """
 
 import math
@@ -27,7 +27,7 @@ _WORTH = 600_000
 def detection_probability(
     by: Tier, claimed: Outcomes, again: ReplayedTrials, drawn: Sequence[int], participants: Sequence[int]
 ) -> float:
-    """The probability that this tier refutes such an entry with so large a draw."""
+    """The probability that this tier refutes an entry forged in this way, with a sample of this size."""
     count = len(claimed.met)
     turned = max(1, round(TURNED * count))
     if by == "V1":
@@ -49,7 +49,7 @@ def detection_probability(
 
 
 def _hit(count: int, compared: int, turned: int) -> float:
-    """The probability that one of the changed trials is among those that were compared."""
+    """The probability that at least one changed trial is among the compared trials."""
     if turned > count - compared:
         return 1.0
     return 1.0 - math.comb(count - compared, turned) / math.comb(count, turned)
@@ -63,7 +63,7 @@ def _forge(
     turned: int,
     draw: np.random.Generator,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """A random honest claim that is forged: differences of success and of TWSR, and the forged trials."""
+    """Forge a random honest claim; return the differences of success and of TWSR, and the forged trials."""
     met = np.array([[bool(claimed.met[place]), again.met[place]] for place in places])
     twsr = np.array([[int(claimed.twsr[place]), again.twsr[place]] for place in places])
     swap = draw.integers(0, 2, int(participants.max()) + 1)[participants]

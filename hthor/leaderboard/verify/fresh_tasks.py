@@ -1,4 +1,4 @@
-"""Runs an entry's agent on tasks that were drawn after it was submitted, by the recipe of the entry's suite.
+"""Runs an entry's agent on tasks drawn after its submission, by the same recipe as the entry's suite.
 
 The people are those of the entry: the same population, drawn with the same seed.
 """
@@ -36,10 +36,10 @@ _HOUSE_TASKS = 10
 
 
 def verify_fresh_tasks(entry: Entry, board: Path, request: Request) -> Fresh:
-    """Draw tasks, have the agent play them, and compare.
+    """Draw tasks, let the agent play them, and compare the results with the entry.
 
     Raises:
-        BoardError: when the recipe is not known, or a trial could not be played.
+        BoardError: if the suite's specification is not known, or a trial could not be played.
     """
     with tempfile.TemporaryDirectory() as folder:
         _draw(entry, board, request, Path(folder))
@@ -56,7 +56,7 @@ def verify_fresh_tasks(entry: Entry, board: Path, request: Request) -> Fresh:
 
 
 def judge_fresh_tasks(entry: Entry, digest: str, values: dict[str, np.ndarray], owners: Sequence[int]) -> Fresh:
-    """The verdict over success and time-weighted success at fresh tasks of this hash, with the person of each."""
+    """The verdict on success and time-weighted success at fresh tasks; ``owners`` has the person of each trial."""
     held = trial_outcomes.unpack(entry.trials)
     participants = entry_metrics.trial_participants(entry.trials.count, entry.run.participants)
     claimed = {name: entry_metrics.metric_values(held, name, alone=entry.alone) for name in values}
@@ -110,7 +110,7 @@ def _draw(entry: Entry, board: Path, request: Request, folder: Path) -> None:
 
 
 def _possible(drafts: Sequence[TaskSpec], jobs: int | None) -> list[bool]:
-    """Whether each can be done, as by 'hthor tasks check'."""
+    """Whether each task can be done, by the same check as 'hthor tasks check'."""
     found = {
         one.task: not one.faults for one in solvability.check_tasks(drafts, jobs=jobs or len(os.sched_getaffinity(0)))
     }

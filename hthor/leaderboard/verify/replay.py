@@ -1,6 +1,6 @@
 """Replays an entry's trials on this machine.
 
-A person remembers earlier trials, so those before a wanted one in the same session are run too.
+Because a person remembers earlier trials, the trials before a wanted one in its session are played too.
 """
 
 from collections.abc import Sequence
@@ -37,10 +37,10 @@ _SHOWN = 3
 class Request(Struct, frozen=True, kw_only=True):
     """The options of `hthor leaderboard verify`.
 
-    ``word`` is public random text from after the submission. ``agent`` is the agent's file, for one that is not hthor's
-    own, and ``suite`` where the suite lies, when it is not either. ``given`` are arguments and files that the agent is
-    given, ``require_isolation`` the least level that holds it. ``sample`` None draws `verify.SAMPLE` trials, or all
-    where the agent does not repeat itself; ``fresh`` is how many fresh tasks are played.
+    ``word`` is a public random text from after the submission. ``agent`` is the agent's file if the agent is not
+    hthor's own; ``suite`` is where the suite is if it is not hthor's own. ``given`` are arguments and files for the
+    agent; ``require_isolation`` is the least isolation level for it. If ``sample`` is None, `verify.SAMPLE` trials are
+    drawn, or all if the agent is not deterministic. ``fresh`` is how many fresh tasks are played.
     """
 
     word: str
@@ -57,11 +57,11 @@ class Request(Struct, frozen=True, kw_only=True):
 
 
 def replay_trials(entry: Entry, places: Sequence[int], request: Request) -> dict[int, tuple[TrialRecord, bytes]]:
-    """The records of the trials at these places, and of those that had to be run before them, with their lines.
+    """Replay the trials at these places and those before them in their sessions; return their records and log lines.
 
     Raises:
-        BoardError: when this is not what the entry says was played, naming the field; when a trial that is wanted could
-            not be played, as nothing follows from a part of a draw.
+        BoardError: if the run is not the one that the entry claims (names the field), or if a wanted trial could not be
+        played, because a part of a sample proves nothing.
     """
     chosen = task_selection.select_tasks(request.suite or entry.run.suite.name, "")
     team, humans = robot_team_of(entry, request), resolve.resolve_humans(entry.run.humans.source)
@@ -80,10 +80,10 @@ def replay_trials(entry: Entry, places: Sequence[int], request: Request) -> dict
 def run_sessions(
     entry: Entry, wanted: Sequence[Session], make: RunnerFactory, jobs: int | None
 ) -> list[tuple[TrialRecord, bytes]]:
-    """The records of these sessions, every trial of them, with their lines.
+    """Play all trials of these sessions; return their records and log lines.
 
     Raises:
-        BoardError: when a trial could not be played, with the cause.
+        BoardError: if a trial could not be played; gives the cause.
     """
     found: list[tuple[TrialRecord, bytes]] = []
     lost: list[str] = []
@@ -106,21 +106,21 @@ def run_sessions(
 
 
 def robot_team_of(entry: Entry, request: Request) -> RobotTeam:
-    """The robots of an entry, with the submitted agent from its file."""
+    """The robots of an entry; a submitted agent is loaded from its file."""
     minds: list[str] = []
     for robot in entry.run.robots:
         ours = robot.agent.source.startswith(OURS)
         if not ours and not request.agent:
             raise BoardError(f"{entry.id}: the agent is a file, {robot.agent.source}. Name it with --agent.")
         minds.append(robot.agent.name if ours else request.agent)
-    bodies = [robot.robot or "scout" for robot in entry.run.robots]  # a mind that wants no robot has no body either
+    bodies = [robot.robot or "scout" for robot in entry.run.robots]  # an agent that wants no robot has no body either
     first = entry.run.robots[0]
     guests = GuestConfig(inputs=request.given or AgentInputs())
     return robot_team.form_team(bodies, minds, first.detector or "own", first.camera or "own", guests)
 
 
 def _same_config(entry: Entry, chosen: TaskSelection, team: RobotTeam, humans: ParticipantSource) -> RunConfig:
-    """The run's configuration here, if it is that of the entry; versions of libraries belong to the platform."""
+    """The run config on this machine, if it equals the entry's; library versions count as part of the platform."""
     config = run_config.build_config(chosen.suite, team, human=humans, **session_options(entry))
     there, here = (msgspec.structs.replace(one, versions={}) for one in (entry.run, config))
     if there != here:
@@ -132,13 +132,13 @@ def _same_config(entry: Entry, chosen: TaskSelection, team: RobotTeam, humans: P
 
 
 def session_options(entry: Entry) -> dict[str, Any]:
-    """How its people were dealt their tasks, and whether thinking took time."""
+    """The options that decide which person does which task, and whether computing takes simulated time."""
     clock = {"realtime": True} if entry.mode == REALTIME else {}
     return {"seed": entry.run.seed, "participants": entry.run.participants, **clock}
 
 
 def _cut(whole: Sequence[Session], places: Sequence[int]) -> tuple[list[Session], dict[tuple[int, int], int]]:
-    """The sessions that are needed, each as far as it is, and the place of each (person, trial)."""
+    """The needed sessions, each cut after its last needed trial, and the place in the run of each (person, trial)."""
     seats: dict[tuple[int, int], int] = {}
     for one in whole:
         for index in range(len(one.trials)):
@@ -153,7 +153,7 @@ def _cut(whole: Sequence[Session], places: Sequence[int]) -> tuple[list[Session]
 
 
 def make_sources_of(suite: str, team: RobotTeam, humans: ParticipantSource, request: Request) -> Sources:
-    """Where everything is that the entry's run needs; ``suite`` is empty for one of hthor's own."""
+    """The sources of everything that the entry's run needs; ``suite`` is empty for one of hthor's own suites."""
     code_identity.keep_compiled()
     own = bool(suite) and Path(suite).exists() and bool(library.house_files(suite))
     folder = Path(suite) if Path(suite).is_dir() else Path(suite).parent

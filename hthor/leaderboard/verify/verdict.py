@@ -1,8 +1,8 @@
-"""Whether replayed trials confirm an entry, and on which grounds.
+"""Decides whether replayed trials confirm an entry, and gives the reasons.
 
-On the same platform every byte must be the same (V1). On another, chance in the last bits may change a trial,
-but rarely and in both directions (V2). An agent that does not repeat itself can only be judged as a whole (V3): whether
-the claimed run could be one more run like the replayed one.
+On the same platform every byte must be the same (V1). On another platform, rounding in the last bits may change a
+trial, but rarely and in both directions (V2). An agent that is not deterministic can only be judged by its whole run
+(V3): the test is whether the claimed run could be one more run like the replayed one.
 """
 
 import functools
@@ -18,17 +18,17 @@ from hthor.leaderboard.entries.trial_outcomes import Outcomes
 from hthor.leaderboard.entries.verification import Tier
 
 ALIKE = 0.99
-"""The least share of equal outcomes on another platform."""
+"""The share of equal outcomes that is needed at least on another platform."""
 UNEVEN = {"V2": 0.05, "V3": 0.01}
-"""Mismatches count against an entry when chance would favour it as much with less than this probability."""
+"""Differences count against an entry if chance alone would favour it this much with less than this probability."""
 FLIPS = 2000
-"""Random exchanges of sessions, of which the probability is a share (V3)."""
+"""Random exchanges of sessions from which the probability is estimated (V3)."""
 _MILLION = 1_000_000
 _SHOWN = 3
 
 
 class ReplayedTrials(Struct, frozen=True, kw_only=True):
-    """Trials that were played again, by their place in the run: rows as `Outcomes.rows`, ``twsr`` in millionths."""
+    """Replayed trials, by their place in the run: rows as in `Outcomes.rows`; ``twsr`` in millionths."""
 
     rows: Mapping[int, bytes]
     met: Mapping[int, bool]
@@ -36,7 +36,7 @@ class ReplayedTrials(Struct, frozen=True, kw_only=True):
 
 
 class Verdict(Struct, frozen=True, kw_only=True):
-    """Whether the entry passes, what was compared, and why, in words."""
+    """Whether the entry passes, how many trials were compared, and the reasons in words."""
 
     passed: bool
     compared: int
@@ -46,11 +46,11 @@ class Verdict(Struct, frozen=True, kw_only=True):
 
 
 def choose_tier(*, repeats: bool, same_platform: bool) -> Tier:
-    """How the trials have to be compared.
+    """How trials must be compared.
 
     Args:
-        repeats: whether the agent gives the same actions every time. same_platform: whether it was played on one like
-            the verifier's.
+        repeats: whether the agent gives the same actions every time. same_platform: whether the run was played on a
+        platform like the verifier's.
     """
     return "V3" if not repeats else "V1" if same_platform else "V2"
 
@@ -61,11 +61,11 @@ def judge_trials(
     """Compare an entry's claims with replayed trials.
 
     Args:
-        drawn: places of the sample; ``again`` has all of them, and may have others that had to be played with them.
+        drawn: places of the sample. again: has all of them, and may also have trials that had to be played before them.
         participants: the person of each trial.
 
     Raises:
-        ValueError: when a drawn trial is missing: a verdict over a part of a draw could be manipulated.
+        ValueError: if a drawn trial is missing, because a verdict on a part of a sample could be manipulated.
     """
     if missing := [place for place in drawn if place not in again.rows]:
         raise ValueError(f"{len(missing)} drawn trials were not played, such as trial {missing[0]}")
@@ -91,7 +91,7 @@ def judge_trials(
 
 
 def _bytes(again: ReplayedTrials, same: set[int], alike: set[int]) -> tuple[bool, str]:
-    """All records are the same, including those that were not drawn."""
+    """Whether all records are the same, including records outside the sample, and the reasons."""
     other = sorted(set(again.rows) - same)
     if not other:
         return True, f"all {len(again.rows)} records are the same byte for byte"
@@ -104,7 +104,7 @@ def _bytes(again: ReplayedTrials, same: set[int], alike: set[int]) -> tuple[bool
 
 
 def judge_outcomes(share: float, gaps: np.ndarray, count: int) -> tuple[bool, str]:
-    """Nearly all outcomes of the sample are the same, and the others do not favour the entry."""
+    """Whether nearly all outcomes of the sample are equal and the others do not favour the entry, and the reasons."""
     told = f"{100 * share:.1f} % of {count} drawn outcomes are the same; {100 * ALIKE:.0f} % are asked for"
     if share < ALIKE:
         return False, told
@@ -115,11 +115,11 @@ def judge_outcomes(share: float, gaps: np.ndarray, count: int) -> tuple[bool, st
 
 
 def judge_means(met: np.ndarray, twsr: np.ndarray, participants: np.ndarray) -> tuple[bool, str]:
-    """The claimed run is not better than the new one by more than two runs of one agent differ.
+    """Whether the claimed run is better than the replayed run by no more than two runs of one agent differ.
 
     Args:
-        met, twsr: how much more the entry claims of each trial, (N,), ``twsr`` in millionths.
-        participants: the person of each.
+        met, twsr: by how much the entry claims more than was replayed in each trial, (N,); ``twsr`` in millionths.
+        participants: the person of each trial.
     """
     told, passed = [], True
     for name, gaps, unit in (("success", met, 1.0), ("time-weighted success", twsr, 1.0 / _MILLION)):
@@ -130,7 +130,7 @@ def judge_means(met: np.ndarray, twsr: np.ndarray, participants: np.ndarray) -> 
 
 
 def exchange_probability(gaps: np.ndarray, participants: np.ndarray) -> float:
-    """The probability of so large a sum of differences if each person's two sessions could as well be exchanged."""
+    """The probability of a difference this large if each person's two sessions could be exchanged."""
     sums = np.bincount(participants - participants.min(), weights=gaps.astype(np.float64))
     sums = sums[sums != 0.0]
     if not len(sums):
@@ -141,11 +141,11 @@ def exchange_probability(gaps: np.ndarray, participants: np.ndarray) -> float:
 
 @functools.cache
 def _signs(count: int) -> np.ndarray:
-    """Random signs, (FLIPS, count): the same for the same count, on every machine."""
+    """Random signs, (FLIPS, count); the same ``count`` gives the same signs on every machine."""
     bits = np.random.default_rng(abs(seeds.derive(0, "exchanged", count)))
     return bits.integers(0, 2, (FLIPS, count)) * 2 - 1
 
 
 def binomial_tail(count: int, of: int) -> float:
-    """The probability of so many heads or more in ``of`` throws of a coin."""
+    """The probability of this many heads or more in ``of`` throws of a coin."""
     return float(sum(math.comb(of, k) for k in range(count, of + 1)) / 2**of)

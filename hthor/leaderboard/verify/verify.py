@@ -1,4 +1,4 @@
-"""Verifies an entry: trials drawn after its submission are replayed and compared, and its agent meets fresh tasks."""
+"""Verifies an entry: replays a sample of its trials and compares them, and runs its agent on fresh tasks."""
 
 import hashlib
 from collections.abc import Sequence
@@ -21,15 +21,15 @@ from hthor.leaderboard.verify.replay import Request
 from hthor.leaderboard.verify.verdict import ReplayedTrials
 
 SAMPLE = 200
-"""Trials that are drawn where outcomes are compared one by one; of an agent that does not repeat itself, all."""
+"""How many trials are drawn to be compared one by one; if the agent is not deterministic, all are drawn."""
 
 
 def verify_entry(path: Path, board: Path, request: Request) -> tuple[Entry, Verification]:
-    """Play a sample of an entry's trials and of its control's again, and fresh tasks: the entry, and what came of it.
+    """Replay samples of the entry's and its control's trials, and play fresh tasks; return the entry and the result.
 
     Raises:
-        BoardError: when the entry's file is not in order, or is not of what is given here; when it says too little of
-            where it was played; when a trial could not be played.
+        BoardError: if the entry's file is not valid, does not belong to the given agent and suite, or does not record
+        its platform; or if a trial could not be played.
     """
     if not request.word:
         raise HthorError(
@@ -60,11 +60,11 @@ def verify_entry(path: Path, board: Path, request: Request) -> tuple[Entry, Veri
 
 
 def draw_sample(word: str, digest: str, count: int, size: int) -> list[int]:
-    """``size`` of the numbers below ``count``, or all of them when there are no more; in order.
+    """``size`` of the numbers below ``count``, or all of them if there are not more; sorted.
 
     Args:
-        word: public chance that came to be after the entry was handed in, such as a later commit's hash.
-        digest: of the entry, so that the same word draws others for another entry.
+        word: a public random text from after the submission, such as the hash of a later commit.
+        digest: of the entry, so that the same word gives each entry a different sample.
     """
     key = hashlib.sha256(f"hthor draw\n{word}\n{digest}\n".encode()).digest()
 
@@ -79,7 +79,7 @@ def _replayed(entry: Entry, drawn: Sequence[int], request: Request) -> Replayed:
 
 
 def judge_replay(entry: Entry, drawn: Sequence[int], again: dict[int, tuple[TrialRecord, bytes]]) -> Replayed:
-    """The verdict over these records, and how surely it would have been another over a forged entry."""
+    """The verdict on these records, and the probability that a forged entry would have failed."""
     here = platform.this_platform()
     by = entry_tier(entry)
     places = sorted(again)
@@ -107,7 +107,7 @@ def judge_replay(entry: Entry, drawn: Sequence[int], again: dict[int, tuple[Tria
 
 
 def entry_tier(entry: Entry) -> Tier:
-    """How an entry can be compared with trials that are run here."""
+    """How the entry can be compared with trials that are played on this machine."""
     repeats = entry.alone or (entry.agent.deterministic and entry.mode != REALTIME)
     return verdict.choose_tier(repeats=repeats, same_platform=entry.platforms == (platform.this_platform(),))
 
@@ -119,7 +119,7 @@ def _size(entry: Entry, request: Request) -> int:
 
 
 def _noted(entry: Entry, request: Request) -> None:
-    """Only the official run may leave out where an entry was played: a comparison of outcomes is the lower bar."""
+    """Require the platform, except in the official run: without it only outcomes are compared, which proves less."""
     if not entry.platforms and not request.official:
         raise BoardError(
             f"{entry.id}: platforms: is empty, so no record can be compared byte for byte. Run it with this "
@@ -128,7 +128,7 @@ def _noted(entry: Entry, request: Request) -> None:
 
 
 def _sorts(path: Path, entry: Entry, request: Request) -> None:
-    """What the entry says of its tasks against the suite, which is at hand here even when it is secret."""
+    """Check the entry's outcomes against the suite's tasks, which are known here even if the suite is secret."""
     suite = task_selection.select_tasks(request.suite or entry.run.suite.name, "").suite
     if suite.sha256 == entry.run.suite.sha256:
         laws = invariants.check_outcomes(
