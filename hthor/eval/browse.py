@@ -26,10 +26,10 @@ _DEPTH = 6
 class RunSummary(Struct, frozen=True, kw_only=True):
     """A run as it lies in its folder.
 
-    ``folder`` is as seen from the folder that was searched, ``name`` the user's or the agents', ``agents`` and
-    ``bodies`` the robots in the order of their seats. ``success`` is the share of the trials played so far in which the
-    goal was met, None before the first; ``faults`` the trials in which an agent failed; ``when`` the time of the last
-    change, in UTC. ``problem`` says why a run cannot be read; the rest then is empty.
+    ``folder`` is relative to the folder that was searched, ``name`` is the user's or the agents', ``agents`` and
+    ``bodies`` describe the robots in the order of their seats. ``success`` is the share of the trials played so far in
+    which the goal was met, None before the first; ``faults`` the trials in which an agent failed; ``when`` the time of
+    the last change, in UTC. ``problem`` says why a run cannot be read; other fields are then empty.
     """
 
     folder: str
@@ -63,7 +63,7 @@ def list_runs(folder: Path) -> RunList:
 
 
 def _folders(folder: Path, depth: int) -> Iterator[Path]:
-    """Folders with a `run.json`, this one included; hidden folders and links are not looked into."""
+    """Folders with a `run.json`, this one included; hidden folders and links are skipped."""
     if (folder / "run.json").is_file():
         yield folder
     if not depth:
@@ -103,7 +103,7 @@ def _seen(run: Path, root: Path) -> RunSummary:
 
 
 def _tally(run: Path, plan: RunConfig) -> tuple[int, float, int]:
-    """Trials played, trials in which the goal was met, and trials with a fault: of the result, or else of the log."""
+    """Trials played, trials in which the goal was met, and trials with a fault: from the result, or else the log."""
     result = None if plan.shard else result_file.load_current(run)
     if result is not None and result.metrics["sr"].mean is not None and result.hashes.run == plan.sha256:
         trials = result.counts.trials
@@ -148,7 +148,7 @@ class TrialFilter(Struct, frozen=True, kw_only=True):
 
 
 class TrialLine(Struct, frozen=True, kw_only=True):
-    """A trial in one line. ``number`` is its place in the run, as `hthor replay` takes it; ``fault`` the first one."""
+    """A trial in one line. ``number``: its place in the run, as `hthor replay` takes it; ``fault``: its first fault."""
 
     number: int
     key: str
@@ -164,7 +164,7 @@ class TrialLine(Struct, frozen=True, kw_only=True):
 
 
 class RunView(Struct, frozen=True, kw_only=True):
-    """The document of `hthor runs view`. ``result`` is None while trials are missing or there are none."""
+    """The document of `hthor runs view`. ``result`` is None while trials are missing, or if none was played."""
 
     schema: str = VIEW_SCHEMA
     folder: str
@@ -220,7 +220,7 @@ def _line(number: int, record: TrialRecord) -> TrialLine:
 
 
 def _next(folder: Path, plan: RunConfig, records: Sequence[TrialRecord], *, whole: bool) -> Iterator[str]:
-    """Commands that continue from here."""
+    """Commands that the user may want to give next."""
     run = shlex.quote(str(folder))
     if not whole:
         yield cli_command.resume_command(folder, plan)

@@ -1,6 +1,6 @@
-"""`hthor eval --dry-run`: what a command would do, its runs, how far each is, and how long they would take.
+"""`hthor eval --dry-run`: what a command would do: its runs, how far each is, and how long they would take.
 
-What a trial takes is known from a finished run like it, or from a few trials that are run to measure it.
+The time of a trial is taken from a similar finished run, or measured on a few trials.
 """
 
 import math
@@ -30,18 +30,18 @@ from hthor.guest import Isolation
 
 SCHEMA = "hthor.dry-run/2"
 _TRIALS = 3
-"""Trials that are run: one that also loads libraries, one that also builds a house, and that one again."""
+"""Trials that are measured: one that also loads libraries, one that also builds a house, and the latter again."""
 _BUDGET_S, _LIMIT_S = 30.0, 120.0
-"""After so long no third trial is begun, and no trial may take longer [s]. Our choice.
+"""Time [s] after which no third trial is begun, and the longest time [s] of a trial. Our choice.
 
 A second trial is always run: compiling may have taken most of the first one, which happens once per run.
 """
 
 
 class TrialCost(Struct, frozen=True, kw_only=True):
-    """What a trial takes one worker [s]; where that is no average over a run, also what a start and a house take.
+    """Time [s] that a worker takes for a trial and, unless it is an average over a run, for its start and a house.
 
-    ``folder`` is the finished run that this is from; where it is empty, it was measured on ``played`` trials.
+    ``folder`` is the finished run that the cost is from; if empty, it was measured on ``played`` trials.
     """
 
     trial_s: float
@@ -51,7 +51,7 @@ class TrialCost(Struct, frozen=True, kw_only=True):
     played: int = 0
 
     def seconds(self, trials: int, *, workers: int, houses: int) -> float:
-        """How long so many trials take, in so many houses, which every worker builds for itself."""
+        """Time [s] of ``trials`` trials in so many houses, each of which every worker builds for itself."""
         own = math.ceil(trials / workers)
         return round(self.start_s + own * self.trial_s + min(own, houses) * self.house_s, 1)
 
@@ -73,14 +73,14 @@ def measured_cost(run: ScheduledRun) -> TrialCost | None:
 
 
 class CostSampler:
-    """Runs a few trials to measure what they take, once for equal robots, and says so; writes nothing."""
+    """Measures the time of a few trials, once for equal robots, and announces it; writes nothing."""
 
     def __init__(self, options: RunOptions, say: Callable[[str], None]) -> None:
         self._options, self._say = options, say
         self._costs: dict[object, TrialCost | None] = {}
 
     def measure(self, run: ScheduledRun) -> TrialCost | None:
-        """What a trial of this run takes; None when none was over in time, or an agent could not be loaded."""
+        """The cost of a trial of this run; None when no trial ended in time, or an agent could not be loaded."""
         same = (tuple(_robots_of(run.config)), run.population.model)
         if same not in self._costs:
             self._say(f"{run.title}: {_TRIALS} trials are played to see what they take")
@@ -114,7 +114,7 @@ def _enough(ends: list[float]) -> bool:
 
 
 def _cost_of(ends: list[float]) -> TrialCost | None:
-    """The cost from when trials were over; a single trial does not tell the start from the rest."""
+    """The cost from the times at which trials ended; a single trial cannot be separated from the start."""
     if not ends:
         return None
     durations = [end - begin for begin, end in pairwise([0.0, *ends])]
@@ -132,20 +132,20 @@ def _robots_of(config: RunConfig) -> list[tuple[str, str]]:
 
 
 def _run_folders_near(folder: Path) -> Iterator[RunFolder]:
-    """Finished runs here, beside, and where runs usually are."""
+    """Finished runs in this folder, next to it, and in the usual folder of runs."""
     roots = (folder, folder.parent, RUNS)
     paths = [path for root in roots for path in (root, *sorted(root.glob("*")), *sorted(root.glob("*/control")))]
     yield from (run for run in map(RunFolder, dict.fromkeys(paths)) if run.result_file.is_file())
 
 
 class RunForecast(Struct, frozen=True, kw_only=True):
-    """A run that would be run.
+    """A run that a command would play.
 
     Attributes:
-        played: how many of its ``trials`` are there already.
-        control: whether nobody asked for it: it would be another run's baseline.
-        seconds: how long the others would take; None where that is unknown.
-        pace: what a trial takes, and how that is known.
+        played: how many of its ``trials`` exist already.
+        control: whether it would be played only as another run's baseline.
+        seconds: how long the missing trials would take; None if unknown.
+        pace: the time of a trial, and its origin.
     """
 
     name: str
@@ -184,10 +184,10 @@ def make_forecast(
     """Forecast what some options would do.
 
     Args:
-        resolved: what the options stand for.
+        resolved: the runs that the options stand for.
         origins: the origin of each option's value, by the option's name.
-        say: prints a line. If given, a few trials are run for robots without a finished run, to measure what one
-            takes; they are not kept.
+        say: prints a line. If given, a few trials are run for robots without a finished run, to measure the time of a
+            trial; they are not kept.
     """
     workers = options.jobs or len(os.sched_getaffinity(0))
     sampler = CostSampler(options, say) if say is not None else None
@@ -233,7 +233,7 @@ def _run_forecast(
 def _settings(
     options: RunOptions, resolved: ResolvedRuns, workers: int, origins: Mapping[str, str]
 ) -> Iterator[Setting]:
-    """Every option with what its default stands for."""
+    """Every option, with defaults resolved."""
     configs = [run.config for run in resolved.runs]
     first = configs[0]
     values: dict[str, Any] = {

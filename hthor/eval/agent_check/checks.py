@@ -1,7 +1,7 @@
 """Checks an agent against its contract in short real trials.
 
-Each finding says what was wrong and what to do next. What is broken would cost the agent trials; a warning only says
-what its author would want to know.
+Each finding says what was wrong and what to do next. A "broken" point would cost the agent trials; a "warning" only
+informs its author.
 """
 
 import time
@@ -24,10 +24,10 @@ CHECKS = ("loads", "files", "begins", "acts", "deterministic", "keeps nothing", 
 
 
 class AgentCheckReport(Struct, frozen=True, kw_only=True):
-    """All that was found of an agent. ``sound`` says that nothing is broken.
+    """The result of checking an agent. ``sound`` says that nothing is broken.
 
-    ``figures`` are seconds to load and to begin, milliseconds a step, the share of a trial's time that thinking took,
-    and megabytes of memory, as measured here and now.
+    ``figures``, as measured on this machine: seconds to load and to begin, milliseconds per step, the share of the
+    trial's time that thinking took, and megabytes of memory.
     """
 
     schema: str = SCHEMA
@@ -50,7 +50,7 @@ def check_agent(
         camera: its camera, as `hthor.types.cameras.canonical_name` spells it.
 
     Raises:
-        IsolationError: when the level cannot be had.
+        IsolationError: when this machine does not support the isolation level.
     """
     if agent in plugins.names("agent"):
         raise HthorError(f"'{agent}' ships with hthor; give an agent of your own, such as my_agent.py.")
@@ -81,7 +81,7 @@ def check_agent(
     if not first.faults:
         with Guest(agent, config=guests) as guest:
             again, other, last = rehearsal.play(guest, [rehearsal.a, rehearsal.b, rehearsal.a])
-        if not other.faults:  # only from the second trial on it has to be imported again
+        if not other.faults:  # only from the second trial on, begin imports the agent again
             findings[2], figures["begin_s"] = criteria.check_trial(other, agent)[0], other.begin_s
         findings += [
             criteria.check_same("deterministic", first, again, "the same trial twice", criteria.VARIES),
@@ -106,7 +106,7 @@ def _report(
     persistent: bool = False,
     held: Isolation | None = None,
 ) -> AgentCheckReport:
-    """In the order of `CHECKS`, what was not come to included; warnings last."""
+    """The report: findings in the order of `CHECKS`, "skipped" for checks that were not reached; warnings last."""
     found = {one.check for one in findings}
     skipped = [Finding(check=name, status="skipped") for name in CHECKS if name not in found]
     order = {name: place for place, name in enumerate(CHECKS)}

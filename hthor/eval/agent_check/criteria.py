@@ -1,4 +1,4 @@
-"""The points of an agent's contract, each judged by the results of its probe trials."""
+"""Checks each point of an agent's contract by the results of its probe trials."""
 
 import math
 import statistics
@@ -21,23 +21,23 @@ _ADVICE = {
     "timeout": "A step may take 5 s, and 60 s more in all. Do less in act, or spread the work over several steps.",
     "died": "Its process ended. Look for os._exit, a crash in a library, or what it printed last.",
     "memory": "Load less, or load it in smaller parts.",
-    "disk": "Write less, and remove what is done with; only the folder that TMPDIR names can be written.",
+    "disk": "Write less, and delete files that are no longer needed; only the folder that TMPDIR names can be written.",
     "wrong_type": "Return hthor.types.Action(motion=..., say=...) from every path through act.",
     "garbage": "Give the fields of Action values of the types that docs/agents.md lists.",
     "oversized": "Shorten texts and ids: an action takes 64 KiB at most.",
-    "not_finite": "Look for a division by zero, or a mean of nothing, on the way to that number.",
+    "not_finite": "Look for a division by zero, or a mean of an empty list, on the way to that number.",
 }
 _FILES = 8
 _SLOW_LOAD_S, _SLOW_BEGIN_S, _LOUD = 5.0, 1.0, 15_000
 _ON_ONE_SPOT = 0.5
 """Share of a trial that an agent may spend on one spot before it is warned; our choice."""
 _A_FEW, _TAKES_S = 2, 2.0 * Parameters().t_read
-"""Messages that a person takes: these, and one more in this time [s], in which the median person reads and answers."""
-_READING = "A person takes some 3 s to read a message, and each new one covers the one before."
+"""Messages that an agent may send: so many, and one per this time [s], in which the median person reads and answers."""
+_READING = "A person takes about 3 s to read a message, and each new one covers the one before."
 
 
 class Finding(Struct, frozen=True, kw_only=True):
-    """One check: how it ended, in words, and what to do next."""
+    """The result of one check, in words, and what to do next."""
 
     check: str
     status: Status
@@ -46,7 +46,7 @@ class Finding(Struct, frozen=True, kw_only=True):
 
 
 def check_loading(seconds: float, character: AgentInfo) -> Finding:
-    """How long it took to load, and the privileges that it asks for."""
+    """The check "loads": how long the agent took to load, and which privileges it asks for."""
     asked = ", ".join(character.ref.privileges) or "no privileges"
     told = f"in {seconds:.2f} s; asks for {asked}"
     if seconds < _SLOW_LOAD_S:
@@ -56,7 +56,7 @@ def check_loading(seconds: float, character: AgentInfo) -> Finding:
 
 
 def check_files(character: AgentInfo, later: Sequence[File] = ()) -> Finding:
-    """Which files it consists of, and which of them it opened only ``later``, while it played."""
+    """The check "files": which files the agent consists of, and which it opened only ``later``, while it played."""
     held = character.manifest.files if character.manifest else ()
     names = [file.path for file in held]
     shown = ", ".join(names[:_FILES]) + (f" and {len(names) - _FILES} more" if len(names) > _FILES else "")
@@ -69,7 +69,7 @@ def check_files(character: AgentInfo, later: Sequence[File] = ()) -> Finding:
 
 
 def check_trial(notes: ProbeResult, agent: str) -> list[Finding]:
-    """Whether it began, and acted to the trial's end."""
+    """The checks "begins" and "acts": whether the agent began, and acted until the trial's end."""
     if notes.faults:
         fault = notes.faults[0]
         began = bool(notes.asked or fault.tick)
@@ -91,14 +91,14 @@ def _broken(name: str, fault: Fault, agent: str, step: int) -> Finding:
 
 
 VARIES = (
-    "Draw chance from random.Random(0) or numpy.random.default_rng(0) made in begin, look at no clock, and let threads "
-    "decide nothing."
+    "Draw random numbers from random.Random(0) or numpy.random.default_rng(0), made in begin; do not read the clock, "
+    "and let no result depend on the timing of threads."
 )
 LEAKS = "Reset everything in begin: what a class, a module or a file keeps lasts into other trials."
 
 
 def check_same(name: str, one: ProbeResult, other: ProbeResult, what: str, advice: str) -> Finding:
-    """Whether two plays of one trial came out equal, and else where they part."""
+    """Whether two plays of one trial are equal; if not, the first step in which they differ."""
     if one.line == other.line and one.actions == other.actions:
         return Finding(check=name, status="ok", told=f"{what}: {len(one.actions)} actions and every byte the same")
     for step, (a, b) in enumerate(zip(one.actions, other.actions, strict=False), 1):
@@ -112,7 +112,7 @@ def check_same(name: str, one: ProbeResult, other: ProbeResult, what: str, advic
 
 
 def figures(notes: ProbeResult) -> dict[str, float]:
-    """What a trial took of the agent, in numbers."""
+    """The time and the memory that the agent used in a trial, by name."""
     if not notes.thought_s:
         return {"begin_s": notes.begin_s}
     ordered = sorted(notes.thought_s)
@@ -126,7 +126,7 @@ def figures(notes: ProbeResult) -> dict[str, float]:
 
 
 def check_speed(notes: ProbeResult) -> Finding:
-    """Whether it thought for less time than the trial lasted."""
+    """The check "fast enough": whether the agent thought for less time than the trial lasted."""
     found = figures(notes)
     told = (
         f"median {found['step_ms_median']:.2f} ms a step, 99 % within {found['step_ms_p99']:.2f} ms, "
@@ -141,7 +141,7 @@ def check_speed(notes: ProbeResult) -> Finding:
 
 
 def warnings(trials: tuple[ProbeResult, ...], character: AgentInfo) -> list[Finding]:
-    """What keeps to the contract, but is hardly meant."""
+    """Warnings about behaviour that the contract allows, but that is probably a mistake."""
     found: list[tuple[str, str]] = []
     if any(len(one.output) > _LOUD for one in trials):
         found.append(("it prints much", "Only the last 16 KiB are kept, and printing costs time."))
@@ -159,18 +159,18 @@ def warnings(trials: tuple[ProbeResult, ...], character: AgentInfo) -> list[Find
 
 
 def _moving(trials: tuple[ProbeResult, ...]) -> list[tuple[str, str]]:
-    """Of an agent that leaves its robot where it is."""
+    """Warnings, with advice, for an agent whose robot stays where it is."""
     if not any(one.motions for one in trials):
         return [("it never moved", "Return Action(motion=Move(...)) or Rotate(...) when observation.idle.")]
     longest = max(trials, key=lambda one: one.spot_s)
     if longest.spot_s <= _ON_ONE_SPOT * longest.lasted_s:
         return []
     told = f"it stood on one spot for {longest.spot_s:.0f} of {longest.lasted_s:.0f} s"
-    return [(told, "What it has not seen it cannot tell: go on exploring, and look at observation.outcome.")]
+    return [(told, "It can only report what it has seen: go on exploring, and look at observation.outcome.")]
 
 
 def _speaking(trials: tuple[ProbeResult, ...]) -> list[tuple[str, str]]:
-    """Of an agent that never speaks, or more than a person can take."""
+    """Warnings, with advice, for an agent that never speaks, or speaks more than a person can follow."""
     if not any(one.sent for one in trials):
         return [("it never sent a message", "Without Send(text, object, position) the person learns nothing from it.")]
     loudest = max(trials, key=lambda one: one.sent)

@@ -30,20 +30,20 @@ _SPOT_M = 0.25
 
 
 class ProbeResult(Struct, frozen=True, kw_only=True):
-    """What came of one trial.
+    """The result of one trial.
 
     Attributes:
-        line: the record as it would be written.
-        asked: how often it was asked to act. actions: what was done, with the tick at which it was asked for.
-        thought_s: seconds of each ``act``, without what its pictures and scans took; ``begin_s`` of ``begin``.
-        memory_mb: the most memory that was seen in use; 0 where the agent runs elsewhere.
-        lasted_s: seconds of the trial, as they are counted in the house.
-        motions, refused: how many motions there were, and how many of them did not come to a good end.
-        spot_s: the longest time that it stayed on one spot before the person confirmed a message.
-        sent, covered, repeated: messages, how many of them were covered by its next one, and how many said the same as
-            the one before although the person had not declined that.
-        claims, unseen: messages about an object, and how many of these it had not detected before.
-        output: the end of what was printed.
+        line: the record as a line of a run's log.
+        asked: how often the agent was asked to act. actions: its actions, each with the tick of the request.
+        thought_s: the duration [s] of each ``act``, without its pictures and scans; ``begin_s`` that of ``begin``.
+        memory_mb: the largest memory use that was measured; 0 for an agent that runs elsewhere.
+        lasted_s: the duration of the trial [s] in simulated time.
+        motions, refused: how many motions the agent chose, and how many of them failed.
+        spot_s: the longest time [s] that the robot stayed on one spot before the person confirmed a message.
+        sent, covered, repeated: how many messages the agent sent, how many of them its next message covered, and how
+            many repeated the message before although the person had not declined it.
+        claims, unseen: how many messages were about an object, and how many of them about an undetected object.
+        output: the end of what the agent printed.
     """
 
     line: bytes
@@ -66,11 +66,11 @@ class ProbeResult(Struct, frozen=True, kw_only=True):
 
 
 class ProbeTrials:
-    """Two short trials, A and B, for one agent, to be played as often as wanted.
+    """Two short trials, A and B, for one agent, which can be played repeatedly.
 
     Args:
         character: the agent, from a file.
-        robot: the body it is in. camera: its camera, as `hthor.types.cameras.canonical_name` spells it.
+        robot: the agent's body. camera: its camera, as `hthor.types.cameras.canonical_name` spells it.
     """
 
     def __init__(self, character: AgentInfo, robot: str, camera: str = OWN) -> None:
@@ -83,7 +83,7 @@ class ProbeTrials:
         self.a, self.b = (by_task[name] for name in _TASKS)
 
     def play(self, guest: Guest, trials: Sequence[TrialSpec]) -> list[ProbeResult]:
-        """Play trials one after the other with the same guest, each with a person who knows of no other."""
+        """Play trials one after the other with the same guest, each with a person who does not remember the others."""
         found = []
         for number, trial in enumerate(trials, 1):
             activity.say(f"playing short trial {number} of {len(trials)}")
@@ -122,7 +122,7 @@ class ProbeTrials:
 
 
 class _Senses(Timed):
-    """Tells what a mind has detected, and whether it looked at pictures, in which it may have seen more."""
+    """Records what an agent has detected, and whether it looked at pictures, in which it may have seen more."""
 
     ids: tuple[str, ...] = ()
     looked = False
@@ -169,9 +169,9 @@ class _Noted(RecordedAgent):
 
 
 def longest_on_one_spot_s(log: EpisodeLog, seat: str) -> float:
-    """The longest time [s] that a seat stayed on one spot, up to the first message of any robot that was confirmed.
+    """The longest time [s] that a seat stayed on one spot, up to the first confirmed message of any robot.
 
-    Later it may wait with good reason: the person knows where to go.
+    After that it may wait for a good reason: the person knows where to go.
     """
     until = min((event.tick for event in log.events if event.kind == "confirmed"), default=log.ticks)
     step = rules.LOG_EVERY_TICKS
@@ -185,7 +185,7 @@ def longest_on_one_spot_s(log: EpisodeLog, seat: str) -> float:
 
 
 def count_repeated_messages(log: EpisodeLog, seat: str) -> int:
-    """How many messages of a seat say what the one before said, although the person had not declined that one."""
+    """How many messages of a seat repeat its message before, although the person had not declined that message."""
     count, last = 0, None
     for event in log.events:
         if event.kind == "sent" and event.seat == seat:

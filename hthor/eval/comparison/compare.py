@@ -50,16 +50,16 @@ class Comparison(Struct, frozen=True, kw_only=True):
     """The second run compared with the first.
 
     Attributes:
-        n: trials that both have; ``dropped`` of the first and of the second have no partner.
-        tasks, people: how many different ones there are in them.
-        differences: by metric.
-        groups: of success, by "kind", "split", "difficulty" and "scene", where there are several.
-        among: how many pairs of runs are compared at once, for which the verdict is adjusted.
-        p_holm: p of success, adjusted for them by Holm's method.
+        n: how many trials both runs have; ``dropped``: how many of the first and of the second have no partner.
+        tasks, people: how many different tasks and people these trials have.
+        differences: the difference in each metric, by its name.
+        groups: differences in success by "kind", "split", "difficulty" and "scene", where there are several of these.
+        among: how many pairs of runs are compared at once; the verdict is adjusted for this number.
+        p_holm: the p-value of the difference in success, adjusted for these comparisons by Holm's method.
         level, interval: the interval of the difference in success that belongs to the verdict, and its level: 0.95 for
-            one pair, more among several. It leaves 0 out exactly when one run is better.
+            one pair, higher for several pairs. It excludes 0 exactly when one run is better.
         better: the name of the run that is better in success; empty when these data cannot tell.
-        sentence: all of that in words.
+        sentence: the verdict in words.
     """
 
     first: str
@@ -81,7 +81,7 @@ class Comparison(Struct, frozen=True, kw_only=True):
 
     @property
     def success(self) -> Difference:
-        """The difference in success with the p and the interval that belong to the verdict."""
+        """The difference in success with the p-value and the interval of the verdict."""
         return msgspec.structs.replace(self.differences["sr"], ci95=self.interval, p=self.p_holm)
 
 
@@ -96,7 +96,7 @@ class Comparisons(Struct, frozen=True, kw_only=True):
 
     @property
     def worse(self) -> tuple[Comparison, ...]:
-        """The comparisons that say that a run is worse than the first one."""
+        """The comparisons in which a run is worse than the first run."""
         baseline = self.runs[0].name
         return tuple(pair for pair in self.pairs if pair.first == pair.better == baseline)
 
@@ -140,11 +140,11 @@ def compare_runs(folders: Sequence[Path]) -> Comparisons:
 
 
 def compare_pairs(read_: Sequence[LoadedRun]) -> tuple[Comparison, ...]:
-    """Every pair of these runs that can be compared and has trials in common, judged together."""
+    """Every comparable pair of these runs that has trials in common, with verdicts adjusted for their number."""
     found = []
     for one, other in itertools.combinations(read_, 2):
         if not pairing.differing_field(one.plan, other.plan):
-            with contextlib.suppress(RunError):  # nothing in common yet
+            with contextlib.suppress(RunError):  # no trial in common yet
                 found.append((_pair(one, other), one, other))
     return _judged(found)
 
@@ -160,7 +160,7 @@ def load_runs(folders: Sequence[Path]) -> tuple[LoadedRun, ...]:
 
 
 def _names(names: Sequence[str], folders: Sequence[Path]) -> list[str]:
-    """The agents' names, with their folders where two are the same, and a number where even these are."""
+    """The agents' names; equal names get their folders added, and a number if the folders have equal names too."""
     if len(set(names)) == len(names):
         return list(names)
     longer = [
@@ -214,7 +214,7 @@ def _rank(name: str) -> tuple[int, str]:
 
 
 def _judged(found: Sequence[tuple[Comparison, LoadedRun, LoadedRun]]) -> tuple[Comparison, ...]:
-    """The same with their verdicts, which are judged together."""
+    """These comparisons, completed by verdicts that are adjusted for their number."""
     successes = [pair.differences["sr"] for pair, _, _ in found]
     verdicts = paired_difference.verdicts([(success.difference, success.p) for success in successes])
     judged = []
@@ -272,6 +272,6 @@ def _evidence(pair: Comparison, ends: str) -> str:
 
 
 def _chance(p: float | None) -> str:
-    """A p in words, no finer than anyone can use."""
+    """A p-value in words, with no more digits than are useful."""
     p = 1.0 if p is None else p
     return "p < 0.001" if p < 0.001 else f"p = {p:.3f}"

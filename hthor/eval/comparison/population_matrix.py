@@ -50,7 +50,7 @@ class PopulationGap(Struct, frozen=True, kw_only=True):
 
 
 class Conclusion(Struct, frozen=True, kw_only=True):
-    """What a population says about two robots in one metric, and whether the extremes agree.
+    """Which of two robots is better in one metric with a population, and whether the extremes agree.
 
     ``verdict``: "holds" if both extremes agree, "flips" if one says the opposite, "vanishes" if one shows no difference
     at all. ``helps`` says that the worse run has no robot, so that the claim is that a robot helps. ``gaps`` has the
@@ -90,9 +90,9 @@ class PopulationMatrix(Struct, frozen=True, kw_only=True):
     """The results of one evaluation with several human populations.
 
     Attributes:
-        trials: with each population. peoples: the populations.
-        cells: by the population's name, then by the agent's.
-        worst: by the agent's name; the extreme models do not count.
+        trials: how many each agent has with each population. peoples: the populations.
+        cells: results by the population's name, then by the agent's.
+        worst: the worst populations by the agent's name; the extreme models do not count.
         conclusions: about every two agents, and whether the extreme models agree; empty unless both were run.
     """
 
@@ -147,7 +147,7 @@ def _cell(result: RunResult) -> Cell:
 
 
 def _worst(results: Sequence[RunResult]) -> dict[str, WorstPopulation]:
-    """For each agent, the populations with the lowest success, without the extremes; empty with one other only."""
+    """For each agent, the populations with the lowest success, extremes left out; empty unless two others were run."""
     found: dict[str, WorstPopulation] = {}
     for agent in dict.fromkeys(result.name for result in results):
         held = [result for result in results if result.name == agent and result.humans.model not in EXTREMES]
@@ -164,7 +164,7 @@ def _worst(results: Sequence[RunResult]) -> dict[str, WorstPopulation]:
 
 
 def _conclusions(by_people: dict[str, list[RunResult]]) -> tuple[Conclusion, ...]:
-    """The conclusions, if both extreme models and another one were run."""
+    """The conclusions, if both extreme models and another model were run."""
     models = {held[0].humans.model for held in by_people.values()}
     whole = models.issuperset(EXTREMES) and len(models) > len(EXTREMES)
     return draw_conclusions(by_people) if whole else ()
@@ -178,7 +178,7 @@ def draw_conclusions(results: Mapping[str, Sequence[RunResult]]) -> tuple[Conclu
             the same robots in the same order, over the same tasks and seed.
 
     Raises:
-        HthorError: when one is missing, or they differ in robots, suite, seed or trials.
+        HthorError: when a model is missing, or the results differ in robots, suite, seed or trials.
     """
     _check(results)
     ends = [name for model in EXTREMES for name, runs in results.items() if runs[0].humans.model == model]

@@ -17,22 +17,22 @@ from hthor.eval.statistics import intervals
 from hthor.eval.statistics.variance_components import MeanSpread
 
 STREAM = "ranking"
-"""The name of the bootstrap's chance stream."""
+"""The name of the bootstrap's stream of random numbers."""
 DRAWS = 2000
 """Samples of the bootstrap."""
 _AT_ONCE = 250
 _STEPS = 1e6
-"""Values are counted in millionths: sums of whole numbers are the same on every machine."""
+"""Values are counted in millionths: sums of integers are the same on every machine."""
 
 
 class Rank(Struct, frozen=True, kw_only=True):
     """An agent's place: 1 is the best.
 
     Attributes:
-        rank: one more than the number of agents that are significantly better, and never less than the rank of an
-            agent with a higher mean.
+        rank: one more than the number of agents that are significantly better, and never less than the rank of an agent
+            with a higher mean.
         interval: the ranks that are not excluded at 95 %, for new tasks and new people.
-        ties: indices of the agents that cannot be told from this one, in their order.
+        ties: indices of the agents that do not differ significantly from this agent, in ascending order.
     """
 
     rank: int
@@ -41,12 +41,12 @@ class Rank(Struct, frozen=True, kw_only=True):
 
 
 def rank_agents(outcomes: np.ndarray, tasks: np.ndarray, people: np.ndarray) -> tuple[Rank, ...]:
-    """The place of each agent.
+    """The rank of each agent.
 
-    The interval's ends are 1 and the number of agents that are better, and all less those that are worse, when this
-    agent's differences from all others are to hold together at 95 %. How far they may all be off at once is taken from
-    samples of tasks and people, the same for all agents ("pigeonhole" bootstrap, of the largest deviation); how wide
-    each is from the same formula as every other interval.
+    The interval begins at 1 plus the number of agents that are surely better, and ends at the number of agents minus
+    those that are surely worse: this agent's differences from all others are judged simultaneously at 95 %. The level
+    that this takes is found from samples of tasks and people, the same for all agents ("pigeonhole" bootstrap of the
+    largest deviation); the intervals then follow the same formula as everywhere else.
 
     Args:
         outcomes: (A, N), shares from 0 to 1, such as successes. tasks, people: (N,) indices from 0.
@@ -54,9 +54,9 @@ def rank_agents(outcomes: np.ndarray, tasks: np.ndarray, people: np.ndarray) -> 
     count = len(outcomes)
     versus = [paired_difference.difference_spread(outcomes - one, tasks, people, share=True) for one in outcomes]
     better = (adjusted_p_values(versus) < 1.0 - intervals.LEVEL) & (np.array([found.mean for found in versus]) > 0.0)
-    told = better | better.T  # in a row, an agent; in its columns, those that are better than it
+    told = better | better.T  # better[a, b]: agent b is better than agent a
     plain = 1 + better.sum(axis=1)
-    totals = np.rint(outcomes * 1e6).sum(axis=1)  # whole numbers: equal means are equal
+    totals = np.rint(outcomes * 1e6).sum(axis=1)  # integers, so that equal means compare as equal
     low, high = _excluded(versus, outcomes, tasks, people)
     found = []
     for one in range(count):
@@ -68,7 +68,7 @@ def rank_agents(outcomes: np.ndarray, tasks: np.ndarray, people: np.ndarray) -> 
 
 
 def adjusted_p_values(versus: Sequence[MeanSpread]) -> np.ndarray:
-    """Holm's p of every two agents' difference, (A, A), for the spreads of all less each."""
+    """Holm-adjusted p-values of the agents' differences, (A, A); ``versus``: the spreads of all agents minus each."""
     pairs = list(itertools.combinations(range(len(versus)), 2))
     variances = [paired_difference.null_variance(found, share=True) for found in versus]
     p = paired_difference.holm_adjusted(
@@ -88,13 +88,13 @@ def adjusted_p_values(versus: Sequence[MeanSpread]) -> np.ndarray:
 def _excluded(
     versus: Sequence[MeanSpread], outcomes: np.ndarray, tasks: np.ndarray, people: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """For each agent, how many others are simultaneously certain to be better, and how many to be worse."""
+    """For each agent, how many others are surely better and how many surely worse, all judged simultaneously."""
     count = len(outcomes)
     drawn = bootstrap_means(outcomes, tasks, people, name=STREAM)
     off = drawn - outcomes.mean(axis=1)[:, None]
     better, worse = np.zeros(count, dtype=int), np.zeros(count, dtype=int)
     for one in range(count):
-        gaps = off[one] - off  # of each sample's differences from those that were seen
+        gaps = off[one] - off  # errors of each sample's differences
         sd = np.sqrt((gaps**2).mean(axis=1))
         moving = sd > 1e-9
         largest = (np.abs(gaps[moving]) / sd[moving, None]).max(axis=0) if moving.any() else np.zeros(1)
@@ -112,19 +112,19 @@ def bootstrap_means(
 ) -> np.ndarray:
     """Means of each row over each sample of the two-way "pigeonhole" bootstrap, (..., at most ``draws``).
 
-    Tasks and participants are resampled independently; all rows meet the same samples, so that pairing is kept. Where
-    every task was done once, their spread takes the noise of single trials for three times what it is; how the rows'
-    means hang together they show all the same.
+    Tasks and participants are resampled independently; all rows get the same samples, so that pairing is kept. Where
+    every task was done once, the spread of the means contains the noise of single trials three times; correlations
+    between rows are right nevertheless.
 
     Args:
         values: (..., N) float64, in millionths at the finest. tasks, people: (N,) indices from 0.
-        name: of the chance stream; equal names give equal samples.
+        name: the name of the stream of random numbers; equal names give equal samples.
     """
     whole = np.rint(values * _STEPS)
     found = []
     for weights in _weights(tasks, people, name, draws):
         total = weights.sum(axis=1)
-        held = total > 0.0  # a sample can miss every trial where few tasks met few people
+        held = total > 0.0  # with few tasks and people, a sample may contain no trial
         found.append(whole @ weights[held].T / total[held] / _STEPS)
     drawn: np.ndarray = np.concatenate(found, axis=-1)
     return drawn if drawn.shape[-1] else values.mean(axis=-1, keepdims=True)
@@ -141,6 +141,6 @@ def _weights(tasks: np.ndarray, people: np.ndarray, name: str, draws: int) -> It
 
 
 def _counts(chance: np.random.Generator, sort: int, draws: int) -> np.ndarray:
-    """How often each of ``sort`` things is drawn, (draws, sort)."""
+    """How often each of ``sort`` items is drawn, (draws, sort)."""
     drawn = chance.integers(0, sort, (draws, sort)) + sort * np.arange(draws)[:, None]
     return np.bincount(drawn.ravel(), minlength=draws * sort).reshape(draws, sort).astype(np.float64)

@@ -15,11 +15,11 @@ from hthor.eval.statistics.power import SampleSize, Scatter
 
 SCHEMA = "hthor.power/1"
 USUAL = 0.5
-"""Correlation that is taken when nobody knows it; docs/statistics.md has measured ones."""
+"""Correlation that is assumed when none was measured; docs/statistics.md has measured values."""
 
 
 class StudyPlan(Struct, frozen=True, kw_only=True):
-    """What it takes to detect a difference of two success rates, paired (same participants and tasks) and unpaired.
+    """Sample sizes to detect a difference of two success rates, paired (same participants and tasks) and unpaired.
 
     For two runs, ``shared`` is how many trials they share, and ``more`` how many more tasks would show the difference,
     as in `hthor compare`; None if two rates were given.
@@ -37,7 +37,7 @@ class StudyPlan(Struct, frozen=True, kw_only=True):
 
 
 class _Known(Struct, frozen=True):
-    """Two rates and the correlation of outcomes; of two runs also their trials' scatter and how many they share."""
+    """Two rates and the correlation of outcomes; for two runs also the scatter and the number of shared trials."""
 
     first: float
     second: float
@@ -52,7 +52,7 @@ def plan_study(
     """The plan for two runs, or for two rates as the user typed them.
 
     Raises:
-        HthorError: when it is neither, or what is wanted is impossible.
+        HthorError: unless exactly one of the two is given, or when a rate or the correlation is impossible.
     """
     if bool(folders) == bool(rates) or len(folders) not in (0, 2):
         raise HthorError("name two runs, hthor power RUN RUN, or two rates, hthor power --rates 0.73,0.76; not both.")
@@ -91,7 +91,7 @@ def _added(shared: int | None, more: int | None) -> str:
 def _needs(
     known: _Known, first: float, second: float, correlation: float, wanted: float
 ) -> tuple[SampleSize, SampleSize]:
-    """Paired and not; other rates or another correlation than the runs have scale what was measured."""
+    """Sample sizes, paired and unpaired; measured scatter is scaled to rates or a correlation that the runs lack."""
     paired = unpaired = None
     if known.noise is not None and known.correlation is not None:
         here, there = (first, second), (known.first, known.second)
@@ -104,7 +104,7 @@ def _needs(
 
 
 def _scaled(held: Scatter, measured: tuple[float, float, float], wanted: tuple[float, float, float]) -> Scatter:
-    """The scatter at other rates and another correlation: as many times that of independent trials as it was."""
+    """The scatter at other rates and another correlation; its ratio to that of independent trials is kept."""
     before = power.variance_of_difference(*measured)
     if wanted == measured or before <= 0.0:
         return held
@@ -113,7 +113,7 @@ def _scaled(held: Scatter, measured: tuple[float, float, float], wanted: tuple[f
 
 
 def _measured(folders: Sequence[Path]) -> _Known:
-    """Both rates, their correlation and their scatter, of two runs."""
+    """The rates of two runs, the correlation of their outcomes and the scatter of their trials."""
     one, other = compare.load_runs(folders)
     pairing.check_comparable((one.folder, one.plan), (other.folder, other.plan))
     pairs = pairing.pair_trials(one.records, other.records).pairs

@@ -1,1 +1,1 @@
-"""The configuration of a run: `run_config` is the whole of it; beside it robots, humans, tasks and sessions."""
+"""The configuration of a run: `run_config` has all of it; other files resolve robots, humans, tasks and sessions."""

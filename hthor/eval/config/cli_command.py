@@ -19,7 +19,7 @@ BUILT_IN_AGENTS = f"{plugins.package('agent')}."
 
 
 def resume_command(folder: Path, config: RunConfig, out: Path | None = None) -> str:
-    """The command that finishes a run, or a shard of one, as a shell takes it; it names ``out`` or the run's folder."""
+    """The shell command that finishes a run or a shard; it writes to ``out``, by default the run's folder."""
     out = out or folder
     words = ["hthor", "eval", *_robot_options(config.robots), "--humans", config.humans.source]
     if config.kind is not None and config.kind.sha256:
@@ -61,13 +61,13 @@ def _camera_options(config: RunConfig) -> list[str]:
 
 
 def relative_path(path: Path) -> Path:
-    """A folder as it can be typed here: relative when it is below the current folder, otherwise unchanged."""
+    """A folder as a user would type it: relative when it is below the current folder, otherwise unchanged."""
     here = Path.cwd()
     return path.relative_to(here) if path.is_absolute() and path.is_relative_to(here) else path
 
 
 def baseline_command(config: RunConfig) -> str:
-    """The command that runs the same people at the same tasks without a robot."""
+    """The command that runs the same people with the same tasks, but without a robot."""
     absent = RobotSeat(
         seat="", robot="", agent=AgentRef(name=NO_ROBOT_AGENT, source=f"{BUILT_IN_AGENTS}{NO_ROBOT_AGENT}", sha256="")
     )
@@ -87,6 +87,6 @@ def _robot_options(robots: Sequence[RobotSeat]) -> list[str]:
     ]
     if len(robots) == 1:
         return ["--agent", agents[0], *(("--robot", names[0]) if names[0] else ())]
-    # an agent that needs no robot may have been asked for with any robot
+    # an agent that needs no robot may have been named with any robot
     pairs = (f"{name or 'scout'}:{agent}" for name, agent in zip(names, agents, strict=True))
     return ["--robots", ",".join(pairs)]

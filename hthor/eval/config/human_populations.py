@@ -16,7 +16,7 @@ from hthor.tasks import Suite
 from hthor.types import RobotSpec
 
 KINDS, BRACKET = "kinds", "bracket"
-"""Words for several populations: the default and every kind of people; the default between the two extremes."""
+"""Words for several populations: the default with every kind of people; the default with the two extremes."""
 WORDS = (KINDS, BRACKET)
 EXTREMES = ("greedy", "random")
 """Human models that bound real people: one accepts every message, one accepts none."""
@@ -50,7 +50,7 @@ def find_populations(words: Sequence[str]) -> list[ParticipantSource]:
     """The populations that the words of ``--humans`` stand for, each once.
 
     Raises:
-        UnknownName: when a word stands for none.
+        UnknownName: when a word stands for no population.
         PopulationError: when a population's file cannot be used.
         HthorError: when two different populations have the same name.
     """
@@ -118,7 +118,7 @@ def _find(word: str) -> ParticipantSource:
 
 
 def _differences(people: ParticipantSource, suite: Suite, team: RobotTeam) -> Iterator[str]:
-    """How this run differs from the conditions of the calibration, a sentence each."""
+    """How this run differs from the conditions of the calibration, one sentence per difference."""
     drawn_from = people.population
     name, its = f"the population {population_file.population_name(drawn_from.name)}", drawn_from.validity
     if not its.suite_sha256:

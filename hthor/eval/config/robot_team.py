@@ -61,7 +61,7 @@ class RobotTeam(Struct, frozen=True, kw_only=True):
 
     @property
     def listed(self) -> tuple[RobotSeat, ...]:
-        """Every agent that was asked for; ``seat``, ``robot`` and ``detector`` are empty where there is no robot."""
+        """Every agent of the team; ``seat``, ``robot`` and ``detector`` are empty where there is no robot."""
         seats: list[RobotSeat] = []
         present = 0
         for robot, agent in self.robots:
@@ -98,7 +98,7 @@ class RobotTeam(Struct, frozen=True, kw_only=True):
 
     @property
     def agents(self) -> tuple[Manifest, ...]:
-        """The files of each submitted agent once, in the order in which the agents were asked for."""
+        """The files of each submitted agent once, in the order of the team."""
         manifests = (agent.manifest for _, agent in self.robots if agent.manifest is not None)
         return tuple({manifest.sha256: manifest for manifest in manifests}.values())
 
@@ -123,9 +123,9 @@ def step_limit_of(team: RobotTeam, seconds: float | None) -> float | msgspec.Uns
 
 
 def team_pictures_sha256(team: RobotTeam, pack: str = "") -> str:
-    """Hash of the robots' pictures (of the code that draws them and of a furniture pack); empty where none can matter.
+    """Hash of the robots' pictures (of the drawing code and of a furniture pack); empty where they affect no trial.
 
-    Pictures can matter to every submitted agent, and where a camera or a furniture pack was chosen.
+    They can affect every submitted agent, and every agent where a camera or a furniture pack was chosen.
     """
     matters = team.seats and (team.agent_paths or team.camera != cameras.OWN or pack)
     return code_identity.pictures_sha256(pack) if matters else ""
@@ -141,7 +141,7 @@ def form_team(
     """A team in which the first robot has the first agent, the second robot the second agent, and so on.
 
     Raises:
-        UnknownName: when one of them is unknown, or an agent is not made for its robot.
+        UnknownName: when a robot or an agent is unknown, or an agent is not made for its robot.
     """
     pairs = []
     for robot, agent in zip(robots, agents, strict=True):
@@ -210,7 +210,7 @@ def load_robot_info(robot: str) -> RobotInfo:
             ``my_robot.py``.
 
     Raises:
-        UnknownName: when it is neither.
+        UnknownName: when ``robot`` is none of these.
         HthorError: when the file does not load or does not define a robot.
     """
     known = plugins.names("robot")
@@ -226,15 +226,15 @@ def load_robot_info(robot: str) -> RobotInfo:
 
 
 def load_agent_info(agent: str, guests: GuestConfig | None = None) -> AgentInfo:
-    """Look up an agent; a submitted one is started once, in a process of its own, to ask what it is.
+    """Look up an agent; a submitted one is started once, in a process of its own, to ask what it declares.
 
     Args:
         agent: a built-in agent's name, or a submitted agent in one of the forms of `hthor.guest.agent.reference`.
-        guests: how a submitted agent is isolated while it is asked, and what it is given.
+        guests: how a submitted agent is isolated, and which arguments and files it gets.
 
     Raises:
-        UnknownName: when it is neither.
-        AgentError: when it does not load.
+        UnknownName: when ``agent`` is neither.
+        AgentError: when the agent does not load.
     """
     name = plugins.plugin_name("agent", agent)
     return _built_in_agent(name) if name in plugins.names("agent") else _submitted_agent(agent, guests)

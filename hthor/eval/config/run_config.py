@@ -68,7 +68,7 @@ class RunConfig(Struct, frozen=True, kw_only=True):
         agents: the files of every submitted agent.
         kind: the task kind that the suite was narrowed to, None for all its tasks; ``kinds`` are those of the tasks.
         trials: how many trials the whole run has.
-        realtime: agents' thinking took time of the trials.
+        realtime: whether agents' thinking takes time of the trials.
         limit: how many tasks were chosen from the suite, where not all were.
         houses: the houses, and ``difficulty`` the difficulty, that the suite was narrowed to.
         step_limit_s: the submitted agents' deadline for each action [s], where it is not the default.
@@ -146,7 +146,7 @@ class RunConfig(Struct, frozen=True, kw_only=True):
     def folder_name(self) -> str:
         """The run's folder when the user names neither a folder nor the run.
 
-        Equal configurations share one, so that the same command resumes.
+        Equal configurations share a folder, so that repeating the command resumes the run.
         """
         tasks = Path(self.suite.name).name
         if self.kind is not None and self.kind.name != tasks:
@@ -163,7 +163,7 @@ class RunConfig(Struct, frozen=True, kw_only=True):
 
 
 def team_name(robots: Sequence[RobotSeat]) -> str:
-    """The agent's name, of a single robot; "tender-oracle+puck-frontier" of several."""
+    """The agent's name for a single robot; such as "tender-oracle+puck-frontier" for several."""
     if len(robots) == 1:
         return robots[0].agent.name
     names = [f"{robot.robot}-{robot.agent.name}" if robot.robot else robot.agent.name for robot in robots]
@@ -223,7 +223,7 @@ def build_config(
 
 
 def shard_config(config: RunConfig, shard: Shard, tasks: int) -> RunConfig:
-    """The configuration of one shard of a run with so many tasks.
+    """The configuration of one shard of a run with ``tasks`` tasks.
 
     Raises:
         HthorError: when there are more shards than participants.
@@ -263,7 +263,7 @@ def _flat(document: dict[str, object], prefix: str = "") -> dict[str, object]:
 
 
 def _members(value: object) -> dict[str, object] | None:
-    """The members of an object or of a list of objects, in which a file goes by its path and others by their place."""
+    """The members of an object or of a list of objects by name; in a list, the name is a file's path or a number."""
     if isinstance(value, dict):
         return value
     if not isinstance(value, (list, tuple)) or not any(isinstance(part, dict) for part in value):

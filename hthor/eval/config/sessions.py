@@ -51,12 +51,12 @@ def make_sessions(
 ) -> tuple[Session, ...]:
     """The sessions of a run.
 
-    Which tasks a participant does depends on suite, seed and participant alone, never on the robots, so that all
-    robots meet the same people at the same tasks.
+    Which tasks a participant does depends on suite, seed and participant alone, never on the robots, so that all robots
+    meet the same people at the same tasks.
 
     Args:
         agent: a built-in agent's name or an agent file, in the body ``robot`` with the detector ``detector`` as
-            `hthor.types.detector_specs.canonical_name` spells it; or a team, which has all of that.
+            `hthor.types.detector_specs.canonical_name` spells it; or a team, which includes bodies and detector.
         human: the human population, or what `hthor.humans.population.resolve` finds it by.
         participants: how many; by default as many as let every task be done exactly once.
         assets_sha256: hash of the robots' pictures, as `robot_team.team_pictures_sha256`; None: of our own furniture.
@@ -103,7 +103,7 @@ def assign_many(tasks: Sequence[TaskSpec], seed: int, participants: Sequence[int
 
 
 def count_trials(tasks: int, participants: Sequence[int]) -> int:
-    """How many trials these participants have, with so many tasks in the suite."""
+    """How many trials these participants have, with ``tasks`` tasks in the suite."""
     hands = participants_needed(tasks)
     numbers = (participant % hands for participant in participants)
     return sum((number + 1) * tasks // hands - number * tasks // hands for number in numbers)
@@ -138,7 +138,7 @@ def _deck(tasks: Sequence[TaskSpec], seed: int, deck: int) -> list[int]:
 
 
 class Shard(Struct, frozen=True, kw_only=True):
-    """One share of a run: the ``number``-th, counted from 1, ``of`` so many; it has ``trials`` trials."""
+    """One share of a run: number ``number``, counted from 1, of ``of`` shares; it has ``trials`` trials."""
 
     number: int
     of: int
@@ -146,7 +146,7 @@ class Shard(Struct, frozen=True, kw_only=True):
 
     @property
     def words(self) -> str:
-        """As the command line has it, such as "3/16"."""
+        """The shard as the command line names it, such as "3/16"."""
         return f"{self.number}/{self.of}"
 
     def share(self, whole: Sequence[_T]) -> tuple[_T, ...]:
@@ -167,5 +167,5 @@ def parse_shard(text: str) -> Shard:
 
 
 def whole_folder(folder: Path) -> Path:
-    """The whole run's folder, after which a shard's folder was named."""
+    """The folder of the whole run, given the folder of a shard, which is named after it."""
     return folder.with_name(_SHARD_ENDING.sub("", folder.name))

@@ -35,7 +35,7 @@ class TaskSelection(Struct, frozen=True, kw_only=True):
         kind_path: the file of a user's own kind.
         generated: the tasks were generated for this run.
         robots: the robots that all task kinds are made for; empty when the kinds differ.
-        notes: what the user should be told.
+        notes: sentences for the user.
         limit: how many tasks were chosen, None for all.
         houses: the houses, and ``difficulty`` the difficulty, that the suite was narrowed to.
     """
@@ -145,7 +145,7 @@ def _has_difficulty(task: TaskSpec, houses: HouseLibrary, difficulty: str) -> bo
 
 
 def limit_selection(whole: TaskSelection, limit: int | None) -> TaskSelection:
-    """A representative subset of ``limit`` tasks; all for None. Raises HthorError when there are fewer."""
+    """A representative subset of ``limit`` tasks; all for None. Raises HthorError when there are fewer tasks."""
     if limit is None or limit == len(whole.suite.tasks):
         return whole
     if limit > len(whole.suite.tasks):
@@ -168,7 +168,7 @@ def choose_subset(tasks: Sequence[TaskSpec], count: int) -> tuple[TaskSpec, ...]
     taken: Counter[object] = Counter()
 
     def share_taken(task: TaskSpec) -> tuple[float, ...]:
-        """The share of the task's house, kind and pair of both that is taken; the task with the least is next."""
+        """The shares already taken of the task's house, kind, and both together; the task with the lowest is next."""
         pair = (task.house, task.kind)
         return (
             (taken["house", task.house] + 0.5) / houses[task.house],
@@ -186,7 +186,7 @@ def choose_subset(tasks: Sequence[TaskSpec], count: int) -> tuple[TaskSpec, ...]
 
 
 def find_kind(name: str) -> TaskKind:
-    """A task kind by its name or its short name; raises UnknownName when there is none."""
+    """A task kind by its name or its short name; raises UnknownName when no kind has it."""
     names = plugins.names("task kind")
     kinds: dict[str, TaskKind] = {known: plugins.load("task kind", known) for known in names}
     shorts = {kind.short: kind for kind in kinds.values()}
@@ -225,7 +225,7 @@ def _only_kind(whole: Suite, kind: str) -> Suite:
 
 
 def _generated_tasks(kind: TaskKind, path: str) -> tuple[Suite, tuple[str, ...]]:
-    """A task in each house that is fit for the kind, and for the other houses why they have none."""
+    """A task in each house that suits the kind, and for every other house the reason why it has no task."""
     from hthor.tasks.generation import generate
 
     generated, missing = [], []

@@ -1,5 +1,5 @@
-"""Whether this machine can do what an evaluation needs: each file looks at one thing, really trying it out.
+"""Checks whether this machine can run evaluations: each file tries out one thing.
 
-A finding says what was found and, where that is not well, the command that mends it. Nothing here changes the machine,
+A finding says what was found and, if something is wrong, the command that fixes it. Nothing here changes the machine,
 leaves a file behind or uses the network.
 """

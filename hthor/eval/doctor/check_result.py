@@ -29,7 +29,7 @@ class DoctorReport(Struct, frozen=True, kw_only=True):
 
 
 def read_system_file(path: str) -> str:
-    """What the kernel says in a file; empty where there is no such file."""
+    """The text of a file of the kernel; empty if there is no such file."""
     try:
         return Path(path).read_text(encoding="utf-8").strip()
     except OSError:

@@ -1,4 +1,4 @@
-"""What the machine has to give: room and speed of the runs' folder, memory, cores, environment; changes nothing."""
+"""Checks of the machine: space and speed of the runs' folder, memory, cores, environment; they change nothing."""
 
 import os
 import shutil
@@ -13,12 +13,12 @@ from hthor.eval.runner import worker
 
 _MB = 1e6
 _ROOM_MB, _ROOM_LEAST_MB = 1000.0, 100.0
-"""A run of 2000 trials takes 35 MB, with its control twice that."""
+"""Free space [MB] below which to warn, and to fail. A run of 2000 trials takes 35 MB, with its control twice that."""
 _SYNC_MS = 50.0
-"""Records wait at most 250 ms for the disk; one that is slower than this makes runs wait."""
+"""A disk that takes longer than this [ms] slows runs down: records wait at most 250 ms for the disk."""
 _SYNCS = 8
 _WORKER_MB = 700.0
-"""What a worker takes when it has been in all ten houses, with room to spare."""
+"""Memory [MB] of a worker that has built all ten houses, with a margin."""
 _RAY_SHM_MB = 1000.0
 _OTHERWISE = (
     *("NPY_DISABLE_CPU_FEATURES", "NPY_ENABLE_CPU_FEATURES", "OPENBLAS_CORETYPE"),
@@ -29,13 +29,13 @@ _SLOW = "NUMBA_DISABLE_JIT"
 
 
 def check_hardware(runs: Path) -> list[CheckResult]:
-    """Look at everything; ``runs`` is where runs are to be written."""
+    """All checks of the machine; ``runs`` is the folder for runs."""
     cores = _cores()
     return [*_disk(runs), _memory(cores), _processors(cores), _environment(), _shm(), _houses()]
 
 
 def _disk(runs: Path) -> Iterator[CheckResult]:
-    """The folder, or the nearest one above it that there is."""
+    """Checks of the runs' folder or, if it does not exist yet, of its nearest parent that exists."""
     folder = runs.absolute()
     while not folder.exists():
         folder = folder.parent
@@ -82,7 +82,7 @@ def _memory(cores: float) -> CheckResult:
 
 
 def _free_mb() -> float | None:
-    """Free memory, or what is left of the limit that a container has."""
+    """Free memory [MB], or the rest of the container's limit if that is less."""
     found = []
     for line in read_system_file("/proc/meminfo").splitlines():
         if line.startswith("MemAvailable:"):
@@ -123,7 +123,7 @@ def _environment() -> CheckResult:
 
 
 def _shm() -> CheckResult:
-    """Only Ray keeps anything there; frames for agents lie in memory of their own."""
+    """The check of /dev/shm. Only Ray stores data there; frames for agents have shared memory of their own."""
     name, folder = "shared memory", Path("/dev/shm")
     if not folder.is_dir():
         return CheckResult(name=name, says="there is no /dev/shm; only Ray would use it")

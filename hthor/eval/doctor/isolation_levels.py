@@ -1,4 +1,4 @@
-"""Which levels of isolation really start here, and what to do about one that does not; confines nothing itself."""
+"""Checks which isolation levels start on this machine, and says how to fix the others; confines nothing itself."""
 
 import os
 import platform
@@ -13,7 +13,7 @@ _UNCONFINED = "docker run --security-opt seccomp=unconfined --security-opt appar
 
 
 def check_isolation(required: str) -> list[CheckResult]:
-    """Start a guest on each level; those up to the required one must come up."""
+    """Start a guest on each level; all up to the required level must start."""
     return [_finding(level, suffices(required, level)) for level in LEVELS]
 
 
@@ -39,7 +39,7 @@ def _layers(held: Isolation) -> str:
 
 
 def suggest_fix(level: str) -> str:
-    """What to do where a level does not start, from what this machine says of itself."""
+    """How to fix a level that does not start, judged by the properties of this machine."""
     if platform.system() != "Linux":
         return "run hthor on Linux: a virtual machine will do"
     if level == "L3" and not shutil.which("bwrap"):
@@ -59,7 +59,7 @@ def suggest_fix(level: str) -> str:
 
 
 def _namespaces() -> str:
-    """The switch that keeps users from making namespaces, as it should be; empty when none does."""
+    """The kernel setting that forbids users to make namespaces, with its correct value; empty if none forbids it."""
     for name, wrong, right in (
         ("kernel.apparmor_restrict_unprivileged_userns", "1", "0"),
         ("kernel.unprivileged_userns_clone", "0", "1"),

@@ -1,4 +1,4 @@
-"""What is installed, against what this version of hthor was made with: libraries, extras, its own files."""
+"""Compares what is installed with what this version of hthor was made with: libraries, extras, hthor's files."""
 
 import platform
 import subprocess
@@ -12,7 +12,7 @@ from hthor import code_identity, installation
 from hthor.eval.doctor.check_result import CheckResult
 
 _SCORING = ("mujoco", "dm-control", "numba", "numpy")
-"""What trials are computed with."""
+"""Libraries that trials are computed with."""
 _EXTRAS = {
     "cluster": "Ray, for --engine ray",
     "calibration": "for hthor calibrate",
@@ -24,7 +24,7 @@ _GIT_LIMIT_S = 10.0
 
 
 def check_libraries() -> list[CheckResult]:
-    """Look at Python, at each library that trials are computed with, at the others, the extras, and the checkout."""
+    """Check Python, each library that trials are computed with, the other libraries, the extras, and the checkout."""
     found = [CheckResult(name="python", says=platform.python_version())]
     try:
         base, extras = _required()
@@ -38,7 +38,7 @@ def check_libraries() -> list[CheckResult]:
 
 
 def _required() -> tuple[list[Requirement], dict[str, list[Requirement]]]:
-    """What hthor needs, and what each extra adds; a checkout's own file knows better than what was installed once."""
+    """What hthor requires, and what each extra adds; a checkout's own file, if there is one, is the newest source."""
     path = code_identity.PACKAGE.parent / "pyproject.toml"
     if path.is_file():
         project = tomllib.loads(path.read_text(encoding="utf-8"))["project"]
@@ -52,7 +52,7 @@ def _required() -> tuple[list[Requirement], dict[str, list[Requirement]]]:
 
 
 def pinned_versions() -> dict[str, str]:
-    """The versions that this version's own results were made with; empty where hthor is no checkout."""
+    """The versions that this version's own results were made with; empty where hthor is not a checkout."""
     path = code_identity.PACKAGE.parent / "constraints.txt"
     if not path.is_file():
         return {}
@@ -82,7 +82,7 @@ def _others(wanted: Sequence[Requirement]) -> CheckResult:
 
 
 def _extra(name: str, parts: Sequence[Requirement]) -> CheckResult:
-    """An extra that is not installed is nothing amiss; a part of another version is."""
+    """The check of an extra: it need not be installed, but an installed part in a wrong version is a warning."""
     present = {one.name: _installed(one.name) for one in parts}
     title, install = f"extra {name}", f"pip install 'hthor[{name}]'"
     bad = [trouble for one in parts if present[one.name] and (trouble := _trouble(one))]
@@ -94,7 +94,7 @@ def _extra(name: str, parts: Sequence[Requirement]) -> CheckResult:
 
 
 def _checkout() -> Iterator[CheckResult]:
-    """Which code it is, and whether it is changed."""
+    """Which code of hthor this is, and whether it differs from its commit."""
     from hthor import __version__
 
     code, root = installation.sha256()[:10], code_identity.PACKAGE.parent

@@ -1,4 +1,4 @@
-"""Whether robots can see, and whether pictures for people can be drawn; run as a script it draws both."""
+"""Checks that robots' frames and people's pictures can be drawn; run as a script, it draws both."""
 
 import os
 import sys
@@ -23,7 +23,7 @@ class RenderingProbe(Struct, frozen=True, kw_only=True):
 
 
 def check_rendering(drawn: RenderingProbe | str) -> list[CheckResult]:
-    """Judge what the process rendered."""
+    """The checks of what the process rendered."""
     if isinstance(drawn, str):
         says = f"the process that draws a frame failed: {drawn}"
         return [CheckResult(name="pictures", status="fail", says=says, fix=f"{_CURE}; or MUJOCO_GL=osmesa")]
@@ -40,7 +40,7 @@ def check_rendering(drawn: RenderingProbe | str) -> list[CheckResult]:
 
 
 def render_frames() -> Iterator[RenderingProbe]:
-    """Draw a frame in each profile; told after each, as a driver may end the process."""
+    """Draw a frame in each profile, and report after each frame, as a driver may crash the process."""
     from hthor.errors import RenderingUnavailable
     from hthor.world import World
     from hthor.world.rendering import opengl_context
@@ -71,4 +71,4 @@ if __name__ == "__main__":
     for drawn in render_frames():
         sys.stdout.write(jsonio.canonical(drawn).decode() + "\n")
         sys.stdout.flush()
-    os._exit(0)  # some drivers crash when they are unloaded, after all that was asked is done
+    os._exit(0)  # some drivers crash when they are unloaded, after all work is done

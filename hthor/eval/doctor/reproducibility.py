@@ -1,7 +1,7 @@
-"""Whether a reference trial gives the same bytes here; run as a script, it runs that trial.
+"""Checks that a reference trial gives the same bytes here; run as a script, it runs that trial.
 
-What is compared is the trial's course, not the code's hash: a change that moves nothing needs no new reference, and one
-that moves anything does. `hthor doctor --write-reference` writes it.
+The course of the trial is compared, not the hash of the code: only a change of the course needs a new reference, which
+`hthor doctor --write-reference` writes.
 """
 
 import sys
@@ -20,7 +20,7 @@ _SUITE, _AGENT, _PEOPLE, _SEED = "smoke", "frontier", "proxy", 0
 
 
 class TrialFingerprint(Struct, frozen=True, kw_only=True):
-    """How the trial went: the hash of everything in it, what came of it, and the platform that it was played on."""
+    """The result of the trial: the hash of its whole course, its outcome, and the platform that it was played on."""
 
     trial: str
     sha256: str
@@ -38,7 +38,7 @@ def run_reference_trial() -> TrialFingerprint:
     first = sessions.make_sessions(tasks.load_suite(_SUITE), agent=_AGENT, human=_PEOPLE, seed=_SEED)[0]
     done = next(iter(trial_runner.make_runner()(msgspec.structs.replace(first, trials=first.trials[:1])))).record
     course = msgspec.json.decode(trial_record.encode(done))
-    for name in ("key", "spec", "check"):  # these are not the course of the trial
+    for name in ("key", "spec", "check"):  # not part of the course of the trial
         del course[name]
     return TrialFingerprint(
         trial=done.spec.task.id,
@@ -49,12 +49,12 @@ def run_reference_trial() -> TrialFingerprint:
 
 
 def load_reference() -> TrialFingerprint:
-    """How it went where the reference was made."""
+    """The stored fingerprint of the reference trial."""
     return msgspec.json.decode(REFERENCE.read_bytes(), type=TrialFingerprint)
 
 
 def check_reproducibility(here: TrialFingerprint | str) -> list[CheckResult]:
-    """Judge what the process played."""
+    """Compare the trial that the process played with the reference."""
     name = "determinism"
     if isinstance(here, str):
         says = f"the process that plays a trial failed: {here}"
@@ -67,7 +67,7 @@ def check_reproducibility(here: TrialFingerprint | str) -> list[CheckResult]:
     other = platform.platform_differences(there.platform, here.platform)
     same = here.outcome == there.outcome and here.trial == there.trial
     if not other:
-        says = f"on the very platform of the reference {here.trial} goes otherwise, outcome {_verdict(same)}"
+        says = f"on the platform of the reference, {here.trial} differs from the reference, outcome {_verdict(same)}"
         cure = "git status, and undo what changes trials; if the change is meant: hthor doctor --write-reference"
         return [CheckResult(name=name, status="fail", says=says, fix=cure)]
     says = f"outcome {_verdict(same)}, bytes not: this is another platform than the reference's ({'; '.join(other)})"

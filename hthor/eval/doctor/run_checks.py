@@ -17,7 +17,7 @@ from hthor.eval.runner import worker
 from hthor.guest.confinement import check_level
 
 _LIMIT_S = 120.0
-"""The first command after an update compiles for some seconds."""
+"""How long [s] a check may take: the first command after an update compiles for some seconds."""
 _Answer = TypeVar("_Answer")
 
 
@@ -25,11 +25,11 @@ def run_checks(runs: Path, required: str = "L1") -> DoctorReport:
     """Check everything.
 
     Args:
-        runs: the folder that runs are to be written to; it need not be there.
-        required: the least level of isolation that will do.
+        runs: the folder for runs; it need not exist.
+        required: the lowest acceptable level of isolation.
 
     Raises:
-        UnknownName: when there is no such level.
+        UnknownName: when ``required`` is not an isolation level.
     """
     check_level(required, auto=False)
     with (
@@ -47,13 +47,13 @@ def run_checks(runs: Path, required: str = "L1") -> DoctorReport:
 
 
 class Probe:
-    """A process that was started."""
+    """A process that runs a check."""
 
     def __init__(self, process: subprocess.Popen[bytes]) -> None:
         self._process = process
 
     def answer(self, kind: type[_Answer]) -> _Answer | str:
-        """What it found, as the last line of its output says; the reason where it did not come to an end."""
+        """The result in the last line of the process's output, or the reason why there is none."""
         try:
             out, errors = self._process.communicate(timeout=_LIMIT_S)
         except subprocess.TimeoutExpired:
@@ -69,10 +69,10 @@ class Probe:
 
 @contextmanager
 def start_probe(module: str) -> Iterator[Probe]:
-    """Run a module as a script, in the environment that workers have; it ends with the block."""
+    """Run a module as a script, in the environment that workers have; the process ends with the block."""
     environment = {**os.environ, **worker.ONE_THREAD, "PYTHONHASHSEED": "0"}
     environment.setdefault("NUMBA_CACHE_DIR", str(code_identity.compiled()))
-    paths = [str(code_identity.PACKAGE.parent), os.environ.get("PYTHONPATH", "")]  # also in another working folder
+    paths = [str(code_identity.PACKAGE.parent), os.environ.get("PYTHONPATH", "")]  # found from every folder
     environment["PYTHONPATH"] = os.pathsep.join(filter(None, paths))
     command = [sys.executable, "-m", module]
     process = subprocess.Popen(

@@ -27,7 +27,7 @@ _Line = tuple[Place, str, int]
 
 
 class MissingTrials(Struct, frozen=True, kw_only=True):
-    """What is missing of one shard, and the command that runs it. ``trials`` is None when all of it is missing.
+    """The missing trials of one shard, and the command that plays them. ``trials`` is None if all are missing.
 
     Where shards of different divisions are merged, the whole run counts as shard 1 of 1.
     """
@@ -65,18 +65,18 @@ class _ShardLog(Struct, frozen=True, kw_only=True):
 def merge_shards(folders: Sequence[Path], out: Path, *, dry: bool = False) -> MergeResult:
     """Join shards, all or some of them, in a folder that is then like an undivided run's.
 
-    Shards may overlap, and be of different divisions, such as thirds with a half. Records are written in the order of
+    Shards may overlap and come from different divisions, such as thirds and halves. Records are written in the order of
     participants and their trials. Trials that ``out`` has already stay, so merging again adds what is new.
 
     Args:
         dry: only count; nothing is written.
 
     Raises:
-        RunError: when a folder is no shard, the shards belong to different runs, a record is damaged, or a trial is
-            there twice with different records.
+        RunError: when a folder is no shard, the shards belong to different runs, a record is damaged, or a trial occurs
+            twice with different records.
         RunLocked: when another process writes ``out``.
     """
-    folders = list({folder.resolve(): folder for folder in folders}.values())  # each counts once
+    folders = list({folder.resolve(): folder for folder in folders}.values())  # each folder counts once
     shards = [_read_shard(RunFolder(folder)) for folder in folders]
     for other in shards[1:]:
         _check_same_run(shards[0], other)
@@ -133,7 +133,7 @@ def _check_same_run(first: _ShardLog, other: _ShardLog) -> None:
 
 
 def _join(shards: Sequence[_ShardLog]) -> dict[_Trial, _Line]:
-    """Every line once; a shard may be there twice, run on two machines."""
+    """The line of every trial, once; a shard may be given twice, run on two machines."""
     joined: dict[_Trial, _Line] = {}
     for shard in shards:
         for trial, line in shard.lines.items():
@@ -149,7 +149,7 @@ def _join(shards: Sequence[_ShardLog]) -> dict[_Trial, _Line]:
 def _write(
     whole: RunFolder, config: RunConfig, shards: Sequence[_ShardLog], lines: dict[_Trial, _Line]
 ) -> tuple[int, int]:
-    """Write the whole run's files; how many trials its log has now, and how many are new."""
+    """Write the whole run's files; returns how many trials its log has now, and how many are new."""
     new = 0
     with whole.open_log() as log:
         whole.write_config(config)
@@ -177,7 +177,7 @@ def _other_files(folders: Sequence[RunFolder]) -> dict[str, bytes]:
 
 
 def _gaps(shards: Sequence[_ShardLog], out: Path, missing: int) -> tuple[MissingTrials, ...]:
-    """What each shard lacks. Of several folders of one shard, the fullest is the one to go on with."""
+    """The missing trials of each shard. Of several folders of one shard, the one with most trials is continued."""
     first = shards[0]
     of, base = first.shard.of, whole_folder(first.folder.path)
     if any(shard.shard.of != of for shard in shards):  # the undivided command runs just what is missing
@@ -215,7 +215,7 @@ def _score(whole: RunFolder, shards: Sequence[RunFolder]) -> RunResult:
 
 
 def _effort(shards: Sequence[RunFolder]) -> Effort | None:
-    """The longest wall time of all shards, and the sum of all else that they took."""
+    """The longest wall time of all shards, and the sums of everything else that they spent."""
     hint = "it only says what the run cost: delete it, and go on"
     found = (documents.read_or_none(shard.effort_file, Effort, RunError, hint=hint) for shard in shards)
     efforts = [effort for effort in found if effort is not None]

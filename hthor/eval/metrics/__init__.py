@@ -1,4 +1,4 @@
-"""The metrics: what each is (`definitions`, one file a family), all of them (`registry`), and a trial's values of them.
+"""The metrics: what each is (`definitions`, one file per family), the list (`registry`), and their values in a trial.
 
 Begin with `metric.Metric`; a new metric is a record in a file of `definitions`, and nothing else.
 """

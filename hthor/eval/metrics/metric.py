@@ -13,7 +13,7 @@ DIGITS = 6
 """Decimals that are kept of a trial's value, so that a record reads the same on every machine."""
 Range = tuple[float, float]
 AMOUNTS: Range = (0.0, math.inf)
-"""The range of what is counted and has no upper bound."""
+"""The range of counts and other amounts without an upper bound."""
 HIGHER, LOWER = "higher", "lower"
 
 Value = float | int | None
@@ -31,7 +31,7 @@ Formula = Callable[[Trial], Value | dict[str, float]]
 
 
 class Unit(Struct, frozen=True, kw_only=True):
-    """What values are shown in: ``scale`` times the value in ``name``, for differences in ``difference``."""
+    """The unit in which values are shown: ``scale`` times the value, in ``name``; differences in ``difference``."""
 
     name: str = ""
     difference: str = ""
@@ -50,12 +50,12 @@ class Metric(Struct, frozen=True):
     Attributes:
         name: its key in `trials.jsonl` and `result.json`.
         title: how tables name it. short: the same for narrow columns. abbreviation: as in papers, such as TWSR.
-        formula: from a trial to its value; its docstring is the metric's documentation.
+        formula: the function that computes a trial's value; its docstring is the metric's documentation.
         unit: what it is shown in. decimals: how many of them in a report.
         better: "higher" or "lower"; empty where neither is.
         rank: the place in tables, the lowest first.
         main: whether every table and comparison has it; others are counted in detail (`hthor score --all`).
-        section: the part of a report that has it, "messages" or "bodies"; metrics that are not main ones are in one.
+        section: the part of a report that has it, "messages" or "bodies"; every metric that is not main has one.
         part_of: the metric whose parts this one counts, which tables show indented below it.
         by_seat: whether a trial has several values, by name of a seat or of a pair of seats.
         needs_robot: whether it has no value in a trial without a robot.
@@ -89,7 +89,7 @@ class Metric(Struct, frozen=True):
 
     @property
     def doc(self) -> str:
-        """What the metric says of one trial."""
+        """What the metric measures in one trial, from its formula's docstring."""
         return inspect.getdoc(self.formula) or ""
 
     @property
@@ -109,7 +109,7 @@ class Metric(Struct, frozen=True):
 
     @property
     def gain(self) -> str:
-        """What a difference is called that makes it better, with its unit, such as "time saved [s]"."""
+        """The name of an improvement, with its unit, such as "time saved [s]"."""
         return f"{self.brief}{' saved' if self.better == LOWER else ''} [{self.unit.difference}]"
 
     @property
@@ -119,11 +119,11 @@ class Metric(Struct, frozen=True):
 
     @property
     def sign(self) -> float:
-        """1, or -1 for a metric of which less is better."""
+        """1, or -1 for a metric whose lower values are better."""
         return -1.0 if self.better == LOWER else 1.0
 
     def measure(self, trial: Trial) -> Value | dict[str, float]:
-        """The value in one trial, rounded to `DIGITS`; None, or no names, where it has none."""
+        """The value in one trial, rounded to `DIGITS`; None or an empty dict where the metric has no value."""
         if self.needs_robot and not trial.spec.robots:
             return {} if self.by_seat else None
         value = self.formula(trial)
@@ -132,7 +132,7 @@ class Metric(Struct, frozen=True):
         return round(value, DIGITS) if isinstance(value, float) else value
 
     def range(self, limit_s: float | None = None) -> Range:
-        """The range of a mean over trials with this mean time limit [s]; without one a time has no upper bound."""
+        """The range of a mean over trials with this mean time limit [s]; without a limit, a time has no upper bound."""
         return (self.bounds[0], limit_s) if self.timed and limit_s is not None else self.bounds
 
     def range_of(self, values: Sequence[float], limits: Sequence[float]) -> Range:

@@ -20,7 +20,7 @@ def _find() -> tuple[Metric, ...]:
 
 METRICS = _find()
 SINGLE = tuple(metric for metric in METRICS if not metric.by_seat)
-"""Metrics with one value a trial."""
+"""Metrics with one value per trial."""
 BY_SEAT = tuple(metric for metric in METRICS if metric.by_seat)
 MAIN = tuple(metric for metric in SINGLE if metric.main)
 """The metrics that every table of results has, and that runs are compared in."""
@@ -39,7 +39,7 @@ def define_record(
 
 
 def get(name: str) -> Metric:
-    """The metric of this name; raises UnknownName when there is none."""
+    """The metric of this name; raises UnknownName when no metric has it."""
     if name not in _BY_NAME:
         raise UnknownName("metric", name, tuple(_BY_NAME))
     return _BY_NAME[name]

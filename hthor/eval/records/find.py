@@ -1,4 +1,4 @@
-"""Finding one trial of a run by what the user calls it, and describing its first fault."""
+"""Finding one trial of a run by the user's name for it, and describing its first fault."""
 
 import difflib
 from collections.abc import Sequence
@@ -53,7 +53,7 @@ def first_fault(folder: RunFolder) -> TrialRecord:
 
 
 def fault_lines(record: TrialRecord) -> list[str]:
-    """The end of the traceback of a trial's first fault; empty where it was no exception."""
+    """The end of the traceback of a trial's first fault; empty where it was not an exception."""
     lines = record.faults[0].detail.strip().splitlines()
     return lines[-_TRACEBACK_LINES:] if len(lines) > 1 else []
 

@@ -1,6 +1,6 @@
 """The platforms that ran a run's trials, kept in `platform.json`.
 
-Several commands on several machines may work on one run, so the file is a list. It is no part of the run's
+Several commands on several machines may work on one run, so the file is a list. It is not part of the run's
 configuration: equal platforms give equal bytes, different ones may not.
 """
 
@@ -13,11 +13,11 @@ from hthor.errors import RunError
 
 NAME = "platform.json"
 Platform = dict[str, str]
-"""What of a machine and its libraries can change the last bits of a number, by name; see `this_platform`."""
+"""Properties of a machine and its libraries that can change the last bits of numbers, by name; see `this_platform`."""
 
 
 def this_platform() -> Platform:
-    """The platform of this process. Where all of it is equal, records are equal byte for byte."""
+    """The platform of this process. Where all properties are equal, records are equal byte for byte."""
     import llvmlite.binding
     import numpy
 

@@ -22,13 +22,13 @@ _WRITTEN_FIRST = (".lock", trial_log.NAME, ".run.json.*", "control")
 
 
 class RunFolder:
-    """The files of one run, whose folder need not exist yet. Nothing is read before it is asked for."""
+    """The files of one run, whose folder need not exist yet. Each file is read when it is first needed."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
         self.config_file, self.log_file = path / "run.json", path / trial_log.NAME
-        self.result_file = path / "result.json"  # which only whole runs have
-        self.effort_file = path / "effort.json"  # what a shard took, as it has no result to say so
+        self.result_file = path / "result.json"  # only whole runs have it
+        self.effort_file = path / "effort.json"  # the cost of a shard, which has no result
 
     def __str__(self) -> str:
         return str(self.path)
@@ -75,7 +75,7 @@ class RunFolder:
         """Every line of the log and its record, in the order of participants and their trials.
 
         Raises:
-            RunError: when a line is damaged, belongs to another run, or is there twice.
+            RunError: when a line is damaged, belongs to another run, or occurs twice.
         """
         pairs = sorted(trial_log.read(self.log_file), key=lambda pair: _order(pair[1]))
         records = [record for _, record in pairs]
@@ -87,7 +87,7 @@ class RunFolder:
         return self.lines()[1]
 
     def digest(self) -> tuple[list[Place], list[TrialRecord]]:
-        """As `lines`, for runs of any length: lines stay on the disk, and records come without paths and journal."""
+        """As `lines`, for runs of any length: lines stay on the disk, and records lack paths and journal."""
         slim = (
             (place, msgspec.structs.replace(record, paths={}, journal=()))
             for place, _, record in trial_log.places(self.log_file)
@@ -147,7 +147,7 @@ class RunFolder:
             raise RunError(f"the run in {self} {title}; a run keeps the name that it began with. Leave out --name.")
 
     def write_config(self, config: RunConfig) -> RunConfig:
-        """Write `run.json` unless it is there, and return what it says: a stored run keeps its own title.
+        """Write `run.json` unless it exists, and return its configuration: a stored run keeps its own title.
 
         Remains of an earlier write that was killed are removed.
         """
@@ -179,7 +179,7 @@ class RunFolder:
             raise RunError(f"{self.log_file}: trial {twice} is there twice. Delete one of the two lines.")
 
     def _guess(self) -> str:
-        """The run that was probably meant, of those in the same folder."""
+        """The run in the same folder that the user probably meant."""
         names = sorted(path.parent.name for path in self.path.parent.glob("*/run.json"))
         near = difflib.get_close_matches(self.path.name, names, n=1, cutoff=0.5)
         return f" Did you mean '{self.path.parent / near[0]}'?" if near else ""

@@ -1,7 +1,7 @@
 """How a run's agents are isolated: resolved before the first trial, kept in `isolation.json`, stated in the result.
 
 Several commands may work on one run at different levels. The weakest of them counts, so that is what the file has. It
-decides no record and is no part of the run's configuration.
+affects no record and is not part of the run's configuration.
 """
 
 from collections.abc import Collection
@@ -49,10 +49,10 @@ def isolation_of(isolation: Isolation | None, agents: Collection[str]) -> Isolat
 
 
 def weakest_isolation(folder: Path, isolation: Isolation | None, required: str) -> Isolation | None:
-    """The weaker of ``isolation`` and what earlier commands ran this folder's trials at.
+    """The weaker of ``isolation`` and the level at which earlier commands ran this folder's trials.
 
     Raises:
-        IsolationError: when an earlier command had less than is required now.
+        IsolationError: when an earlier command had a lower level than is required now.
     """
     before = load_isolation(folder)
     if before is None:
@@ -67,7 +67,7 @@ def load_isolation(folder: Path) -> Isolation | None:
     Raises:
         RunError: when the file cannot be read.
     """
-    hint = "it says how the agents were held; evaluate the run again, into another folder"
+    hint = "it says how the agents were isolated; evaluate the run again, into another folder"
     return documents.read_or_none(folder / NAME, Isolation, RunError, hint=hint)
 
 

@@ -75,7 +75,7 @@ def fetch(wanted: Iterable[Place]) -> Iterator[bytes]:
 
 
 class TrialLog:
-    """The one writer of a run's log, a context manager. ``key in log`` says whether a trial is there.
+    """The one writer of a run's log, a context manager. ``key in log`` says whether the log has a trial.
 
     Only keys and checksums are kept in memory.
 
@@ -115,11 +115,11 @@ class TrialLog:
         return len(self._checks)
 
     def agrees(self, key: str, line: bytes) -> bool:
-        """Whether the log's line for this trial is this one."""
+        """Whether the log's line for this trial equals ``line``."""
         return self._checks.get(key) == trial_record.checksum(line)
 
     def append(self, key: str, line: bytes) -> bool:
-        """Write a trial's line unless the trial is there; whether it was new."""
+        """Write a trial's line unless the log has the trial; returns whether it was new."""
         if key in self._checks:
             return False
         written = 0

@@ -34,7 +34,7 @@ class TrialRecord(Struct, frozen=True, kw_only=True):
     Attributes:
         key: hash of ``spec``, see `key`.
         files: by seat, the agent's own files that it opened and that ``agents`` in `run.json` does not list.
-        All others are as in `hthor.episode.EpisodeLog`.
+        All other fields are as in `hthor.episode.EpisodeLog`.
     """
 
     key: str

@@ -70,7 +70,7 @@ class TracedHuman:
 
     @property
     def journal(self) -> Sequence[Event]:
-        """As the model has it."""
+        """The model's journal of this trial."""
         return tuple(getattr(self.human, "journal", ()))
 
     def _record_state(self, tick: int) -> None:
@@ -94,7 +94,7 @@ def trace_human(
 
     Raises:
         RunError: when trials before it are missing, or another version of hthor ran them.
-        HthorError: when a file is needed, or the human model does not report its thoughts.
+        HthorError: when a file of the user's is missing, or the human model does not report its thoughts.
     """
     code_identity.keep_compiled()
     spec = trial.spec

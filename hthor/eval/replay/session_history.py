@@ -47,9 +47,9 @@ class Rerun(Struct, frozen=True, kw_only=True):
 
     Attributes:
         before: how many trials of the session were run before it.
-        changed: an agent's file is not the one of the run.
-        same: the record came out equal, byte for byte.
-        left: how an agent failed, if one did.
+        changed: whether an agent's file differs from the run's.
+        same: whether the record equals the logged one, byte for byte.
+        left: the fault report, if an agent failed.
     """
 
     record: TrialRecord
@@ -87,7 +87,7 @@ def replay_team(
 ) -> RobotTeam:
     """The robots of a logged trial, with the user's files for those that did not ship with hthor.
 
-    ``choose`` finds the agent of a seat among those that were given; by default it must be unchanged.
+    ``choose`` finds the agent of a seat among the given agents; by default it must be unchanged.
 
     Raises:
         HthorError: when a file is needed and not given.
@@ -103,7 +103,7 @@ def replay_team(
 def replay_sources(
     folder: RunFolder, spec: TrialSpec, files: RunFiles, guests: GuestConfig, team: RobotTeam | None = None
 ) -> Sources:
-    """Where everything is that a logged trial needs; its robots by default as `replay_team` finds them, unchanged.
+    """The sources of all that a logged trial needs; by default its robots are unchanged, as `replay_team` finds them.
 
     Raises:
         HthorError: when a file is needed and not given.
@@ -125,7 +125,7 @@ def same_agent(folder: RunFolder, seat: RobotSeat, given: Sequence[AgentInfo]) -
     """The agent that the run was run with, unchanged.
 
     Raises:
-        HthorError: when it is not among those that were given; says which of its files changed.
+        HthorError: when it is not among the given agents; says which of its files changed.
     """
     for agent in given:
         if agent.ref.sha256 == seat.agent.sha256:
@@ -159,8 +159,8 @@ def rerun_trial(
 ) -> Rerun:
     """Run a trial of a run once more, with its agents as they are now; prints and writes nothing.
 
-    What the human does depends on their earlier trials, so these are run too. If an agent's file was changed meanwhile,
-    the changed agent takes part, and the trial may go differently.
+    What the human does depends on their earlier trials, so these are run too. If an agent's file was changed since the
+    run, the changed agent takes part, and the trial may differ.
 
     Raises:
         RunError: when trials before it are missing, or another version of hthor ran them.
@@ -187,7 +187,7 @@ def rerun_trial(
 
 
 def _last(outcomes: Iterator[TrialOutcome], count: int) -> TrialOutcome:
-    """The last of so many trials; each is announced before it is run."""
+    """The outcome of the last of ``count`` trials; each is announced before it is run."""
     for number in range(1, count + 1):
         activity.say(f"playing trial {number} of {count}")
         last = next(outcomes)
@@ -195,7 +195,7 @@ def _last(outcomes: Iterator[TrialOutcome], count: int) -> TrialOutcome:
 
 
 def _agent_as_it_is(_: RunFolder, seat: RobotSeat, given: Sequence[AgentInfo]) -> AgentInfo:
-    """The unchanged agent of the run, else one of its name, else the only one that was given."""
+    """The unchanged agent of the run, else a given agent of its name, else the only agent given."""
     same = [one for one in given if one.ref.sha256 == seat.agent.sha256 and one.ref.source == seat.agent.source]
     named = [one for one in given if one.ref.name == seat.agent.name]
     if not (fits := same or named or (given if len(given) == 1 else [])):

@@ -33,7 +33,7 @@ def make_result(
     """The result of a run's records, complete or not.
 
     Args:
-        lines: the log's lines, for their hash. replays: sessions that began again as an agent's process was killed.
+        lines: the log's lines, for their hash. replays: sessions that were run again because an agent was killed.
     """
     trials = hashlib.sha256()
     for line in lines:
@@ -125,7 +125,7 @@ def estimate_metric(records: Sequence[TrialRecord], metric: Metric, seat: str = 
 def score_run(
     run: RunFolder, lines: Iterable[bytes], records: Sequence[TrialRecord], effort: Effort | None
 ) -> RunResult:
-    """The result of a run whose records these are, with all that its folder says of it."""
+    """The result of a run from its records and the other files of its folder."""
     uplift = baseline.uplift_or_stored(run.path, run.config, records)
     isolation, replays = run.isolation, run.restarts
     return make_result(run.config, lines, records, effort, uplift=uplift, isolation=isolation, replays=replays)

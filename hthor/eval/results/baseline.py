@@ -24,7 +24,7 @@ def uplift_or_stored(folder: Path, plan: RunConfig, records: Sequence[TrialRecor
     """The uplift of the run in a folder over its baseline.
 
     If no baseline is found, as in a folder that was copied elsewhere, the uplift in the run's stored result is used,
-    with a note. None if that has none either, or the run has no robot.
+    with a note. None if that result has no uplift either, or the run has no robot.
     """
     return result_file.to_stored(measure_uplift(folder, plan, records)) or _recorded(folder, plan)
 
@@ -91,13 +91,13 @@ def _fits(candidate: Path, plan: RunConfig) -> RunConfig | None:
 
 
 def _near(folder: Path) -> Iterator[Path]:
-    """Folders of runs in this one and next to it."""
+    """Folders of runs in this folder and next to it."""
     yield from (path for path in (folder / FOLDER,) if (path / "run.json").is_file())
     yield from _runs_in(folder.resolve().parent, ("*",), but=folder.resolve())
 
 
 def _anywhere(folder: Path) -> Iterator[Path]:
-    """These, then baselines of the runs next to it, runs around its folder, and runs in the usual places."""
+    """The folders of `_near`, baselines of runs next to it, runs around its folder, and runs in the usual places."""
     above, seen = folder.resolve().parent, set()
     places = (
         _near(folder),
@@ -112,7 +112,7 @@ def _anywhere(folder: Path) -> Iterator[Path]:
 
 
 def _runs_in(place: Path, patterns: Sequence[str], *, but: Path) -> Iterator[Path]:
-    """Folders below a place that hold runs, by name."""
+    """Folders below a place that hold runs, sorted by name."""
     for pattern in patterns:
         yield from sorted(path.parent for path in place.glob(f"{pattern}/run.json") if path.parent.resolve() != but)
 

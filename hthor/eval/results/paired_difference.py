@@ -17,17 +17,17 @@ _DIGITS = 6
 
 
 class Difference(Struct, frozen=True, kw_only=True):
-    """The second run's mean of a metric less the first's, over ``n`` trials that both have.
+    """The second run's mean of a metric minus the first's, over ``n`` trials that both runs have.
 
     Attributes:
-        first, second: the means over these trials. difference: the second less the first.
-        ci95: for new tasks and new participants. p: two-sided, of no difference, consistent with the interval.
+        first, second: the means over these trials. difference: the second minus the first.
+        ci95: for new tasks and new participants. p: the two-sided p-value of no difference, consistent with ci95.
         mde80: the smallest true difference that so many trials would detect with a power of 80 %.
         correlation: of the two runs' values in the same trial; None if one of them never varies.
         gain: how many times fewer trials pairing needs: the variance of a difference between unpaired trials over that
             between paired ones; None if no trial differs.
-        more_tasks: about how many more tasks, done once each, would show a difference of this size with a power of
-            80 %; 0 if these are enough, None if there is no difference to show.
+        more_tasks: about how many more tasks, done once each, would show a difference of this size with 80 % power; 0
+            if these are enough, None if there is no difference to show.
     """
 
     n: int
@@ -57,7 +57,7 @@ class Noise(Struct, frozen=True, kw_only=True):
 class McNemar(Struct, frozen=True, kw_only=True):
     """Trials that only the first run solved, and only the second; the exact two-sided p of McNemar's test.
 
-    The test assumes independent trials, which those of one participant are not quite.
+    The test assumes independent trials, but trials of one participant are not quite independent.
     """
 
     only_first: int
@@ -70,9 +70,9 @@ class Verdict(Struct, frozen=True, kw_only=True):
 
     Attributes:
         among: how many comparisons were judged together.
-        p: of no difference, adjusted for all of them by Holm's method; that of the difference alone where it is one.
-        level: of the interval that belongs to the verdict, 0.95 of a single one: the level at which Holm's method tests
-            this difference. The interval of this level leaves 0 out exactly when the verdict is not 0.
+        p: the p-value of no difference, adjusted for all comparisons by Holm's method; unadjusted for a single one.
+        level: the level at which Holm's method tests this difference, 0.95 for a single comparison. The interval of
+            this level excludes 0 exactly when ``sign`` is not 0.
         sign: 1 when the difference is above 0, -1 when it is below, 0 when these data cannot tell.
     """
 
@@ -83,7 +83,7 @@ class Verdict(Struct, frozen=True, kw_only=True):
 
 
 def paired_difference(pairs: Sequence[Pair], metric: str, *, level: float = intervals.LEVEL) -> Difference | None:
-    """The difference in a metric with an interval of this level; None where no trial has it with both."""
+    """The difference in a metric with an interval of this level; None where no trial has a value in both runs."""
     values = [(pair.one.metrics[metric], pair.other.metrics[metric], pair.one.spec) for pair in pairs]
     rows = [(one, other, spec) for one, other, spec in values if one is not None and other is not None]
     if not rows:
@@ -113,7 +113,7 @@ def difference_of_values(
 
     Args:
         tasks, people: (N,) indices from 0. limit_s: the mean time limit [s], None where it is not known.
-        level: of the interval, two-sided; more than 95 % where it is one of several.
+        level: of the interval, two-sided; above 0.95 for one of several comparisons.
     """
     count, share, room = len(first), metric.is_share, metric.width(limit_s)
     found = difference_spread((second - first)[None], tasks, people, share=share)
@@ -162,14 +162,14 @@ def null_variance(found: MeanSpread, *, share: bool) -> np.ndarray:
 def interval_ends(
     found: MeanSpread, *, share: bool, room: float = 1.0, level: float = (1.0 + intervals.LEVEL) / 2.0
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The 95 % interval: every true difference from which the one that was found is not told apart.
+    """The 95 % interval: every true difference from which the observed difference does not differ significantly.
 
-    What a true difference would have as its variance is `null`'s, but about that difference instead of 0, and never
-    more than is possible: differences between -``room`` and ``room`` whose mean is d vary by room² - d² at most. So
-    the interval never leaves these bounds, and it holds 0 exactly when `p_value` does not refuse it.
+    The variance under a true difference is as in `null_variance`, but about that difference instead of 0, and never
+    more than is possible: differences between -``room`` and ``room`` with mean d have a variance of at most room² - d².
+    So the interval never leaves these bounds, and it contains 0 exactly when `p_value` does not reject 0.
 
     Args:
-        room: the largest difference that there can be, 1 of shares; infinite where there is no bound.
+        room: the largest possible difference, 1 for shares; infinite where there is no bound.
         level: of the quantile, one-sided.
     """
     quantile = intervals.student_quantile(found.freedom, level)
@@ -185,7 +185,7 @@ def interval_ends(
 def _inside(
     found: MeanSpread, some: np.ndarray, room: float, low: np.ndarray, high: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The part of an interval in which differences need not vary more than they can: a score interval, as Wilson's."""
+    """The part of an interval in which differences need not vary more than possible: a score interval like Wilson's."""
     known = np.isfinite(some) & (found.single > 0.0)
     worth = np.where(known, some / np.where(known, found.single, 1.0), 0.0)
     mean = np.clip(found.mean / room, -1.0, 1.0)
@@ -204,7 +204,7 @@ def p_value(centre: float, variance: float, freedom: float) -> float:
 
 
 def mcnemar(pairs: Sequence[Pair]) -> McNemar:
-    """The exact test of success."""
+    """McNemar's exact test of success."""
     first = trial_metrics.column((pair.one.metrics for pair in pairs), "sr")
     second = trial_metrics.column((pair.other.metrics for pair in pairs), "sr")
     only_first, only_second = int((first > second).sum()), int((first < second).sum())
@@ -229,7 +229,7 @@ def holm_adjusted(p: Sequence[float]) -> list[float]:
 
 
 def verdicts(differences: Sequence[tuple[float, float | None]]) -> tuple[Verdict, ...]:
-    """The verdicts on differences that are looked at together, each given with its own p (None when unknown).
+    """The verdicts on differences that are judged together, each given with its own p (None when unknown).
 
     This is the rule by which one robot is called better than another; ranks use the same test and the same adjustment.
     """
@@ -247,7 +247,7 @@ def verdicts(differences: Sequence[tuple[float, float | None]]) -> tuple[Verdict
 
 
 def _levels(p: Sequence[float]) -> list[float]:
-    """The level at which each is tested: the least p against 5 % by their number, and so on to the first that fails."""
+    """The levels of Holm's tests: the smallest of n p-values at 5 % / n, the next at 5 % / (n - 1), until one fails."""
     order = sorted(range(len(p)), key=lambda k: (p[k], k))
     levels, left, failed = [intervals.LEVEL] * len(p), len(p), False
     for k in order:
@@ -259,7 +259,7 @@ def _levels(p: Sequence[float]) -> list[float]:
 
 
 def trial_noise(pairs: Sequence[Pair], metric: str) -> Noise:
-    """How much single trials of these pairs vary in a metric that all have."""
+    """How much single trials of these pairs vary in a metric that every trial has."""
     values = np.array([[one.metrics[metric] for one in (pair.one, pair.other)] for pair in pairs], dtype=float)
     tasks = variance_components.group_codes([pair.one.spec.task.id for pair in pairs])
     people = variance_components.group_codes([pair.one.spec.participant for pair in pairs])
@@ -274,7 +274,7 @@ def trial_noise(pairs: Sequence[Pair], metric: str) -> Noise:
 
 
 def _a_trial(freedom: float, count: int) -> float:
-    """Degrees of freedom that a trial adds, as so many trials have these."""
+    """Degrees of freedom that one trial adds, if ``count`` trials have ``freedom``."""
     return min(1.0, (freedom + 1.0) / count)
 
 

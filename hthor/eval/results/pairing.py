@@ -38,7 +38,7 @@ class PairedTrials(Struct, frozen=True, kw_only=True):
 
 
 def pairing_key(spec: TrialSpec) -> str:
-    """The key that a trial shares with the same trial with other robots: the same participant, day and task.
+    """The key that a trial shares with its counterparts with other robots: the same participant, day and task.
 
     It is the key of the trial without a robot; trials with equal keys meet equal random draws. Settings that only
     robots notice are left out: the furniture pack (only they see its pictures), real time, an action's deadline.

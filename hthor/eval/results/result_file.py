@@ -25,10 +25,10 @@ UPLIFT_METRICS = ("sr", "twsr", "time_s")
 
 
 class Estimates(Struct, frozen=True, kw_only=True):
-    """Means with intervals by metric: fractions, seconds, trust points and counts a trial, a field for each metric."""
+    """Means with intervals by metric: fractions, seconds, trust points and counts per trial, one field per metric."""
 
     def __getitem__(self, metric: str) -> Estimate:
-        """The estimate of a metric with one value a trial."""
+        """The estimate of a metric with one value per trial."""
         estimate: Estimate = getattr(self, metric)
         return estimate
 

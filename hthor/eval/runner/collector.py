@@ -34,12 +34,12 @@ class InternalFailure(HthorError):
 
 @dataclass
 class CollectedTrials:
-    """What came of running sessions.
+    """The result of running sessions.
 
     Attributes:
         cpu_s: CPU time [s].
         new: trials that were added to the log.
-        different: trials that were run again with another outcome than in the log.
+        different: trials that were run again and differ from the log.
         received: trials that workers reported.
         restarts: sessions that were run again.
         lost: sessions that were given up.
@@ -56,7 +56,7 @@ class CollectedTrials:
 
 
 class Collector:
-    """Runs sessions on an engine, and writes new trials to the open log and fault reports beside it.
+    """Runs sessions on an engine, and writes new trials to the open log and fault reports next to it.
 
     ``stop`` is set when the user wants the run to end.
     """
@@ -75,7 +75,7 @@ class Collector:
         self._collected = CollectedTrials()
 
     def collect(self, sessions: Sequence[Session], make: RunnerFactory, *, repeatable: bool = True) -> CollectedTrials:
-        """Run these sessions, and again those in which an agent's process was killed, as far as the run may.
+        """Run these sessions; rerun those in which an agent's process was killed, while the run has restarts left.
 
         ``repeatable`` says whether a trial that is run again must give the same record.
         """

@@ -37,11 +37,11 @@ def run_experiment(
 ) -> Iterator[FinishedRun]:
     """Run every robot team with every human population; yield each run as soon as it is complete.
 
-    All input is checked before the first trial. A run that ends incomplete does not keep the others from being run.
+    All input is checked before the first trial. The other runs are run even if one ends incomplete.
 
     Args:
-        make_watcher: makes what follows the progress of the run of this title.
-        confirm: gets what will be done, before anything is; nothing is done if it returns False.
+        make_watcher: makes the watcher that follows the progress of a run, given the run's title.
+        confirm: called with the resolved runs before anything is done; if it returns False, nothing is done.
 
     Raises:
         HthorError: for any invalid input, before the first trial.

@@ -34,7 +34,7 @@ _ADDRESS = re.compile(r"\b0x[0-9a-f]{6,16}\b")
 
 
 class RecordedAgent:
-    """An agent that is recorded while it acts; this changes nothing of what it does.
+    """An agent that is recorded while it acts; its behaviour stays the same.
 
     Args:
         mind: the agent.
@@ -59,7 +59,7 @@ class RecordedAgent:
         return action
 
     def finish(self) -> None:
-        """Its trial is over."""
+        """Tell the agent that its trial is over."""
         if (finish := getattr(self.mind, "finish", None)) is not None:
             finish()
 
@@ -107,7 +107,7 @@ class FaultReport(Struct, frozen=True, kw_only=True):
 
 
 def describe_faults(key: str, trial: TrialSpec, faults: Sequence[Fault], agents: Mapping[str, Any]) -> FaultReport:
-    """The report of a trial's faults and its ``agents`` by seat; of one that was not recorded only the fault itself."""
+    """The report of a trial's faults and its ``agents`` by seat; for an agent that was not recorded, only its fault."""
     names = {robot.seat: robot.agent.name for robot in trial.robots}
     failures = []
     for fault in faults:
@@ -139,7 +139,7 @@ def _look(observation: Observation, action: Action | None) -> Look:
 
 
 def redact(text: str, files: Iterable[str]) -> str:
-    """A fault's text without what differs between machines: paths become relative to these files, addresses go.
+    """A fault's text without what differs between machines: paths become relative to these files, addresses are cut.
 
     The text is part of the trial's record, which must be the same bytes wherever the agent's file is.
 
@@ -158,7 +158,7 @@ class FaultArchive:
     """Writes fault reports into a run's folder, up to `MOST_OF_A_KIND` and `MOST`.
 
     Args:
-        folder: the run's.
+        folder: the run's folder.
         command: the command that runs a trial once more, without the trial's key; may be empty.
     """
 

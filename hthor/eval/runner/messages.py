@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class TrialOutcome(Struct, frozen=True, kw_only=True):
-    """A trial that was run: its record, and for the author of an agent that failed in it, how that came about."""
+    """A trial that was run: its record, and a fault report for the authors of agents that failed in it."""
 
     record: TrialRecord
     fault_report: FaultReport | None = None
@@ -67,7 +67,7 @@ class SessionAbandoned(Struct, frozen=True, kw_only=True):
 
 
 class Failed(Struct, frozen=True, kw_only=True):
-    """No session can be run until the user has mended something: ``message`` says what."""
+    """No session can be run until the user has fixed something: ``message`` says what."""
 
     exit_code: int
     message: str

@@ -141,7 +141,7 @@ class Live(Watcher):
 
 
 def make_watcher(console: Console, name: str, *, quiet: bool, live: bool) -> Watcher:
-    """What follows the progress of a run of this name; ``live`` where somebody watches the console."""
+    """The watcher for a run of this name; ``live`` says that somebody watches the console."""
     if quiet:
         return Silent()
     return Live(console, name) if live else Plain(console, name)

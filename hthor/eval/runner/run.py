@@ -38,13 +38,13 @@ def run_evaluation(
 
     Args:
         sessions: the run's trials, or those of its shard.
-        make: picklable; called in each worker, makes what runs a session.
+        make: makes a session runner; picklable, called in each worker.
         folder: made when absent, completed when it holds a part of this run.
         jobs: number of worker processes, when no ``engine`` is given.
         engine: where sessions are run; this machine by default.
         extra: other files to write into the folder, by name, such as a suite that was generated for this run.
         rerun_command: the command that runs one of its trials once more, without the trial's key.
-        check: looks at the trials of earlier commands, and raises when none may be added to them.
+        check: looks at the trials of earlier commands, and raises when no trial may be added to them.
 
     Raises:
         RunLocked: when another process writes this run.
@@ -89,7 +89,7 @@ def _run_missing(
     watcher: Watcher,
     stop: threading.Event,
 ) -> CollectedTrials | None:
-    """Run the sessions that lack trials; None when none does."""
+    """Run the sessions that lack trials; None when no session does."""
     keys = {session.participant: [trial_record.key(trial) for trial in session.trials] for session in sessions}
     expected = [key for some in keys.values() for key in some]
     left = [session for session in sessions if any(key not in log for key in keys[session.participant])]

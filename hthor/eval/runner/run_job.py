@@ -26,7 +26,7 @@ def make_sources(
     humans: str = "",
     guests: GuestConfig | None = None,
 ) -> Sources:
-    """Where everything is that the trials of this team need; see `Sources`."""
+    """The sources of all that the trials of this team need; see `Sources`."""
     return Sources(
         agent_paths=team.agent_paths,
         manifests=team.manifests,
@@ -40,7 +40,7 @@ def make_sources(
 
 
 class RunJob(Struct, frozen=True, kw_only=True):
-    """What a run is made of. ``sources`` says where its parts are."""
+    """The parts of a run. ``sources`` says where they are."""
 
     config: RunConfig
     team: RobotTeam
@@ -67,7 +67,7 @@ class RunJob(Struct, frozen=True, kw_only=True):
 
     @property
     def make_runner(self) -> RunnerFactory:
-        """Makes, in each worker, what runs a session."""
+        """The factory that makes a session runner in each worker."""
         return functools.partial(trial_runner.make_runner, self.sources)
 
 

@@ -28,9 +28,9 @@ RUNS = Path("runs")
 
 
 class RunOptions(Struct, frozen=True, kw_only=True):
-    """What the user asked for, as docs/cli.md lists it under `hthor eval`; empty where the default depends on the rest.
+    """The options of `hthor eval`, which docs/cli.md explains; empty where the default depends on other options.
 
-    ``control`` asks for a run of the same people at the same tasks without a robot, unless there is one already.
+    ``control`` adds a run of the same people with the same tasks without a robot, unless there is one already.
     """
 
     agents: tuple[str, ...] = ()
@@ -66,13 +66,13 @@ class RunOptions(Struct, frozen=True, kw_only=True):
 
 
 class ResolvedRuns(Struct, frozen=True, kw_only=True):
-    """What the options stand for, before anything is written.
+    """The runs that the options stand for, before anything is written.
 
     Attributes:
         tasks: the tasks of every run.
-        runs: the runs that were asked for.
-        baseline_of: for the folder of each run that has no baseline yet, the run that becomes it; that may be one of
-            ``runs``.
+        runs: the runs that the user named.
+        baseline_of: for the folder of each run that has no baseline yet, the run that becomes its baseline; that may be
+            one of ``runs``.
         isolation: how submitted agents are isolated on this machine; None where all agents are built in.
     """
 
@@ -83,17 +83,17 @@ class ResolvedRuns(Struct, frozen=True, kw_only=True):
 
     @property
     def baselines(self) -> tuple[ScheduledRun, ...]:
-        """Runs that nobody asked for, which serve as baselines of others."""
+        """Runs that only serve as baselines of others."""
         asked = {run.folder.path for run in self.runs}
         others = (run for run in self.baseline_of.values() if run.folder.path not in asked)
         return tuple({run.folder.path: run for run in others}.values())
 
 
 def resolve_options(options: RunOptions) -> ResolvedRuns:
-    """Find out which runs are asked for. Nothing is written.
+    """Find out which runs the options stand for. Nothing is written.
 
     Raises:
-        HthorError: for any invalid option; what lies in the runs' folders is not looked at.
+        HthorError: for any invalid option; the content of the runs' folders is not checked.
     """
     if not options.agents and not options.robots:
         raise HthorError(
@@ -144,7 +144,7 @@ class _Planner:
         return runs
 
     def baselines(self, runs: Sequence[ScheduledRun]) -> dict[Path, ScheduledRun]:
-        """For the folder of each run with robots that has no baseline yet, the run that becomes it."""
+        """For the folder of each run with robots that has no baseline yet, the run that becomes its baseline."""
         team = robot_team.form_team(["scout"], [robot_team.NO_ROBOT_AGENT])
         found: dict[Path, ScheduledRun] = {}
         for run in runs:
@@ -156,11 +156,11 @@ class _Planner:
         return found
 
     def isolated(self, run: ScheduledRun, isolation: Isolation | None) -> ScheduledRun:
-        """The run with the isolation of its agents, from which its folder is hidden."""
+        """The run with the isolation of its agents, which cannot read the run's folder."""
         own = run_isolation.isolation_of(isolation, run.team.agent_paths.values())
         if own is None:
             return run
-        level = self._options.isolation if own.level == guest.SERVED else own.level  # of agents beside a served one
+        level = self._options.isolation if own.level == guest.SERVED else own.level  # for agents next to a served one
         hidden = (*self._guests.hidden, str(run.folder.path.resolve()))
         guests = GuestConfig(isolation=level, hidden=hidden, inputs=self._guests.inputs)
         sources = msgspec.structs.replace(run.sources, guests=guests)
@@ -238,13 +238,13 @@ def own_houses(options: RunOptions) -> dict[str, bytes]:
 
 
 def guest_config(options: RunOptions) -> GuestConfig:
-    """How submitted agents are isolated, and what they are given."""
+    """How submitted agents are isolated, and which arguments and files they get."""
     agent_inputs = inputs.parse_inputs(options.agent_args, options.readable)
     return GuestConfig(isolation=options.isolation, hidden=_hidden_paths(options), inputs=agent_inputs)
 
 
 def _hidden_paths(options: RunOptions) -> tuple[str, ...]:
-    """What no agent may read, even in its own folder: runs, tasks and human populations."""
+    """Paths that no agent may read, even in its own folder: runs, tasks and human populations."""
     words = (*options.humans, options.suite, options.kind, str(options.out or ""))
     paths = [RUNS, *(Path(word.rpartition("@")[2]) for word in words if word)]
     if options.suite and Path(options.suite).is_file():
@@ -290,7 +290,7 @@ def _teams(options: RunOptions, tasks: TaskSelection, guests: GuestConfig) -> li
 
 
 def _folder(options: RunOptions, config: RunConfig, teams: int, populations: int) -> Path:
-    """Where a run is written: populations have folders of their own, and in these teams have theirs."""
+    """The folder of a run: one folder per population and in it one per team, where there are several."""
     base = options.out or (RUNS / options.name if options.name else None)
     if base is None:
         return RUNS / config.folder_name

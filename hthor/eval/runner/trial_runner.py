@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 
 def load_pack(assets: str) -> Pack | None:
-    """The furniture pack of this name, None for our own furniture; raises UnknownName where there is none."""
+    """The furniture pack of this name, None for our own furniture; raises UnknownName where no pack has it."""
     if not assets:
         return None
     from hthor.looks import pack
@@ -51,8 +51,8 @@ class Sources(Struct, frozen=True, kw_only=True):
         kind_path: the file of a user's own task kind.
         assets: the name of the furniture pack that pictures show, empty for our own furniture.
         houses: the folder of the suite's own houses.
-        humans: the word that finds the human population again; empty where the name in the trial does.
-        guests: how submitted agents are isolated, and what they are given.
+        humans: the word that finds the human population again; empty where the name in the trial finds it.
+        guests: how submitted agents are isolated, and which arguments and files they get.
     """
 
     agent_paths: dict[str, str] = {}
@@ -83,14 +83,14 @@ class TrialRunner:
             plugins.load("task kind", self._sources.kind_path)
 
     def enter(self, session: Session) -> Participants:
-        """The human and the agents of a session, none of which has met the others before."""
+        """A new human and new agents for a session."""
         first = session.trials[0]
         make_agent = functools.partial(self._make_agent, step_limit_s=first.step_limit_s or None)
         human = self._population_of(first).make_model(first.seed, first.participant)
         return Participants(human, first.robots, make_agent)
 
     def world(self, trial: TrialSpec) -> World:
-        """The world of a trial: an earlier one's where house, objects, robots and sensors are the same."""
+        """The world of a trial: an earlier trial's world if house, objects, robots and sensors are the same."""
         task = trial.task
         _check_unchanged(self._sources.kind_path, trial.kind_sha256)
         robots = tuple(seat.robot for seat in trial.robots)
@@ -123,7 +123,7 @@ class TrialRunner:
         """Run the session's next trial. An agent that failed is ended and reported.
 
         Args:
-            world: takes the place of the trial's world, for an observer.
+            world: used instead of the trial's world, for an observer.
         """
         from hthor.eval.records import trial_record
 
@@ -237,7 +237,7 @@ class Participants:
             self.dismiss(seat)
 
     def ready_agents(self) -> Mapping[str, Mind]:
-        """An agent for each robot, by seat: that of the trial before, or a new one where that was dismissed."""
+        """An agent for each robot, by seat: the agent of the trial before, or a new agent if that one was dismissed."""
         for robot in self._seats:
             if robot.seat not in self.agents:
                 self.agents[robot.seat] = self._make_agent(robot)
@@ -257,7 +257,7 @@ class Participants:
 
 
 def make_runner(sources: Sources | None = None) -> Callable[[Session], Iterator[TrialOutcome]]:
-    """What a worker does with each session: run its trials in order. Called in the worker; imports what is heavy."""
+    """A function that runs a session's trials in order. Called in the worker, as it imports large libraries."""
     from hthor.guest import GuestPool
 
     runner = TrialRunner(sources, GuestPool())
@@ -271,7 +271,7 @@ def make_runner(sources: Sources | None = None) -> Callable[[Session], Iterator[
 
 
 def _run_trial(world: TrialWorld, participants: Participants, trial: TrialSpec) -> EpisodeLog:
-    """Run one trial. An error in a plug-in of the user's is reported as theirs to mend."""
+    """Run one trial. An error in a plug-in of the user's is reported as theirs to fix."""
     from hthor.episode import run_episode
 
     try:

@@ -31,7 +31,7 @@ def run_worker(pipe: Connection, make: RunnerFactory, parent: int) -> None:
     """Run every session that comes through the pipe, until None comes or the pipe closes.
 
     Args:
-        make: called once, in the worker; makes what runs a session.
+        make: called once, in the worker; makes a session runner.
         parent: id of the process that started this one; this one ends with it.
     """
     end_with_parent(parent)
@@ -48,7 +48,7 @@ def run_worker(pipe: Connection, make: RunnerFactory, parent: int) -> None:
 
 
 class SessionPlayer:
-    """What a worker of any engine does with sessions."""
+    """Runs sessions in a worker of any engine."""
 
     def __init__(self, make: RunnerFactory) -> None:
         self._make = make
@@ -82,7 +82,7 @@ class SessionPlayer:
 
 
 def _failure(participant: int, error: Exception) -> Failed | SessionAbandoned:
-    """An error that the user can mend ends the run; a bug, or a killed agent, only costs the session."""
+    """An error that the user can fix ends the run; a bug, or a killed agent, only costs the session."""
     if isinstance(error, AgentKilled):
         return SessionAbandoned(participant=participant, cause=str(error), killed=True)
     if isinstance(error, HthorError):

@@ -10,7 +10,7 @@ from hthor.eval.statistics import variance_components
 
 LEVEL = 0.95
 NORMAL = 1.959964
-"""The quantile of the normal distribution that goes with it."""
+"""The quantile of the normal distribution for `LEVEL`, two-sided."""
 POWER = 0.8
 _DIGITS = 6
 _EDGE = 1e-12
@@ -23,8 +23,8 @@ SHARE: Range = (0.0, 1.0)
 class Estimate(Struct, frozen=True, kw_only=True):
     """A mean over ``n`` trials and its 95 % interval; None where there is nothing to average.
 
-    ``mde80`` is how far a given number would have to be from the truth for as many such trials to tell the two apart
-    in four of five cases. It and the interval are None for a single trial of what has no bounds.
+    ``mde80`` is the smallest distance of the true mean from a given number that as many such trials would detect with a
+    probability of 0.8. It and the interval are None for a single trial of an unbounded metric.
     """
 
     mean: float | None
@@ -39,14 +39,14 @@ NOTHING = Estimate(mean=None, ci95=None, n=0)
 def estimate(values: Sequence[float], tasks: Sequence[str], people: Sequence[int], *, within: Range = ANY) -> Estimate:
     """Mean of ``values`` with an interval for new tasks and new people of the same populations.
 
-    Trials that share a task or a person are not independent; `hthor.eval.statistics.variance_components` says how
-    much that matters. With bounds the interval is a score interval, which never leaves them: Wilson's between two,
-    for as many trials as these are worth, and Poisson's above one. Without bounds it is the mean and some standard
-    errors. All use quantiles of Student's t. docs/statistics.md has how often they hold the truth.
+    Trials that share a task or a person are not independent; `hthor.eval.statistics.variance_components` says how much
+    that matters. With bounds the interval is a score interval, which never leaves them: Wilson's between two bounds,
+    with the effective number of trials, and Poisson's above one bound. Without bounds it is the mean ± some standard
+    errors. All use quantiles of Student's t. docs/statistics.md says how often they contain the true mean.
 
     Args:
-        values: one number a trial. tasks: the trial's task. people: the trial's person.
-        within: the least and the greatest value that there can be.
+        values: one number per trial. tasks: the trial's task. people: the trial's person.
+        within: the smallest and the largest possible value.
     """
     if not values:
         return NOTHING
@@ -86,24 +86,22 @@ def confidence_interval(
 
 
 def _above(found: variance_components.MeanSpread, low: float, quantile: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """The score interval of an amount that has only a least value: its variance grows with its mean, as a count's."""
+    """The score interval of an amount with only a lower bound: its variance grows with its mean, like a count's."""
     mean = np.maximum(found.mean - low, 0.0)
     known = np.isfinite(found.variance)
     variance = np.where(known, found.variance, 0.0)
     some = quantile**2 * np.where(mean > 0.0, variance / np.where(mean > 0.0, mean, 1.0), variance)
     half = np.sqrt(some * mean + some**2 / 4.0)
     upper = mean + some / 2.0 + half
-    lower = np.where(
-        upper > 0.0, mean**2 / np.where(upper > 0.0, upper, 1.0), 0.0
-    )  # their product is the mean's square
+    lower = np.where(upper > 0.0, mean**2 / np.where(upper > 0.0, upper, 1.0), 0.0)  # lower * upper = mean ** 2
     return low + np.where(known, lower, 0.0), np.where(known, low + upper, np.inf)
 
 
 def detectable_difference(found: variance_components.MeanSpread, count: int, within: Range = ANY) -> np.ndarray:
-    """The smallest difference from a given number that is seen with a probability of `POWER`."""
+    """The smallest difference from a given number that is detected with the probability `POWER`."""
     low, high = within
     variance = found.variance
-    if math.isfinite(high - low):  # all alike at a bound: as much as its interval's width says
+    if math.isfinite(high - low):  # all values at a bound: as the interval's width implies
         inner = np.clip((found.mean - low) / (high - low), 1.0 / (count + 2), (count + 1) / (count + 2))
         edge = inner * (1.0 - inner) * (high - low) ** 2 * _inverse_worth(found, count, within)
         variance = np.where(np.isfinite(variance) & (variance > 0.0), variance, edge)
@@ -114,9 +112,9 @@ def detectable_difference(found: variance_components.MeanSpread, count: int, wit
 
 
 def _freedom(found: variance_components.MeanSpread, within: Range) -> np.ndarray:
-    """Degrees of freedom. Near a bound, where few trials deviate, what these few trials' tasks and people tell counts.
+    """Degrees of freedom: near a bound, fewer if the few trials that deviate share tasks or people.
 
-    In the middle between the bounds, unevenness is mostly chance.
+    In the middle between the bounds, such unevenness is mostly chance.
     """
     low, high = within
     if not math.isfinite(high - low):
@@ -128,10 +126,10 @@ def _freedom(found: variance_components.MeanSpread, within: Range) -> np.ndarray
 
 
 def _inverse_worth(found: variance_components.MeanSpread, count: int, within: Range) -> np.ndarray:
-    """One divided by the number of independent trials of yes or no that tell as much as these do."""
+    """One divided by the number of independent yes-or-no trials that would be as informative as these trials."""
     low, high = within
     most = (found.mean - low) * (high - found.mean)
-    plain = np.full_like(found.mean, 1.0 / count)  # all at a bound: nothing is known of how they hang together
+    plain = np.full_like(found.mean, 1.0 / count)  # all values at a bound: their correlation is unknown
     inside = most > _EDGE * (high - low) ** 2
     worth: np.ndarray = np.where(inside, found.variance / np.where(inside, most, 1.0), plain)
     return np.where(np.isfinite(worth), worth, plain)

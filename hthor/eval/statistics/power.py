@@ -13,7 +13,7 @@ _MOST = 10**7
 
 
 class SampleSize(Struct, frozen=True, kw_only=True):
-    """How many it takes for each robot: trials, which are tasks done once each, and people, who do ten each."""
+    """How many trials (tasks done once each) and how many people (ten tasks each) are needed for each robot."""
 
     difference: float
     correlation: float
@@ -23,9 +23,9 @@ class SampleSize(Struct, frozen=True, kw_only=True):
 
 
 class Scatter(Struct, frozen=True, kw_only=True):
-    """How much a trial's difference varies, as independent trials would have it, and what one more trial tells of it.
+    """How much a trial's difference varies: its variance as if trials were independent, and degrees of freedom.
 
-    ``freedom`` is the degrees of freedom that each trial brings: 1 of independent trials, less where ten trials are of
+    ``freedom`` is the degrees of freedom that each trial adds: 1 for independent trials, less where ten trials are of
     one person and people differ.
     """
 
@@ -34,7 +34,7 @@ class Scatter(Struct, frozen=True, kw_only=True):
 
 
 def variance_of_difference(first: float, second: float, correlation: float) -> float:
-    """Of one trial's difference in success, for success rates and the correlation of the same trial's outcomes."""
+    """The variance of one trial's difference in success, for both success rates and the outcomes' correlation."""
     one, other = (rate * (1.0 - rate) for rate in (first, second))
     return one + other - 2.0 * correlation * math.sqrt(one * other)
 
@@ -48,7 +48,7 @@ def correlation_range(first: float, second: float) -> tuple[float, float]:
 
 
 def check_rates(first: float, second: float) -> None:
-    """Raise an HthorError, which names it, when one of these cannot be a rate."""
+    """Raise an HthorError that names the first of these numbers that cannot be a rate."""
     for name, rate in (("first", first), ("second", second)):
         if not 0.0 <= rate <= 1.0:
             raise HthorError(f"the {name} rate is {rate:g}, but must be from 0 to 1.")
@@ -62,12 +62,12 @@ def sample_size(
     power: float = intervals.POWER,
     scatter: Scatter | None = None,
 ) -> SampleSize:
-    """What it takes to tell two success rates apart, two-sided at 5 %, with tasks that are done once each.
+    """The sample size that separates two success rates, two-sided at 5 %, with tasks that are done once each.
 
     Args:
         correlation: of the outcomes of the same trial with either robot; 0 for runs that are not paired.
         power: the wanted probability of seeing the difference.
-        scatter: of a trial's difference, where it is measured; else that of independent trials.
+        scatter: the measured scatter of a trial's difference; None for that of independent trials.
 
     Raises:
         HthorError: when a rate or the correlation is impossible.
@@ -95,7 +95,7 @@ def sample_size(
 
 
 def trials_needed(difference: float, scatter: Scatter, *, power: float = intervals.POWER) -> int | None:
-    """Trials whose mean difference is told from 0 with this power; None where there is no difference or no end."""
+    """How many trials detect this mean difference with this power; None if it is 0, or too many would be needed."""
     if difference == 0.0:
         return None
     few, many = 2, 4

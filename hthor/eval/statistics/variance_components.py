@@ -1,7 +1,7 @@
 """How far a mean may be from the truth when trials share tasks and people.
 
 A trial's value is taken as the sum of a mean, what its task adds, what its person adds, and the rest. The variances of
-the three are worked out from sums of squares by their expectations (Henderson's first method), for any design: everyone
+the three are estimated from sums of squares by their expectations (Henderson's first method), for any design: everyone
 does everything, every task is done once, or anything between.
 """
 
@@ -12,16 +12,17 @@ from msgspec import Struct
 
 _TINY = 1e-300
 _UNEVEN = 2.7
-"""Two would be right for sums that are normal; found by simulation, between 2.6 and 3 it makes no difference."""
+"""Factor of `_uneven`, found by simulation: 2.6 to 3 makes no difference; 2 would be right for normal sums."""
 _LEAST = 0.8
-"""What is left of the variance of independent trials where trials of one task or person hang together negatively."""
+"""Lowest variance, as a share of that of independent trials, where trials of a task or person correlate negatively."""
 
 
 class MeanSpread(Struct, frozen=True, kw_only=True):
     """Means over trials, one for each row of values, the variances of these means, and their degrees of freedom.
 
     Each is an array of the rows' shape. ``single`` is the variance of single values. ``uneven`` is degrees of freedom
-    too, as the squared sums of tasks and of people show: few where a few of these make up most of the variance.
+    estimated from the squared sums of tasks and of people: few where a few tasks or people make up most of the
+    variance.
     """
 
     mean: np.ndarray
@@ -42,13 +43,13 @@ def two_way_spread(
 ) -> MeanSpread:
     """The spread of a mean for new tasks and new people of the same populations.
 
-    Where the variance between tasks or between people comes out negative, it is none, and the largest of what remains
-    is taken. The degrees of freedom are Satterthwaite's.
+    The largest variance of the models with and without tasks and people is taken, so that a negative estimate counts as
+    0. The degrees of freedom are Satterthwaite's.
 
     Args:
         values: (..., N) float64. tasks: (N,) indices from 0. people: (N,) indices from 0.
-        differences: of two robots. In these, tasks and people often add nothing, and the largest of several estimates
-            of nothing is too much: all three variances are taken as they come out.
+        differences: whether values are differences of two robots. Tasks and people often add nothing to these, and the
+            largest of several estimates of 0 is too large: all three variances are used as estimated.
     """
     count = values.shape[-1]
     mean = values.mean(axis=-1)
@@ -76,13 +77,13 @@ def _freedom(variance: np.ndarray, held: dict[str, np.ndarray], groups: dict[str
     """Satterthwaite's degrees of freedom of a sum of variances, which are estimated from so many groups each."""
     noise = sum(held[model] ** 2 / max(1, number - 1) for model, number in groups.items())
     freedom = np.clip(variance**2 / np.maximum(noise, _TINY), 1.0, groups["e"] - 1.0)
-    for model in ("ep", "et", "e"):  # where one of them says it all, what it rests on
+    for model in ("ep", "et", "e"):  # where one model gives all of it, that model's groups
         freedom = np.where(variance <= held[model] * (1.0 + 1e-9), max(1.0, groups[model] - 1.0), freedom)
     return freedom
 
 
 def _uneven(squares: np.ndarray, count: int) -> np.ndarray:
-    """Degrees of freedom of the mean of squares, (..., G), by how unequal they are; none are lost for single trials."""
+    """Degrees of freedom of the mean of squares, (..., G), fewer for unequal squares; infinite for single trials."""
     total, groups = squares.sum(axis=-1), squares.shape[-1]
     if groups == count:
         return np.full_like(total, np.inf)
@@ -92,17 +93,17 @@ def _uneven(squares: np.ndarray, count: int) -> np.ndarray:
 
 
 def _variance(model: str, squares: dict[str, np.ndarray], sizes: dict[str, np.ndarray]) -> np.ndarray:
-    """Variance of the mean, in a model in which only these of tasks, people and the rest vary."""
+    """Variance of the mean in a model with only these parts: "t" for tasks, "p" for people, "e" for the rest."""
     count = len(sizes["e"])
     expected = np.array([[_trace(one, other, sizes) for other in model] for one in model])
     wanted = np.array([sizes[one].sum() for one in model]) / count**2
-    weights = np.linalg.pinv(expected.T) @ wanted  # where two of them are the same, as where every task is done once
+    weights = np.linalg.pinv(expected.T) @ wanted  # pinv: parts are equal if every task is done once
     found: np.ndarray = sum(weight * squares[one] for weight, one in zip(weights.tolist(), model, strict=True))
     return found
 
 
 def _trace(one: str, other: str, sizes: dict[str, np.ndarray]) -> float:
-    """How much of the variance of ``other`` is in the squares of ``one``; ``sizes`` are of each trial's group."""
+    """How often the variance of ``other`` is expected in the squares of ``one``; ``sizes``: of each trial's group."""
     count = len(sizes["e"])
     same = sizes[one].sum() if one == other else float(count)
     crossed = float((sizes[one] * sizes[other]).sum())

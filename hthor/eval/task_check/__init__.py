@@ -1,1 +1,1 @@
-"""Are tasks sound? Each is solved by an omniscient person before it is given out."""
+"""Checks whether tasks are sound: an omniscient person solves each task before it is used."""

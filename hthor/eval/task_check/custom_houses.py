@@ -18,18 +18,18 @@ from hthor.tasks.suites import suite_files
 from hthor.tasks.suites.suite_files import HouseSource
 
 TASKS = 10
-"""How many tasks a house is given: as many as a person does."""
+"""How many tasks a house gets: as many as a person does."""
 _FORBIDDEN = re.compile(r"[^A-Za-z0-9_.-]+")
 
 
 def resolve_houses(options: RunOptions, tell: Callable[[str], None]) -> RunOptions:
-    """The options with a suite of tasks in the house files that are given; unchanged where none is given.
+    """The options with a suite of tasks in the given house files; unchanged without such files.
 
     Args:
-        tell: is told in words when tasks are made, which takes a while.
+        tell: called with a sentence before tasks are made, which takes a while.
 
     Raises:
-        HthorError: when the houses do not go with the other options, or have no room for tasks.
+        HthorError: when the houses do not fit the other options, or have no room for tasks.
     """
     files = [word for word in options.houses if word.endswith(".json")]
     if not files:
@@ -62,7 +62,7 @@ def _suite(options: RunOptions, found: tuple[HouseSource, ...], tell: Callable[[
 
 
 def _name(found: tuple[HouseSource, ...]) -> str:
-    """What the suite is called: as its house, or by how many there are."""
+    """The name of the suite: its house's name, or the number of houses."""
     stem = found[0].file.stem if len(found) == 1 and found[0].file else f"{len(found)}-houses"
     name = _FORBIDDEN.sub("-", stem).strip("-._")[:50] or "house"
     return f"in-{name}"

@@ -1,8 +1,8 @@
 """A person who knows where everything is and does a task alone, in the real world.
 
-The walk is the shortest there is, at `PACE_M_S`, which is slow; turning and handling take what the avatar's body
-takes, and nothing else takes any time. So no person is quicker but by walking faster, and the least time is never
-more than this.
+The walk is the shortest there is, at `PACE_M_S`, which is slow; turning and handling take as long as the avatar's body
+needs, and nothing else takes any time. So a person can be quicker only by walking faster, and the least time is never
+longer than this person's time.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 PACE_M_S = 0.4
-"""How fast they walk."""
+"""Walking speed of the omniscient person [m/s]."""
 _SURE = 0.98
-"""Share of a range within which they trust that it will do."""
+"""Share of a range that the person uses, as a margin."""
 _SPOTS, _LOOKS, _APART_M = 6, 200, 0.2
 """How many spots are tried for one action, how many places are looked at for each, and how far apart they are."""
 _POINTS, _EDGE_M, _OFF_M = 3, 0.12, 0.03
@@ -39,7 +39,7 @@ _TURN_RAD, _EPS = 1e-3, 1e-9
 
 
 class Solution(Struct, frozen=True, kw_only=True):
-    """How it went: whether the goal was met, after how long [s] and how long a walk [m], and why it was not.
+    """The result: whether the goal was met, the time [s], the length of the walk [m], and why the goal was not met.
 
     ``way`` [m] is the walk with all its bends, from the start.
     """
@@ -108,7 +108,7 @@ class _Performance:
         self._deliver(job)
 
     def _deliver(self, job: Job) -> None:
-        """Bring what is held to the nearest of the destinations where there is room for it."""
+        """Bring the held object to the nearest destination that has room for it."""
         ends = [thing for thing in self.house.things if thing.id in job.destinations or thing.kind in job.destinations]
         if not ends:
             self._at_spots(self._rooms(job), lambda: self._do(Drop()).ok, f"drop {job.target}")
@@ -123,7 +123,7 @@ class _Performance:
                 return
 
     def _put(self, thing: Thing, place: Vec3 | None) -> bool:
-        """Put what is held on a thing, at one of the points that are in sight and in reach from here."""
+        """Put the held object on a thing, at one of the points that are in sight and in reach from here."""
         here = np.array([self._here()])
         points = [point for point in self._points(thing, place) if len(self._lit(here, thing, point))]
         points.sort(key=lambda point: math.dist(point[:2], self._here()))
@@ -134,7 +134,7 @@ class _Performance:
         return False
 
     def _unshut(self, id: str) -> None:
-        """Open the thing with this id if what lies in it is behind its door."""
+        """Open the thing with this id if its door hides what lies in it."""
         thing = self.things.get(id)
         if thing is None or not catalog.kind(thing.kind).hides or self.world.state(id).open:
             return
@@ -143,7 +143,7 @@ class _Performance:
         )
 
     def _at_spots(self, spots: Floats, deed: Callable[[], bool], what: str, *, needed: bool = True) -> bool:
-        """Do something at the first of the spots where it works, the shortest walk first."""
+        """Do something at the first of the spots where it succeeds, tried in order of walking distance."""
         tried = list[Vec2]()
         for spot in self._nearest(spots):
             if len(tried) < _SPOTS and all(math.dist(spot, other) >= _APART_M for other in tried):
@@ -158,7 +158,7 @@ class _Performance:
         return False
 
     def _seeing(self, id: str, reach: float | None) -> Floats:
-        """(N, 2) [m] where the object is in sight, near enough to be found, or within ``reach`` [m] of the body."""
+        """Spots (N, 2) [m] with the object in sight, near enough to be found, or within ``reach`` [m] of the body."""
         x, y, z = self.world.position(id)
         level = math.sqrt(max((rules.FIND_RANGE_M * _SURE) ** 2 - (self.body.eye - z) ** 2, 0.0))
         cells = self._floor()
@@ -168,7 +168,7 @@ class _Performance:
         return lit
 
     def _front(self, thing: Thing) -> Floats:
-        """(N, 2) [m] where one can take hold of a thing's door."""
+        """Spots (N, 2) [m] from which a body can take hold of a thing's door."""
         cells = self._floor()
         u, v = _local(cells, thing.centre, thing.yaw)
         gap = np.hypot(np.maximum(np.abs(u) - thing.size[0] / 2, 0.0), v - thing.size[1] / 2)
@@ -178,13 +178,13 @@ class _Performance:
         return front
 
     def _serving(self, thing: Thing, place: Vec3 | None) -> Floats:
-        """(N, 2) [m] from which some point of the thing where things are put is in sight and in reach."""
+        """Spots (N, 2) [m] from which some point where the thing can hold objects is in sight and in reach."""
         cells = self._floor()
         found = [self._lit(cells, thing, point) for point in self._points(thing, place)]
         return np.unique(np.concatenate([np.zeros((0, 2)), *found]), axis=0)
 
     def _points(self, thing: Thing, place: Vec3 | None) -> list[Vec3]:
-        """Points [m] just above the thing's surfaces: the one where the object belongs, or some all over them."""
+        """Points [m] just above the thing's surfaces: the point where the object belongs, or points all over them."""
         if place is not None:
             return [place]
         return [
@@ -195,7 +195,7 @@ class _Performance:
         ]
 
     def _lit(self, cells: Floats, thing: Thing, point: Vec3) -> Floats:
-        """Those of the cells from which the point is within reach, and in sight when the thing is open."""
+        """The cells from which the point is within reach, and in sight when the thing is open."""
         near: Floats = cells[np.hypot(cells[:, 0] - point[0], cells[:, 1] - point[1]) <= self.body.reach * _SURE]
         if len(near):
             near = near[lines_of_sight(self.house, frozenset({thing.id})).seen(self._eyes(near), [point])]

@@ -1,7 +1,7 @@
-"""Proof that tasks are what they say and can be done, by the engine and by play.
+"""Proves in the physics engine that tasks are as their files say, and that they can be done.
 
-A task is set up in the real world. Every object is let go there and must stay where it is; then what the task says of
-relations is measured on the true state, with arithmetic of its own; then a person who knows where everything is does
+A task is set up in the simulated world. Every object is released there and must stay where it is; then the relations
+that the task states are measured on the true state, by separate code; then a person who knows where everything is does
 the task (`hthor.eval.task_check.omniscient_solver`).
 """
 
@@ -37,19 +37,19 @@ if TYPE_CHECKING:
     from hthor.world import World
 
 DRIFT_M, WATCHED_S = 0.02, 2.0
-"""How far an object may move in so many seconds after it was set down."""
+"""How far [m] an object may move within this time [s] after its release."""
 _PATIENCE = 6
-"""Where there is more to do than one thing, a person alone may take so many times the limit."""
+"""In a task with several jobs, a person alone may take this many times the time limit."""
 _DEEP_M = 0.01
 _LIFT_M = 0.002
-"""How high above its place an object is let go: less than `DRIFT_M`, and enough for the engine to be awake."""
+"""Height [m] above its place at which an object is released: less than `DRIFT_M`, but enough to wake the engine."""
 _CHUNK = 10
 _In = TypeVar("_In")
 _Out = TypeVar("_Out")
 
 
 class TaskFault(Struct, frozen=True, kw_only=True):
-    """What is wrong with a task: which field of it says so, and why that is not so."""
+    """A fault of a task: the field that is wrong, and the reason."""
 
     task: str
     field: str
@@ -57,8 +57,8 @@ class TaskFault(Struct, frozen=True, kw_only=True):
 
 
 class TaskVerdict(Struct, frozen=True, kw_only=True):
-    """What came of one task's check. ``drift`` [m] is the farthest that an object moved when it was woken, ``seconds``
-    what the task takes a person who knows everything, ``metres`` how far they walk; 0 where that could not be tried.
+    """The result of checking one task. ``drift`` [m] is the farthest that an object moved after its release;
+    ``seconds`` and ``metres`` are the time and walk of an omniscient person, 0 where that could not be tried.
     """
 
     task: str
@@ -120,7 +120,7 @@ def check_task(task: TaskSpec, house: HouseSpec | HouseLibrary = OURS) -> TaskVe
 
 
 def is_solvable(task: TaskSpec, house: HouseSpec) -> bool:
-    """Whether nothing is wrong with a task in its house."""
+    """Whether a task has no fault in its house."""
     return not check_task(task, house).faults
 
 
@@ -132,7 +132,7 @@ def repeated(tasks: Sequence[TaskSpec]) -> list[TaskFault]:
 
 
 def _proved(task: TaskSpec, house: HouseSpec) -> TaskVerdict:
-    """What came of a task whose record is valid in its house."""
+    """The result of checking a task whose record is valid in its house."""
     world = _world(house, tuple((placed.id, placed.kind) for placed in task.objects))
     inside = tuple(_inside(world, task))
     if inside:
@@ -150,7 +150,7 @@ def _unsound(task: TaskSpec, faults: Sequence[tuple[str, str]]) -> TaskVerdict:
 
 
 def _least(task: TaskSpec) -> float:
-    """The least time [s], 0 for a task of a kind that is not there."""
+    """The least time [s], 0 for a task of an unknown kind."""
     try:
         return float(plugins.load("task kind", task.kind).least(task))
     except UnknownName:
@@ -158,7 +158,7 @@ def _least(task: TaskSpec) -> float:
 
 
 def woken(world: World, task: TaskSpec) -> tuple[dict[str, float], dict[str, ThingState]]:
-    """How far [m] each object of a task moves when the engine is made to look after it, and where all is then."""
+    """How far [m] each object of a task moves after its release, and the state of all objects then."""
     world.reset(task)
     for placed in task.objects:
         x, y, z = placed.position
@@ -192,7 +192,7 @@ def _unsettled(task: TaskSpec, drift: dict[str, float]) -> Iterator[tuple[str, s
 def _untrue(
     placed: Placement, house: HouseSpec, task: TaskSpec, states: dict[str, ThingState]
 ) -> Iterator[tuple[str, str]]:
-    """What the task says of an object, and does not hold of its true state."""
+    """Statements of the task about an object that the object's true state contradicts."""
     where = f"objects[{task.objects.index(placed)}]"
     things, state = {thing.id: thing for thing in house.things}, states[placed.id]
     things |= {other.id: as_thing(other) for other in task.objects if other is not placed}
@@ -210,8 +210,8 @@ def _untrue(
 
 
 def _holds(thing: Thing, point: Vec3, half: float, *, within: bool) -> bool:
-    """Whether an object ``half`` [m] high on either side of ``point`` stands over a thing's plan, and in its height
-    when it is to be ``within``: a sink's or a fridge's; on top of a part of it otherwise.
+    """Whether an object, which reaches ``half`` [m] above and below ``point``, is over a thing's outline and, if
+    ``within`` (as in a sink or a fridge), inside its height, otherwise on top of a part of it.
     """
     u, v = _seen_from(thing, point)
     low, foot = thing.centre[2] - thing.size[2] / 2, point[2] - half
@@ -223,7 +223,7 @@ def _holds(thing: Thing, point: Vec3, half: float, *, within: bool) -> bool:
 
 
 def _gap(point: Vec3, thing: Thing | None, other: ThingState | None) -> float:
-    """Distance [m] on the plan to the edge of a thing that stands, to the middle of an object; inf to neither."""
+    """Distance [m] on the plan to a thing's edge or else an object's middle; inf without either."""
     if thing is not None:
         u, v = _seen_from(thing, point)
         return math.hypot(max(abs(u) - thing.size[0] / 2, 0.0), max(abs(v) - thing.size[1] / 2, 0.0))
@@ -231,14 +231,14 @@ def _gap(point: Vec3, thing: Thing | None, other: ThingState | None) -> float:
 
 
 def _seen_from(thing: Thing, point: Vec3) -> tuple[float, float]:
-    """Where a point is along a thing's width and along its depth [m], from its middle."""
+    """Position of a point along a thing's width and along its depth [m], from its middle."""
     away = complex(point[0] - thing.centre[0], point[1] - thing.centre[1])
     turned = away * complex(math.cos(thing.yaw), -math.sin(thing.yaw))
     return turned.real, turned.imag
 
 
 def _played(world: World, task: TaskSpec) -> tuple[float, float, list[tuple[str, str]]]:
-    """What the task takes a person alone: seconds, metres, and what is wrong with that."""
+    """The time [s] and the walk [m] of a person who does the task alone, and the faults that this shows."""
     many = len(task.goal.todo) > 1
     if any(job.hands > 1 for job in task.goal.todo):
         return 0.0, 0.0, []
@@ -268,7 +268,7 @@ def _examine(tasks: Sequence[TaskSpec], houses: HouseLibrary) -> list[TaskVerdic
 
 
 def _begin(parent: int) -> None:
-    """End with the parent, and be deaf to Ctrl-C, for the parent decides what it means."""
+    """End with the parent, and ignore Ctrl-C, which the parent handles."""
     worker.end_with_parent(parent)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 

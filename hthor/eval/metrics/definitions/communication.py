@@ -63,7 +63,7 @@ def first_useful(trial: Trial) -> float | None:
 
 
 def interruptions(trial: Trial) -> float | None:
-    """Robots' messages that came up before the human's eyes, a minute."""
+    """Robots' messages that were shown to the human, per minute."""
     robots = _robot_messages(trial.log)
     shown = sum(event.kind == "shown" and event.data.get("message") in robots for event in trial.log.events)
     return shown / (trial.log.ticks * rules.TICK_S / 60.0) if trial.log.ticks else None
@@ -103,7 +103,7 @@ def _outcome(log: EpisodeLog, kind: str) -> int:
 
 
 def _claims(log: EpisodeLog) -> list[Event]:
-    """The messages that claim where a thing is; where bodies are does not count."""
+    """The messages that claim where a thing is; claims about bodies do not count."""
     return [event for event in _sent(log) if "off" in event.data and event.data.get("object") not in log.paths]
 
 

@@ -15,7 +15,7 @@ Credit = dict[str, float]
 
 
 def work(trial: Trial) -> dict[str, float]:
-    """Each seat's share of what was achieved; no shares where nothing was."""
+    """Each seat's share of what was achieved; no shares where nothing was achieved."""
     return shares(trial.spec, trial.log) or {}
 
 
@@ -24,13 +24,13 @@ def shares(spec: TrialSpec, log: EpisodeLog) -> Credit | None:
 
     Every rise of the progress (for a goal without parts: meeting it) is credited in equal parts to these actions:
 
-    - the one that brought it about: the last before it that finishes something (an object placed, dropped, lifted or
-      lowered, a thing opened or closed; failing that, picked up); while several carry something, their lift;
+    - its cause: the last action before it that finishes something (an object placed, dropped, lifted or lowered, a
+      thing opened or closed; failing that, picked up); while several carry something, their lift;
     - the pick before it of the same object;
-    - the openings before it of what the object was taken out of or put into.
+    - the openings before it of the furniture that the object was taken out of or put into.
 
     An action that several seats did together counts in equal parts for them. A find is credited to the human, who has
-    to see the target, and to the seat that opened what it was in. A fall of the progress takes back the latest credit.
+    to see the target, and to the seat that opened its furniture. A fall of the progress takes back the latest credit.
     """
     ledger: list[tuple[float, Credit]] = []
     for tick, rise in _steps(log):
@@ -83,7 +83,7 @@ def _credit(spec: TrialSpec, log: EpisodeLog, tick: int) -> Credit:
 
 
 def _chain(spec: TrialSpec, past: Sequence[Event]) -> list[tuple[str, ...]]:
-    """The seats that did the last action and each one that it needed."""
+    """The seats that did the last action, and each earlier action that it needed."""
     load = next((event for event in reversed(past) if event.kind in ("lifted", "lowered")), None)
     last = next((event for kinds in (_FINISH, _TAKE) for event in reversed(past) if event.kind in kinds), None)
     if load is not None and load.kind == "lifted":
@@ -106,7 +106,7 @@ def _chain(spec: TrialSpec, past: Sequence[Event]) -> list[tuple[str, ...]]:
 
 
 def _openers(past: Sequence[Event], things: Sequence[str]) -> list[tuple[str, ...]]:
-    """The seats that opened each of the things, the last time that it was opened."""
+    """The seats that last opened each of the things."""
     opened = {event.data.get("thing"): _doers(event) for event in past if event.kind == "opened"}
     return [opened[thing] for thing in dict.fromkeys(things) if thing in opened]
 

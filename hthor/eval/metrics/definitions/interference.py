@@ -12,10 +12,10 @@ from hthor.types import HUMAN
 FREED_M = 0.3
 """A body this far from where it was hindered is free again [m]."""
 LONGEST_S = 5.0
-"""One event hinders nobody longer [s]: by then they could have chosen another way."""
+"""Longest time [s] that one event counts as hindering: by then the body could have chosen another way."""
 
 Span = tuple[int, int]
-"""Ticks, from and until."""
+"""A span of time: its first and its last tick."""
 
 
 def encounters(trial: Trial) -> int:
@@ -29,14 +29,14 @@ def human_hindered(trial: Trial) -> float:
 
 
 def hindered_by_pair(trial: Trial) -> dict[str, float]:
-    """Seconds that each seat lost to each other one, by names such as "human by robot2"."""
+    """Seconds that each seat lost to each other seat, by names such as "human by robot2"."""
     seats = list(trial.log.paths)
     pairs = [(seat, other) for seat in seats for other in seats if seat != other]
     return {f"{seat} by {other}": _seconds(_spans(trial.log, seat, other)) for seat, other in pairs}
 
 
 def _spans(log: EpisodeLog, seat: str, by: str = "") -> Iterator[Span]:
-    """From each time that the seat was hindered until it was free again."""
+    """The spans from each time that the seat was hindered until it was free again."""
     for event in log.events:
         if event.kind == "in_way" and event.seat == seat and by in ("", event.data.get("by")):
             yield event.tick, _freed(log, seat, event.tick)

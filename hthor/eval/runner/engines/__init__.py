@@ -33,11 +33,11 @@ LIMIT_S = 600.0
 _GUEST_S, _GUEST_STEP_S, _SLACK_S = 300.0, 5.0, 1.0
 """What a submitted agent adds [s]: for its start, for each step (its default deadline), and a margin for each step."""
 _LEAP_S = 1.0
-"""A clock that was not read for longer than this [s] stood still meanwhile."""
+"""If a clock is not read for longer than this [s], the process is assumed to have been stopped."""
 
 
 class Engine(Protocol):
-    """What runs sessions. A file in `hthor.eval.runner.engines` defines a class ``Engine`` with these methods."""
+    """Runs sessions. A file in `hthor.eval.runner.engines` defines a class ``Engine`` with these methods."""
 
     def __init__(self, *, jobs: int | None, address: str, gpus: float, limit_s: float) -> None:
         """Prepare the engine.
@@ -50,12 +50,12 @@ class Engine(Protocol):
         """
 
     def run_sessions(self, sessions: Sequence[Session], make: RunnerFactory) -> Generator[News | None, None, None]:
-        """Run sessions and report what happens, None from time to time. Closing the generator ends the workers.
+        """Run sessions and report what happens, with None from time to time. Closing the generator ends the workers.
 
         A session that ends `ATTEMPTS` workers is `SessionAbandoned`, and the others go on.
 
         Raises:
-            SessionFailed: when the user has to mend something first.
+            SessionFailed: when the user has to fix something first.
         """
 
     def drain(self) -> None:
@@ -111,8 +111,8 @@ def find_engine(
     """The engine of this name, ready to run sessions.
 
     Raises:
-        UnknownName: when there is none.
-        HthorError: when it cannot be used here.
+        UnknownName: when no engine has this name.
+        HthorError: when the engine cannot be used here.
     """
     if name not in engine_names():
         raise UnknownName("engine", name, engine_names())
@@ -134,7 +134,7 @@ def trial_limit_s(tasks: Sequence[TaskSpec], guests: int, step_limit_s: float | 
 
 
 class Queue:
-    """Sessions that wait for a worker, with the number of this attempt."""
+    """Sessions that wait for a worker, with the number of the attempt."""
 
     def __init__(self, sessions: Sequence[Session]) -> None:
         self._waiting = deque((session, 1) for session in sessions)

@@ -99,7 +99,7 @@ class _Worker:
         self._stuck = ""
 
     def give(self, session: Session, attempt: int, now: float) -> None:
-        """Give it a session; `receive` notices a worker that is already dead."""
+        """Give the worker a session; `receive` notices a worker that is already dead."""
         self.task, self.since = (session, attempt), now
         try:
             self.pipe.send(session)

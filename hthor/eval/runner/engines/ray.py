@@ -163,7 +163,7 @@ class _Worker:
         self.cause = ""
 
     def give(self, session: Session, attempt: int, now: float) -> None:
-        """Give it a session."""
+        """Give the actor a session."""
         self.task, self.since = (session, attempt), now
         self.awaited = self._actor.run.options(num_returns="streaming").remote(session)
 
@@ -171,7 +171,7 @@ class _Worker:
         """The next message; None when the actor has only started, or died.
 
         Raises:
-            HthorError: when its machine has another hthor.
+            HthorError: when the actor's machine has another version of hthor.
         """
         try:
             if not self.ready:
