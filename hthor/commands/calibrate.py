@@ -121,7 +121,7 @@ def calibrate(
 
 
 def _foretell(brief: dict[str, Any], json: bool) -> None:
-    """Print what a calibration would do; how long it takes depends on what its folder holds already."""
+    """Print what a calibration would do; how long it takes depends on what its folder already has."""
     if json:
         output.put_json({"resumes": Path(brief["folder"]).exists(), **brief})
         return

@@ -59,7 +59,7 @@ def compare(
 
 
 def _rows(pair: Comparison) -> Iterator[dict[str, object]]:
-    """A comparison for a spreadsheet: a row a metric, then success by kind, split, difficulty and scene."""
+    """A comparison for a spreadsheet: one row per metric, then success by kind, split, difficulty and scene."""
     names = {"run": pair.second, "baseline": pair.first}
     for metric, found in pair.differences.items():
         yield {**names, "by": "", "group": "", "metric": metric, **formats.flat(found)}

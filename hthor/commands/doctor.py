@@ -30,7 +30,7 @@ def doctor(
 
     Starts a guest on each level of isolation, draws a frame, plays a trial and compares it with the one that ships, and
     looks at versions, extras, disk, memory, cores and environment. Writes nothing and uses no network. Exit code 5 when
-    something that is needed does not work; a warning is no failure.
+    something that is needed does not work; a warning is not a failure.
     """
     if write_reference:
         _renew(json)

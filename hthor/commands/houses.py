@@ -192,7 +192,7 @@ def _size(house: HouseSpec) -> dict[str, Any]:
 
 
 def _put_findings(findings: Sequence[Finding]) -> None:
-    """Every error, and of each rule's warnings the first few."""
+    """Print every error, and the first few warnings of each rule."""
     told: Counter[str] = Counter()
     for finding in findings:
         told[finding.rule] += finding.severity == "warning"

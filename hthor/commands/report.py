@@ -70,7 +70,7 @@ def case(
 ) -> None:
     """Draw one task with several robots: paths from above, and the views of person and robot at key moments.
 
-    A row a run, as SVG and as PNG. The person's session is played again for the views, and must go as it was logged.
+    One row per run, as SVG and as PNG. The person's session is played again for the views, and must equal the log.
     """
     from hthor.guest.agent import inputs
     from hthor.report.page import case_study as cases

@@ -115,7 +115,7 @@ def view_run(
 
 
 def _kind(word: str) -> str:
-    """A kind's whole name; a user's own kind has no other."""
+    """A kind's full name; a user's own kind has only one name."""
     from hthor.errors import UnknownName
     from hthor.eval.config import task_selection
 

@@ -123,7 +123,7 @@ def _verdict(held: Commitment, state: str, problems: int) -> str:
 
 
 def _tell_versions(held: Commitment) -> None:
-    """Say what of hthor is not as it was when the suite was made: the honest reason for a difference."""
+    """Print which versions differ from those that made the suite, as they can be the reason for a difference."""
     changed = [
         f"{key} {held.made_with.get(key, 'unknown')[:10]} (here {value[:10]})"
         for key, value in _made_with().items()
@@ -140,7 +140,7 @@ def _made_with() -> dict[str, str]:
 
 
 def _salt(path: Path, folder: Path) -> Any:
-    """The salt in a file, which must not lie among what is published."""
+    """The salt in a file, which must not be in the folder that will be published."""
     from hthor.tasks.generation import secret_suites
     from hthor.tasks.suites import commitment as salts
 
@@ -161,7 +161,7 @@ def _proof() -> Proof:
 
 
 def _each(jobs: int | None, total: int) -> MapHouses:
-    """What makes houses in several processes, with progress on standard error where somebody watches."""
+    """A function that makes houses in several processes, with progress on standard error where somebody watches."""
     import functools
     import os
     from concurrent.futures import ProcessPoolExecutor

@@ -84,7 +84,7 @@ def list_robots(shape: Shape = Format.TABLE, json: Json = False) -> None:
 
 
 def _privileges(name: str) -> list[str]:
-    """An agent's privileges; none when what it needs is not installed."""
+    """An agent's privileges; empty when a library that it needs is not installed."""
     from hthor import plugins
     from hthor.errors import MissingExtra
 
@@ -95,7 +95,7 @@ def _privileges(name: str) -> list[str]:
 
 
 def _put(rows: Sequence[dict[str, Any]], json: bool, shape: Format) -> None:
-    """Rows as JSON, or as a table."""
+    """Print rows as JSON, or as a table."""
     if formats.asks_json(json, shape):
         output.put_json(rows)
     else:

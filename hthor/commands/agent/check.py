@@ -1,4 +1,4 @@
-"""`hthor agent run` and `check`: an author looks at one mind of their own."""
+"""`hthor agent run` and `check`: authors examine an agent of their own."""
 
 from __future__ import annotations
 

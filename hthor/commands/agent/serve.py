@@ -22,7 +22,7 @@ def serve(
 ) -> None:
     """Serve an agent to evaluations on other machines ('hthor eval --agent ws://HOST:PORT') until interrupted.
 
-    It runs in this process, with everything that this machine has, and nothing holds it.
+    It runs in this process with full access to this machine: nothing isolates it.
     """
     from hthor.errors import HthorError
     from hthor.guest.agent import inputs
@@ -36,6 +36,6 @@ def serve(
     sys.stdout.write(f"{websocket_server.address(server)}\n")
     sys.stdout.flush()
     sys.stderr.write(f"serving {agent}; stop with Ctrl-C\n")
-    signal.signal(signal.SIGTERM, signal.default_int_handler)  # as Ctrl-C, for who stops it from a script
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # like Ctrl-C, for scripts that stop it
     with server:
         server.serve_forever()

@@ -1,4 +1,4 @@
-"""What `hthor eval` prints: of finished runs, and with --dry-run of those that it would play."""
+"""What `hthor eval` prints: about finished runs and, with --dry-run, about runs that it would play."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def show_populations(console: Console, whole: PopulationMatrix) -> None:
 
 
 def show_forecast(options: RunOptions, watcher: Callable[[str], Watcher], context: typer.Context, json: bool) -> None:
-    """Say what the command would do."""
+    """Print what the command would do."""
     from hthor.eval import dry_run
     from hthor.eval.runner import experiment
 
@@ -114,16 +114,16 @@ def _put(found: Forecast) -> None:
     for words in dict.fromkeys(_source(one.pace) for one in found.runs if one.pace):
         output.put_line(f"time: {words}")
     if found.seconds is None:
-        output.put_line("time: unknown where no finished run here has the same robots, and their trial took too long")
+        output.put_line("time: unknown for robots that no finished run here has, and whose trial took too long")
     left, about = found.trials - found.played, f", {time(found.seconds)}" if found.seconds is not None else ""
     output.put_line(f"{left} of {found.trials} trials would be played{about}; nothing was written.")
 
 
 def _source(pace: TrialCost) -> str:
-    """How it is known what a trial takes."""
+    """Where the estimated time of a trial comes from."""
     if pace.folder:
         return f"as in {pace.folder}/"
-    return f"estimated from {pace.played} trial{'s' * (pace.played != 1)} played for it, which are kept nowhere"
+    return f"estimated from {pace.played} trial{'s' * (pace.played != 1)} played for it, which are not kept"
 
 
 def _row(one: RunForecast) -> tuple[object, ...]:
@@ -131,7 +131,7 @@ def _row(one: RunForecast) -> tuple[object, ...]:
 
 
 def time(seconds: float | None) -> str:
-    """How long something takes, for people; empty where nobody knows."""
+    """A duration in words; empty if it is unknown."""
     if seconds is None:
         return ""
     minutes, rest = divmod(round(seconds), 60)

@@ -21,8 +21,8 @@ _LARGE = 1000.0
 _LEGEND = (
     "people sd: how far people are from the mean, one standard deviation (of the logarithm, as a percentage; of the "
     "logit; or in the unit itself). grade: what could identify it: A the published results (A- weakly), B logs of "
-    "sessions (B- weakly), C the literature only, own nothing at hand. the data: what those that this population was "
-    "fitted to say of it."
+    "sessions (B- weakly), C the literature only, own nothing at hand. the data: what the data that this population "
+    "was fitted to say about the parameter."
 )
 
 Name = Annotated[
@@ -49,7 +49,7 @@ def list_humans(shape: Shape = Format.TABLE, json: Json = False) -> None:
     )
     population = resolve.default_population()
     output.put_line(
-        f"proxy is the model that populations are of; without more it has the population {population}.", shape
+        f"proxy is the model of all populations; by itself it stands for the population {population}.", shape
     )
 
 
@@ -102,7 +102,7 @@ app.command("validate")(validate.validate)
 
 
 def _everybody() -> list[dict[str, Any]]:
-    """A row a name: populations, kinds, models; the hash is empty where a model needs a source to have one."""
+    """One row per name: populations, kinds, models; the hash is empty for a model that needs a source to have one."""
     from hthor import plugins
     from hthor.errors import HthorError
     from hthor.humans.population import kinds, population_file, resolve

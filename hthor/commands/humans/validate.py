@@ -60,7 +60,7 @@ def validate(
     """Compare simulated people with the published study, and write a report on how far to trust them.
 
     Plays NAME on the suite paper without a robot, with the frontier robot and with the oracle; greedy and random people
-    stand beside them. Prints the eight published figures with predicted medians and 90 % intervals, and writes
+    are shown for comparison. Prints the eight published figures with predicted medians and 90 % intervals, and writes
     validation.html, one page that needs nothing else, and validation.json. The same command resumes an interrupted run.
     Exit code 1 when a bar was not cleared.
     """

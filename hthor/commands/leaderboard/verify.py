@@ -1,4 +1,4 @@
-"""`hthor leaderboard verify` and `hthor leaderboard record`: playing entries again, and keeping what came of it."""
+"""`hthor leaderboard verify` and `hthor leaderboard record`: playing entries again, and storing the result."""
 
 from __future__ import annotations
 

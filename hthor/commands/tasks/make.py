@@ -133,7 +133,7 @@ def check_tasks(
 
 
 def _some(suite: Suite, given: str) -> Suite:
-    """The suite, if there is anything in it."""
+    """The suite; raises TaskError when it has no tasks."""
     from hthor.errors import TaskError
 
     if not suite.tasks:

@@ -79,7 +79,7 @@ def show_task(task: TaskId, suite: Own = None, json: Json = False) -> None:
         return
     sys.stdout.write(f"{spec.id}: {spec.instruction}\n\n")
     share = (
-        f"{hard.level}: takes at least {hard.least:.1f} s, {100 * hard.before:.0f} % of where it is expected is nearer"
+        f"{hard.level}: takes at least {hard.least:.1f} s, {100 * hard.before:.0f} % of the expected places come first"
     )
     facts = [
         ("suite", f"{shelf.name} {shelf.version}"),
@@ -149,7 +149,7 @@ def _task_row(task: TaskSpec) -> dict[str, Any]:
 
 
 def _told(rows: Sequence[dict[str, Any]]) -> list[str]:
-    """The columns that tell something: not what ids and instructions say already, nor what all tasks have in common."""
+    """The columns worth showing: not those that ids and instructions repeat, nor those with one value for all tasks."""
     if not rows:
         return []
     known = {"target", "house"} if all(row["house"] in row["id"].split("/") for row in rows) else {"target"}
@@ -158,7 +158,7 @@ def _told(rows: Sequence[dict[str, Any]]) -> list[str]:
 
 
 def _is(row: dict[str, Any], name: str, value: str) -> bool:
-    """Whether a row has this value, where one is wanted; a kind goes by its short name too."""
+    """Whether a row has this value, or no value is wanted; a kind may also be named by its short name."""
     if not value or name != "kind" or row["kind"] == value:
         return bool(not value or row[name] == value)
     from hthor import plugins
