@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import typer
 
 VARIABLE = "_HTHOR_COMPLETE"
-"""The shell sets it when it asks."""
+"""The environment variable that the shell sets when it asks for completions."""
 LEVELS = ["auto", "L1", "L2", "L3"]
 DETECTORS = ["ideal", "noisy", "own"]
 CAMERAS = ["habitat", "own", "realsense", "square", "thor"]
@@ -80,7 +80,7 @@ def runs(incomplete: str = "") -> list[str]:
 
 
 def _runs(folder: Path, depth: int) -> Iterator[Path]:
-    """Folders with a run, and in those, too: a control lies in its run's folder."""
+    """Folders with a run, also those inside another run's folder, as controls are."""
     try:
         entries = sorted(entry.name for entry in os.scandir(folder) if entry.is_dir() and entry.name[0] != ".")
     except OSError:
@@ -106,7 +106,7 @@ OFFERS: dict[str, list[str] | Callable[..., list[str]]] = {
     "camera": CAMERAS,
     **dict.fromkeys(("run", "runs", "folders"), runs),
 }
-"""By the parameter's name, with the group's before it where it means something else elsewhere."""
+"""Offers by the parameter's name, preceded by the group's where the same name means something else elsewhere."""
 
 
 def attach(app: typer.Typer, group: str = "") -> None:
@@ -115,7 +115,7 @@ def attach(app: typer.Typer, group: str = "") -> None:
         if command.callback is None:
             continue
         hints = typing.get_type_hints(command.callback, include_extras=True)
-        command.callback.__annotations__ = hints  # as strings they would be evaluated again, without what is set here
+        command.callback.__annotations__ = hints  # strings would be evaluated again, and lose the offers
         for name, hint in hints.items():
             if offer := OFFERS.get(f"{group} {name}") or OFFERS.get(name):
                 for info in getattr(hint, "__metadata__", ()):

@@ -83,7 +83,7 @@ def _blame(error: BaseException) -> None:
 
 
 def _unread() -> NoReturn:
-    """The reader of our output has gone, as `head` does. Without this Python would complain again at exit."""
+    """End when the reader of our output has gone, as `head` does. Otherwise Python would complain again at exit."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     sys.exit(0)
 

@@ -49,7 +49,7 @@ def asks_json(json: bool, shape: Format) -> bool:
 
 
 def render(headings: Sequence[str], rows: Iterable[Row], shape: Format, title: str = "") -> str:
-    """A table as CSV, Markdown or LaTeX, with a newline at the end; ``title`` is a line above it, which CSV has not."""
+    """A table as CSV, Markdown or LaTeX, with a newline at the end; ``title`` is a line above it, except in CSV."""
     held = [[_plain(cell) for cell in row] for row in rows]
     if shape is Format.CSV:
         return _csv(headings, held)

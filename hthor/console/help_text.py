@@ -22,11 +22,11 @@ _LEFT = 26
 _PLAIN: Any = {"highlight": False, "soft_wrap": True}
 _AT_LEAST = re.compile(r"\bx>=(\S+?)(?=[\];])")
 _TYPES = {"str": None, "int": "N", "int range": "N", "float": "X", "float range": "X", "path": "PATH"}
-"""What stands for a value of a type; of a word, the option's own name."""
+"""The placeholder for a value of each type; None for the option's own name."""
 
 
 def unbroken(text: str) -> str:
-    """The text with one line a paragraph, whatever line breaks its docstring has."""
+    """The text with one line per paragraph, whatever line breaks its docstring has."""
     return _BREAK.sub(" ", inspect.cleandoc(text))
 
 
@@ -59,7 +59,7 @@ class HelpGroup(TyperGroup):
 
 
 def metavar(option: TyperOption, ctx: Any) -> str:
-    """What stands for an option's value: its own word, its choices, or a word for its type."""
+    """The placeholder for an option's value: its own word, its choices, or a word for its type."""
     if option.metavar is not None:
         return option.metavar
     kind = option.display_type(ctx).strip("<>").removeprefix("list[").removesuffix("]").lower()

@@ -1,4 +1,4 @@
-"""Where words go: data to standard output, talk to standard error."""
+"""Printing: data go to standard output, talk to standard error."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ if TYPE_CHECKING:
 
 _PIPE_COLUMNS = 120
 documents: list[int] = []
-"""Sizes of the documents that were written: there is one a command, so that a program can read it."""
+"""Sizes of the JSON documents that were written: a command writes only one, so that a program can read it."""
 
 
 def console(*, talk: bool = False) -> Console:
     """A console on standard output, or on standard error for ``talk``.
 
-    NO_COLOR and FORCE_COLOR are heeded. Tables are fitted to the width. Where nobody can see how wide it is, it is wide
-    enough for our tables.
+    NO_COLOR and FORCE_COLOR are heeded. Tables are fitted to the width. Where the width is unknown, as in a pipe, it is
+    wide enough for our tables.
     """
     from hthor.console.table_fitting import FittingConsole
 
     stream: TextIO = sys.stderr if talk else sys.stdout
     wide = None if stream.isatty() or "COLUMNS" in os.environ else _PIPE_COLUMNS
-    return FittingConsole(file=stream, width=wide, emoji=False)  # agent.py:B: is no blood group
+    return FittingConsole(file=stream, width=wide, emoji=False)  # agent.py:B: is not an emoji
 
 
 def say(text: str, to: Console | None = None) -> None:
@@ -52,7 +52,7 @@ def put_json(document: Any) -> None:
 
 
 def put_files(paths: Sequence[object], json: bool, **more: Any) -> None:
-    """Tell which files were written: a line each, or as a document with whatever ``more`` there is to tell."""
+    """Print which files were written: one line per file, or a JSON document that also has ``more``."""
     if json:
         put_json({"files": [str(path) for path in paths], **more})
     else:
@@ -60,15 +60,15 @@ def put_files(paths: Sequence[object], json: bool, **more: Any) -> None:
 
 
 def following(*commands: str) -> list[str]:
-    """Lines that tell which commands may follow: one each, so that each can be copied as it stands."""
+    """Lines that name the next commands: one command per line, so that each can be copied as it stands."""
     return [f"{'      ' if number else 'next: '} {command}" for number, command in enumerate(commands)]
 
 
 def put_line(text: str, shape: Format = Format.TABLE) -> None:
-    """Write a paragraph to standard output, broken where somebody sees how wide the screen is.
+    """Write a paragraph to standard output, with line breaks on a terminal.
 
-    Where tables have another ``shape`` than the terminal's, standard output has these alone, and words go to standard
-    error.
+    Where tables have another ``shape`` than the terminal's, standard output has only tables, and sentences go to
+    standard error.
     """
     talk = shape is not Format.TABLE
     stream = sys.stderr if talk else sys.stdout
@@ -81,12 +81,12 @@ def put_rich(shown: RenderableType, shape: Format = Format.TABLE) -> None:
         console().print(shown)
         return
     for title, headings, rows in formats.tables(shown):
-        gap = "" if shape is Format.CSV else "\n"  # two tables of Markdown without one between them would be one
+        gap = "" if shape is Format.CSV else "\n"  # two Markdown tables without an empty line between them would be one
         sys.stdout.write(formats.render(headings, rows, shape, title) + gap)
 
 
 def put_records(rows: Sequence[Mapping[str, object]]) -> None:
-    """Write rows to standard output as CSV, a column a name."""
+    """Write rows to standard output as CSV, one column per name."""
     sys.stdout.write(formats.render(*formats.records(rows), Format.CSV))
 
 
@@ -110,7 +110,7 @@ def put_table(headings: Sequence[str], rows: Iterable[Sequence[object]], shape: 
 
 
 def put_rows(rows: Sequence[Mapping[str, Any]], short: Sequence[str] = (), shape: Format = Format.TABLE) -> None:
-    """Write rows as a table with their names as headings; of hashes in the columns ``short`` only the beginning."""
+    """Write rows as a table with their names as headings; the columns ``short`` have only the beginning of hashes."""
     headings = list(rows[0]) if rows else ["nothing"]
     put_table(headings, [[row[name][:10] if name in short else row[name] for name in headings] for row in rows], shape)
 

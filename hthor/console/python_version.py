@@ -1,4 +1,4 @@
-"""Says which Python hthor needs, to whoever starts it with another one. Any Python 3 can read this file."""
+"""Says which Python hthor needs when it is started with another Python. Any Python 3 can read this file."""
 
 import sys
 
