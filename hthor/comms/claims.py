@@ -8,19 +8,19 @@ from hthor.geometry import plane
 from hthor.types import HouseSpec, Send, Snapshot, Thing, Vec3
 
 OFF_M = 1.0
-"""[m] A claim is false if what it is about is farther than this from the claimed position; our choice."""
+"""[m] A claim is false if its object is farther than this from the claimed position; our choice."""
 
 
 def claim_error(send: Send, position: Vec3 | None, snapshot: Snapshot, house: HouseSpec) -> dict[str, float | None]:
-    """What the log keeps of a claim: ``{"off": metres}``, empty where nothing is claimed.
+    """The data of a claim for the log: ``{"off": metres}``, empty where nothing is claimed.
 
     A message claims something when it names an ``object`` and a ``position``: that the thing of this id, or a thing of
-    this kind, is there. ``off`` is how far from there the nearest such thing is: the centre of what can be carried, the
-    outline on the plan of what stands in its place, a room's edge (0 within), a body's axis. It is None when there is
-    no such thing at all, which a message claims even without a position.
+    this kind, is there. ``off`` is the distance from there to the nearest such thing: to the centre of an object that
+    can be carried, the outline on the plan of furniture in its place, a room's edge (0 within) or a body's axis. It is
+    None when there is no such thing at all; naming that is a false claim even without a position.
 
     Args:
-        position: [m] of the claim, as the mailbox understood it. snapshot: the truth when the message is sent.
+        position: of the claim [m], as the mailbox parsed it. snapshot: the true state when the message is sent.
     """
     if not isinstance(send.object, str) or not send.object:
         return {}

@@ -34,7 +34,7 @@ class Mailbox:
         self._changed: set[str] = set()
 
     def send(self, tick: int, sender: str, send: Send, image: ImageSource = None) -> tuple[Event, ...]:
-        """Put a message in the person's inbox; it covers the open one.
+        """Put a message in the person's inbox; it covers the open message.
 
         Args:
             image: renders the sender's own frame of this tick when called; it is not called here.
@@ -166,7 +166,7 @@ def clean_text(text: str, limit: int) -> tuple[str, int]:
 
 
 def parse_point(value: Any) -> Vec3 | None:
-    """The three finite numbers of a position as plain floats, or None when it is something else."""
+    """The three finite numbers of a position as plain floats, or None for any other value."""
     if isinstance(value, (str, bytes)) or not (isinstance(value, Sequence) or hasattr(value, "__array__")):
         return None
     try:
