@@ -13,5 +13,5 @@ class Agent:
         """Nothing to prepare."""
 
     def act(self, observation: Observation) -> Action:  # noqa: ARG002
-        """Stand still, should there be a body."""
+        """Stand still, if there is a body."""
         return Action(motion=Wait(seconds=1.0))

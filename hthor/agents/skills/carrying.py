@@ -1,7 +1,7 @@
-"""Carries a thing that is too heavy for one, together with another robot or the person.
+"""Carries a thing that is too heavy for one body, together with another robot or the person.
 
-They hold it by the handles at its ends. Once they are strong enough together, the one who moves pulls the thing and the
-others along like a trailer. It is put down as soon as one lets go.
+They hold it by the handles at its ends. Once they are strong enough together, the body that moves pulls the thing and
+the others along like a trailer. The thing is put down as soon as one body lets go.
 """
 
 import math
@@ -18,15 +18,15 @@ from hthor.navigation.path_follower import Follower, face, shift
 from hthor.types import HUMAN, Briefing, Drop, Job, Motion, Observation, Pick, ThingState, Vec2, Vec3, Wait
 
 _THERE_M = 0.45
-"""It is put down this close to its place [m]."""
+"""The thing is put down this close to its place [m]."""
 _ENOUGH_M = 0.7
-"""The same when it does not get closer [m]."""
+"""The same distance [m] for a thing that does not get closer."""
 _PAST_M = (0.9, 0.6, 0.3, 0.0)
 """How far past the place the leader goes [m], so that the thing behind it ends up there."""
 _BESIDE_M, _BY_M, _ASIDE_M = 0.12, 1.4, 1.2
 _AIMS = 24
 _STUCK = 4
-"""After so many blocked moves in a row, another one may lead for a while."""
+"""After so many blocked moves in a row, another body may lead for a while."""
 _REST_S = 6.0
 
 
@@ -58,7 +58,7 @@ class Carrier:
         self._stuck, self._until, self._number = 0, -1, 0
 
     def is_close(self, observation: Observation, knowledge: Knowledge, job: Job) -> bool:
-        """Whether the body holds the thing or is near it; then others come to help, and nobody makes way."""
+        """Whether the body holds the thing or is near it; if so, others come to help, and nobody makes way."""
         here, place = (observation.pose.x, observation.pose.y), knowledge.states[job.target].position
         return observation.holding == job.target or math.dist(here, place[:2]) < _BY_M
 
@@ -125,7 +125,7 @@ class Carrier:
         return step or self._attend(observation, state)
 
     def _handle(self, state: ThingState) -> Vec3:
-        """The free handle, of two the one that the person reaches last; the middle until its orientation is seen."""
+        """The free handle, or of two the one that the person reaches last; the middle until its orientation is seen."""
         if self._yaw is None:
             return state.position
         ends = [plane.to_house((side * self._half, 0.0, 0.0), state.position, self._yaw) for side in (1.0, -1.0)]
@@ -137,7 +137,7 @@ class Carrier:
         return max(ends, key=lambda end: round(math.dist(end[:2], last), 3))
 
     def _attend(self, observation: Observation, state: ThingState) -> Motion:
-        """Wait for another to take the other end, facing it."""
+        """Face the thing and wait for another body to take the other end."""
         turn = face(observation.pose, state.position, self.body.eye, self.body.pitch_limit)
         return turn if turn is not None and abs(turn.yaw) > 0.2 else Wait(seconds=0.5)
 
@@ -197,7 +197,7 @@ class Carrier:
         return shift(observation.pose, spot, 0.3)
 
     def _room(self, knowledge: Knowledge, job: Job, state: ThingState) -> Vec3 | None:
-        """The middle of the room that it belongs in, for a job without a place."""
+        """The middle of the room that the thing belongs in, for a job without a place."""
         rooms = [knowledge.rooms[name] for name in job.destinations if name in knowledge.rooms]
         if not rooms:
             return None
@@ -207,5 +207,5 @@ class Carrier:
 
 
 def _swing(number: int) -> float:
-    """0, then ever farther to either side [rad]."""
+    """Angle of a try [rad]: 0 for the first, then to alternating sides, ever farther."""
     return (1 if number % 2 else -1) * 0.5 * ((number + 1) // 2)

@@ -28,7 +28,7 @@ _LOW_M, _HIGH_M, _ASIDE_M = 0.4, 1.1, 1.0
 
 
 class Explorer:
-    """Looks around, then goes to the cheapest of the frontiers and of the places never seen from close by."""
+    """Looks around, then goes to the cheapest frontier or place that was never seen from close by."""
 
     def __init__(self, body: BodySpec) -> None:
         self.body = body
@@ -142,7 +142,7 @@ class ObservedRoutes:
         return self.explorer.planner.fits(*spot)
 
     def standing(self, spots: Sequence[Vec2]) -> list[Vec2]:
-        """Those of the spots where the body may stand, according to the map."""
+        """The spots where the body may stand, according to the map."""
         return [spot for spot in spots if self.explorer.planner.fits(*spot)]
 
     def fits(self, a: Vec2, b: Vec2) -> bool:

@@ -10,7 +10,7 @@ from hthor.types import Job, Observation, Place, Room, Thing, ThingState, Vec3
 PAPER_KINDS = ("", "mobile_manipulation", "object_goal_navigation")
 """The two kinds of the paper, in which robots say and do what the paper's robots did; "" is an unnamed kind."""
 CLOSE_M, TOGETHER_M = 0.25, 0.7
-"""Distances to its place [m] at which an object counts as done, and one that takes several to carry."""
+"""Distance [m] to its place at which an object is done; the second is for an object that several bodies carry."""
 
 _STEP_M = 0.15
 
@@ -99,12 +99,12 @@ class ObservedKnowledge(Knowledge):
 
 
 def has_door(thing: Thing) -> bool:
-    """Whether it must be opened before its inside can be seen."""
+    """Whether a thing must be opened before its inside can be seen."""
     return catalog.kind(thing.kind).hides
 
 
 def resting_points(thing: Thing, inset_m: float) -> tuple[Vec3, ...]:
-    """Points [m] on its surfaces where an object of half width ``inset_m`` could lie."""
+    """Points [m] on a thing's surfaces where an object of half width ``inset_m`` could lie."""
     points = []
     for surface in catalog.kind(thing.kind).rests(thing.size):
         (x, y, z), (w, d) = surface.centre, surface.half

@@ -28,7 +28,7 @@ _AT_M = 0.2
 
 
 class ManipulationGoal(Struct, frozen=True):
-    """Where to go and what to do there: have one of the ``points`` [m] in reach, face it, then ``act``.
+    """A goal for the body: stand with one of the ``points`` [m] within reach, face it, then do ``act``.
 
     ``stand`` [m] is where to stand for it, if that matters.
     """
@@ -41,9 +41,9 @@ class ManipulationGoal(Struct, frozen=True):
 
 
 class Manipulator:
-    """Carries one object after the other; leaves alone for a while what failed several times.
+    """Carries one object after the other; leaves objects that failed several times alone for a while.
 
-    ``follower`` has the path that it is on.
+    ``follower`` has its current path.
     """
 
     def __init__(self, body: BodySpec, routes: Routes, yielding: Yielding, tick_s: float) -> None:
@@ -59,7 +59,7 @@ class Manipulator:
         return self._left_alone.get(name, 0) <= tick
 
     def leave(self, name: str, until: int) -> None:
-        """Leave it alone until this tick."""
+        """Leave the object alone until this tick."""
         self._left_alone[name] = until
 
     def motion(self, observation: Observation, knowledge: Knowledge, job: Job) -> Motion | None:
@@ -101,7 +101,7 @@ class Manipulator:
         return ManipulationGoal(_at(job, thing), points, act, thing)
 
     def _bearer(self, observation: Observation, knowledge: Knowledge, job: Job) -> Thing | None:
-        """What to put it on: where the body is going already, or else the nearest that may be tried."""
+        """The furniture to put the object on: the current goal, or else the nearest that may be tried."""
         able = [
             thing
             for thing in knowledge.bearers(job)
@@ -132,7 +132,7 @@ class Manipulator:
         return tuple(free) or points
 
     def pursue(self, observation: Observation, goal: ManipulationGoal) -> Motion | None:
-        """Go, face, act; from another spot when that was refused."""
+        """Go to a spot, face a point and act; after a refusal, try another spot."""
         outcome, here = observation.outcome, (observation.pose.x, observation.pose.y)
         moved = len(goal.points) == 1 and math.dist(goal.points[0], self._at) > _MOVED_M
         if goal.name != self._goal_name or moved:

@@ -1,4 +1,4 @@
-"""When to send a message, again or not at all, and its text."""
+"""When to send a message for the first time or again, and its text."""
 
 from collections.abc import Mapping, Sequence
 
@@ -14,7 +14,7 @@ _HOLLOW = ("bathtub", "fridge", "garbage_can", "sink")
 
 
 class MessageTiming:
-    """Decides when to send messages about one thing: once, and again some time after one was declined."""
+    """Decides when to send messages about one thing: once, and again some time after a message was declined."""
 
     def __init__(self, briefing: Briefing, most: int) -> None:
         """``most`` is the largest number of messages."""
@@ -23,7 +23,7 @@ class MessageTiming:
         self._mark = 0
 
     def due(self, tick: int, receipt: Receipt | None) -> bool:
-        """Whether a message is due, given the receipt of the last one."""
+        """Whether a message is due, given the receipt of the last message."""
         if self.sent == 0:
             return True
         if self.sent >= self.most or tick < self._mark + self._again or receipt is None:
@@ -31,7 +31,7 @@ class MessageTiming:
         return receipt.status in ("declined", "covered") and tick >= receipt.tick + self._again
 
     def note(self, tick: int) -> None:
-        """A message was sent."""
+        """Note that a message was sent at this tick."""
         self.sent, self._mark = self.sent + 1, tick
 
 

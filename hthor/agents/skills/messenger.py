@@ -36,7 +36,8 @@ _UNANSWERED_S, _CONFIRMED_S = 8.0, 20.0
 class Messenger:
     """Tells the person about one job at a time: about the object, and once they hold it, about its destination.
 
-    It speaks only when close enough to detect. Behind a closed door it cannot detect, and says so in front of it.
+    It speaks only when close enough to detect the thing; for a thing behind a closed door it speaks in front of the
+    door.
     """
 
     def __init__(
@@ -82,7 +83,7 @@ class Messenger:
             self._answers[self.spoken_about] = observation.receipt
 
     def waits(self, observation: Observation, job: Job) -> bool:
-        """Whether the person may still act on the message about this job, or has not had one."""
+        """Whether the person may still act on the message about this job, or has not been sent one."""
         if self.timing(job, "target").sent == 0:
             return True
         answer = self._answers.get((job.target, "target"))

@@ -1,4 +1,4 @@
-"""The frontier robot with more to do than to find one object: explores, carries what it can, tells the rest."""
+"""The frontier robot in larger tasks than finding one object: explores, carries what it can, tells the rest."""
 
 import math
 

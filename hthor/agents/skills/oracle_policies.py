@@ -1,6 +1,6 @@
-"""What a robot does that knows where everything is: alone with one thing to find or to bring, or as one of a team.
+"""Policies of a robot that knows where everything is: alone with one thing to find or to bring, or in a team.
 
-With an arm it does the job itself; else it goes where the target is and tells the person.
+With an arm the robot does the job itself; without, it goes where the target is and tells the person.
 """
 
 from collections.abc import Sequence
@@ -17,16 +17,16 @@ from hthor.navigation.path_follower import Courtesy, Follower
 from hthor.types import HUMAN, Action, Briefing, Job, Motion, Observation, Send, Wait
 
 _LATER_S = 15.0
-"""How long an object is left alone that was put down and still is not where it belongs."""
+"""How long [s] an object is left alone that was put down but is not where it belongs."""
 _PATIENCE_S = 25.0
-"""How long an object that is another robot's share is not spoken about."""
+"""How long [s] the robot does not speak about an object that is another robot's share."""
 
 
 class SingleTaskOracle:
     """One robot's policy for one trial; what differs with several jobs or robots is overridden by `TeamOracle`.
 
     Attributes:
-        mine: the job that this robot does itself now. done: the one it has just finished.
+        mine: the job that this robot does itself now. done: the job that it has just finished.
     """
 
     several = False
@@ -65,7 +65,7 @@ class SingleTaskOracle:
         return Action(motion=motion, say=say)
 
     def _update(self, observation: Observation) -> None:
-        """Take in what is new, besides where everything is."""
+        """Learn from an observation what the robot does not know already."""
 
     def _choose_topic(self, observation: Observation) -> Job | None:  # noqa: ARG002
         """The job to tell the person about now."""
@@ -130,7 +130,7 @@ class SingleTaskOracle:
         return self._choose_among(mine)
 
     def _choose_among(self, jobs: Sequence[Job]) -> Job | None:
-        """This robot's share; or else the nearest job that is nobody's but a person's who is not there yet."""
+        """This robot's share; or else the nearest job that no other robot has and that no person is close to."""
         allocation, knowledge, me = self.allocation, self.knowledge, self.briefing.seat
         reserved = allocation.reserved(self._open_jobs(), knowledge)
         jobs = [job for job in jobs if job.target != reserved] or jobs
@@ -151,7 +151,7 @@ class SingleTaskOracle:
         return self.manipulator.can_try(job.target, observation.tick)
 
     def _check_last_placement(self, observation: Observation) -> None:
-        """Leave alone for a while what was put down and still is not where it belongs."""
+        """Leave an object alone for a while that was put down but is not where it belongs."""
         job, outcome = self.mine, observation.outcome
         if job is None or outcome is None or outcome.motion != "place" or not outcome.ok:
             return
@@ -205,7 +205,7 @@ class TeamOracle(SingleTaskOracle):
         return aside
 
     def _motion_without_job(self, observation: Observation, topic: Job | None) -> Motion:
-        """Go where the topic is; with nothing to tell either, go where it is in nobody's way."""
+        """Go where the topic is; without a topic, go where the robot blocks nobody."""
         if topic is not None:
             return super()._motion_without_job(observation, topic)
         here = (observation.pose.x, observation.pose.y)
@@ -229,7 +229,7 @@ class TeamOracle(SingleTaskOracle):
         return chosen
 
     def _for_person(self) -> list[Job]:
-        """The open jobs, those first that the person had best do, without those that another robot is about to do."""
+        """The open jobs except those that another robot is about to do; first those that suit the person best."""
         allocation, knowledge = self.allocation, self.knowledge
         jobs = [job for job in self._open_jobs() if job is not self.mine]
         if any(state.held_by == HUMAN for state in knowledge.states.values()):
@@ -243,7 +243,7 @@ class TeamOracle(SingleTaskOracle):
         return sorted(jobs, key=lambda job: owners.get(job.target) != HUMAN)
 
     def _is_anothers(self, job: Job, owner: str) -> bool:
-        """Whether it is another robot's share, and has not been so for too long."""
+        """Whether the job is another robot's share, and has not been that for too long."""
         if owner in (HUMAN, self.briefing.seat):
             self._shared_since.pop(job.target, None)
             return False

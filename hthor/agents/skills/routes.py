@@ -44,7 +44,7 @@ class HouseRoutes:
         return self.space.is_free(*spot)
 
     def standing(self, spots: Sequence[Vec2]) -> list[Vec2]:
-        """Those of the spots where the body may be."""
+        """The spots where the body may be."""
         (ox, oy), cell = self.space.origin, self.space.cell
         places = (np.array(spots, dtype=float).reshape(-1, 2) - (ox, oy)) / cell
         return list(itertools.compress(spots, are_free_points(self.space.free, places).tolist()))

@@ -54,7 +54,7 @@ class TaskAllocation:
         self.places.update(self.now)
 
     def share(self, jobs: Sequence[Job], knowledge: Knowledge) -> dict[str, Job]:
-        """The next job of each seat: shortest paths first, one job a seat, as many seats a job as it takes.
+        """The next job of each seat: shortest paths first, one job per seat, as many seats per job as it needs.
 
         Seats that hold something get none. Recomputed when jobs or hands have changed, and every two seconds.
         """

@@ -79,7 +79,7 @@ def closest_thing(
         spots = routes.standing(_lattice(tuple(points), reach, _GRID_M))
         least = min((math.dist(here, spot) for spot in spots), default=math.inf)
         looked.append((least, thing.id, thing, points, spots))
-    crow = routes.stands(here)  # or else the way begins elsewhere
+    crow = routes.stands(here)  # if not, the path begins elsewhere
     best, answer = (math.inf, ""), things[0]
     for least, id, thing, points, spots in sorted(looked, key=lambda one: one[:2]):
         if crow and least > best[0] + _SLACK_M:
@@ -114,12 +114,12 @@ def _first(
 
 
 def nearest_point(points: Sequence[Vec3], spot: Vec2) -> Vec3:
-    """The one of the points that is nearest to a spot on the plan, the first of equals."""
+    """The point nearest to a spot on the plan, the first of equals."""
     return min(points, key=lambda point: round(math.dist(point[:2], spot), 6))
 
 
 def _few(points: Sequence[Vec3], plan: Floats, spot: Vec2) -> Sequence[Vec3]:
-    """Those of the points, on the plan (N, 2), that may be nearest to a spot: comparing all exactly is slow."""
+    """The points that may be nearest to a spot; ``plan`` (N, 2) is their plan: comparing all exactly is slow."""
     apart = np.hypot(plan[:, 0] - spot[0], plan[:, 1] - spot[1])
     return list(itertools.compress(points, (apart <= apart.min() + 10.0 * _SLACK_M).tolist()))
 
@@ -156,6 +156,6 @@ def _lattice(points: tuple[Vec3, ...], reach: float, grid_m: float) -> tuple[Vec
 
 
 def _in_front(thing: Thing, spot: Vec2, reach: float) -> bool:
-    """Whether the door is straight ahead: from the side an open leaf would block the way."""
+    """Whether a thing's door is straight ahead of a spot: from the side, its open leaf would block the way."""
     u, v, _ = plane.to_local((*spot, 0.0), (*thing.centre[:2], 0.0), thing.yaw)
     return v > thing.size[1] / 2 and abs(u) < min(thing.size[0] / 2, 0.4 * reach)
