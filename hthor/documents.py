@@ -43,8 +43,8 @@ def read(
 
     Args:
         kind: the record's type, as msgspec takes it.
-        error: class of what is raised when the file cannot be used.
-        schema: what the document's ``schema`` must be; empty for any.
+        error: class of the error that is raised when the file cannot be used.
+        schema: the required ``schema`` of the document; empty for any.
         shown: what to call the file in the error, by default its path.
         hint: what to do next; ends the error.
 
@@ -77,7 +77,7 @@ def decode(data: bytes, kind: type[_T], *, schema: str = "") -> _T:
     """The record in some bytes of JSON.
 
     Raises:
-        Unreadable: when they are not such a record, or its ``schema`` is another.
+        Unreadable: when the bytes are not such a record, or have another ``schema``.
     """
     with reading_errors():
         if schema and (found := msgspec.json.decode(data, type=_Versioned).schema) != schema:

@@ -6,11 +6,11 @@ import difflib
 from collections.abc import Iterable
 
 _LISTED = 24
-"""Names that an error lists before it only counts the rest."""
+"""How many names an error message lists; the others are only counted."""
 
 
 class HthorError(Exception):
-    """Root of all errors that the user can mend: the CLI prints no traceback and exits with ``exit_code``."""
+    """Root of all errors that the user can fix: the CLI prints no traceback and exits with ``exit_code``."""
 
     exit_code = 2
 
@@ -35,7 +35,7 @@ class FileError(HthorError):
 
     @classmethod
     def in_file(cls, file: str, field: str, problem: str) -> HthorError:
-        """The error itself."""
+        """This error, about a field of a file."""
         return cls(file, field, problem)
 
 
@@ -43,7 +43,7 @@ class UnknownName(HthorError):
     """A name that does not exist.
 
     Args:
-        what: what it should be the name of, such as "suite".
+        what: the sort of thing that the name should be of, such as "suite".
         given: what the user wrote.
         valid: all names that exist.
         hint: what to do next, a sentence; optional.

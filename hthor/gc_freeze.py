@@ -8,7 +8,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def collection_paused() -> Iterator[None]:
-    """Collect no garbage meanwhile: with several worlds in memory, it takes a third of the time to build another."""
+    """Collect no garbage in the block: with several worlds in memory, that would take a third of building another."""
     was = gc.isenabled()
     gc.disable()
     try:
@@ -19,7 +19,7 @@ def collection_paused() -> Iterator[None]:
 
 
 def freeze_existing() -> None:
-    """Do not scan the objects that exist now any more; see `unfreeze_after`."""
+    """Exclude the objects that exist now from garbage collection; see `unfreeze_after`."""
     gc.freeze()
 
 

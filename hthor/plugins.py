@@ -80,14 +80,14 @@ def load(sort: Literal["robot"], name: str) -> RobotSpec: ...
 @overload
 def load(sort: str, name: str) -> Any: ...
 def load(sort: str, name: str) -> Any:
-    """The plug-in's class or record: what its file defines under the name that its sort asks for.
+    """The plug-in's class or record, which its file defines under the name that its sort requires.
 
     Args:
         name: its name, or the path of a Python file that defines one.
 
     Raises:
         UnknownName: when no file has that name.
-        HthorError: when the file does not define that, or does not load.
+        HthorError: when the file does not define that name, or does not load.
     """
     known, attribute = names(sort), _PACKAGES[sort][1]
     if plugin_name(sort, name) in known:
@@ -123,9 +123,9 @@ def sha256(path: str) -> str:
 
 
 def user_error(error: BaseException) -> HthorError | None:
-    """The error as one for the user to mend (file, line, function, message), if a plug-in of theirs raised it.
+    """The error as a message to the user (file, line, function, text), if a plug-in of theirs raised it.
 
-    None when it did not pass through any file of the user's.
+    None when the error did not pass through any file of the user's.
     """
     frames = [frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename in _own()]
     if not frames:

@@ -35,7 +35,7 @@ LOG_EVERY_TICKS = 2
 HANDLE_STRENGTH = 4.0
 """How many times more a body lifts by a handle close to it than with an outstretched arm."""
 HANDLE_PACE = 0.7
-"""Bodies that carry something together go at this share of the pace of the slowest."""
+"""Bodies that carry something together go at this share of the pace of the slowest body."""
 
 PACE_M_S = 1.0
 """A person's speed at full stick [m/s]. The least time of a task assumes it, so that nobody can be faster."""

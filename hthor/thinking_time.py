@@ -1,7 +1,7 @@
-"""Real-time trials: an agent's thinking time is time of the trial, so its actions come later.
+"""Real-time trials: an agent's thinking time counts as time of the trial, so its actions come later.
 
-The time is measured while the agent decides, without what its sensors take. It adds up: an agent that thinks for a
-third of a tick each time is one tick late every third time, so that nothing is rounded away.
+The time is measured while the agent decides, without the time that its sensors take. It adds up: an agent that thinks
+for a third of a tick each time is one tick late every third time, so that nothing is rounded away.
 """
 
 import time
@@ -27,7 +27,7 @@ class Decision(Struct, frozen=True, kw_only=True):
 
 
 class Thinking:
-    """Holds actions back until the agents' thinking time is over; meanwhile these agents are not asked again."""
+    """Holds actions back until the agents' thinking time is over; until then, these agents are not asked again."""
 
     def __init__(self, clock: Callable[[], float] = time.perf_counter) -> None:
         self._clock = clock
@@ -35,7 +35,7 @@ class Thinking:
         self._held: dict[str, tuple[int, Decision]] = {}
 
     def busy(self, seat: str) -> bool:
-        """Whether its last action is still held back."""
+        """Whether the seat's last action is still held back."""
         return seat in self._held
 
     def ask(self, seat: str, mind: Mind, observation: Observation) -> Action:
@@ -48,7 +48,7 @@ class Thinking:
         return action
 
     def late(self, seat: str) -> int:
-        """How many whole ticks late the seat's action is; they are then paid for."""
+        """How many whole ticks late the seat's action is; these ticks are then subtracted from its delay."""
         ticks = int(self._owed.get(seat, 0.0) / rules.TICK_S + _TOLERANCE)
         self._owed[seat] = self._owed.get(seat, 0.0) - ticks * rules.TICK_S
         return ticks
