@@ -13,7 +13,7 @@ __all__ = ["HouseLibrary", "check", "load", "names"]
 
 
 def __getattr__(name: str) -> Any:
-    # The checks compile their grids, so they are imported only when asked for.
+    # The checks compile their grids, so they are imported only when they are used.
     if name == "check":
         from hthor.houses.checks.house_checks import check
 

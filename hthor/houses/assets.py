@@ -1,4 +1,4 @@
-"""From an asset's id to its kind and size, ours or out of an asset database."""
+"""Finds an asset's kind and size by its id: one of hthor's own assets, or one in an asset database."""
 
 import importlib.util
 import os
@@ -19,11 +19,11 @@ _HINT = (
 
 
 class Assets:
-    """Finds kind and size by asset id; reads an asset database only when a foreign id is asked for.
+    """Finds kind and size by asset id; reads an asset database only for a foreign id.
 
     Args:
         beside: the house file, whose folder and parent folders are searched.
-        given: a database, or a folder with one, that takes precedence; None to search.
+        given: a database, or a folder with a database, that takes precedence; None to search.
     """
 
     def __init__(self, beside: Path, given: Path | None = None) -> None:
@@ -35,7 +35,7 @@ class Assets:
         """Kind and size [m].
 
         Raises:
-            HouseError: naming ``file`` and ``field`` when the id is nobody's, or its size is not positive; naming the
+            HouseError: names ``file`` and ``field`` when the id is unknown or its size is not positive; names the
                 database when that is damaged.
         """
         own = catalog.own_asset(asset)
@@ -52,10 +52,10 @@ class Assets:
         raise HouseError(file, field, f"unknown asset '{asset}': neither ours nor in {self._source}")
 
     def excerpt(self, ids: Iterable[str]) -> bytes:
-        """The part of the database that says what these assets are, as a database of its own; empty where all are ours.
+        """The database rows of these assets, as a database of its own; empty when all are hthor's own assets.
 
         Raises:
-            HouseError: as `find`, naming the database.
+            HouseError: as for `find`; names the database.
         """
         foreign = {id for id in ids if catalog.own_asset(id) is None}
         if not foreign:
@@ -70,7 +70,7 @@ class Assets:
         return self._rows
 
     def _given_database(self) -> Path | None:
-        """The database that the caller or the environment names; one that is named must exist."""
+        """The database that the caller or the environment names, which must exist; None when neither names one."""
         variable = os.environ.get(VARIABLE, "")
         named = self._given if self._given is not None else Path(variable) if variable else None
         if named is None:

@@ -17,18 +17,18 @@ from hthor.houses.space.geodesic import Geodesics
 from hthor.types import HouseSpec, Thing
 
 BODY_M = 0.20
-"""Radius of the body whose free floor and ways are measured: an AI2-THOR agent's."""
+"""Radius of the body whose free floor and ways are measured: that of an AI2-THOR agent."""
 _STAND_M = 1.0
 _TENTHS = 10
 
 
 class HouseFigures(Struct, frozen=True, kw_only=True):
-    """What one house measures.
+    """The measurements of one house.
 
     ``rooms`` holds kind, area [m2], doors, things and things on the floor or a wall of each room; a door counts for
-    both its rooms, and openings without a wall do not count. ``doors`` counts the passable ones of the house. ``ways``
-    [m] are the shortest from the start to where one can stand at each receptacle, ``free`` the share of the floor that
-    a body's axis can come to.
+    both its rooms, and openings without a wall do not count. ``doors`` counts the passable doors of the house. ``ways``
+    [m] are the shortest ways from the start to a place to stand at each receptacle; ``free`` is the share of the floor
+    that a body's axis can reach.
     """
 
     house: str
@@ -39,7 +39,7 @@ class HouseFigures(Struct, frozen=True, kw_only=True):
 
     @property
     def area(self) -> float:
-        """Of all rooms [m2]."""
+        """Total area of the rooms [m2]."""
         return sum(room.area for room in self.rooms)
 
 
@@ -54,7 +54,7 @@ class RoomFigures(Struct, frozen=True, kw_only=True):
 
 
 class Quantiles(Struct, frozen=True, kw_only=True):
-    """Lower tenth, median and upper tenth of a figure, and how many there were."""
+    """Lower tenth, median and upper tenth of a figure, and the number of its values."""
 
     low: float
     median: float
@@ -71,7 +71,7 @@ class HouseStatistics(Struct, frozen=True, kw_only=True):
 
 
 def measure_house(house: HouseSpec) -> HouseFigures:
-    """Everything that the census counts of one house."""
+    """Measure one house."""
     space = FreeSpace.of(house, BODY_M)
     reached = space.component(*space.nearest_free(house.start.x, house.start.y))
     doors = Counter(room for opening in house.openings if opening.passable for room in opening.rooms)
@@ -135,7 +135,7 @@ def quantiles_of(values: Sequence[float]) -> Quantiles:
 
 
 def _ways(house: HouseSpec, space: FreeSpace) -> tuple[float, ...]:
-    """From the start to the nearest place within 1 m of each receptacle where one can stand, where there is one."""
+    """From the start to the nearest place to stand within 1 m of each receptacle that has such a place."""
     start = space.nearest_free(house.start.x, house.start.y)
     field = Geodesics.of(space).field([start])
     reached = space.component(*start)
@@ -150,7 +150,7 @@ def _ways(house: HouseSpec, space: FreeSpace) -> tuple[float, ...]:
 
 
 def _beside(thing: Thing, places: Floats) -> Floats:
-    """Those of the places (N, 2) that are nearest to the thing's edge, if that is within reach."""
+    """The places among (N, 2) that are nearest to the thing's edge, if they are within reach."""
     reach = math.hypot(*thing.size[:2]) / 2 + _STAND_M
     near = places[np.hypot(places[:, 0] - thing.centre[0], places[:, 1] - thing.centre[1]) < reach]
     gaps = np.array([distance_to_rectangle((x, y), thing.centre[:2], thing.size[:2], thing.yaw) for x, y in near])

@@ -1,8 +1,8 @@
 """Puts the small things of a house exactly on the surfaces below them, when the house is loaded.
 
-A house file gives heights measured on furniture of other shapes than ours, so a cup would hang above its table or be
-inside a shelf. A thing that cannot be put down so stays where the file puts it and does not move: one that would be
-deeper than `SUNK_M` in a neighbour or the ceiling, or that is over no surface.
+A house file gives heights measured on furniture of other shapes than hthor's, so a cup would hang above its table or be
+inside a shelf. A thing that cannot be put down stays where the file puts it and does not move: it would be deeper than
+`SUNK_M` in a neighbour or the ceiling, or it is over no surface.
 """
 
 from __future__ import annotations
@@ -21,15 +21,15 @@ from hthor.types import HouseSpec, Thing, Vec3
 SUNK_M = 0.005
 """How deep a small thing may be in another one and still count as free to move."""
 ROUNDING_M = 1e-4
-"""A height that is this near to the surface's is the surface's, rounded: the file's number is kept."""
+"""A height within this distance of the surface's height is the same, rounded: the file's number is kept."""
 _SNAP_M = 0.30
-"""How far above or below a surface a house file may place what lies on it."""
+"""How far above or below its surface a house file may place a thing."""
 
 
 def snap_objects(house: HouseSpec) -> HouseSpec:
-    """The house with every small thing on its surface; `Thing.lift` keeps how much higher the file has it.
+    """The house with every small thing on its surface; `Thing.lift` is how much higher the file places the thing.
 
-    A house that is laid down already stays as it is.
+    Doing this twice changes nothing more.
     """
     laid = {thing.id: thing for thing in movable_objects(house)}
     things = tuple(_laid(thing, laid.get(thing.id, thing)) for thing in house.things)
@@ -39,7 +39,7 @@ def snap_objects(house: HouseSpec) -> HouseSpec:
 def movable_objects(house: HouseSpec) -> tuple[Thing, ...]:
     """The small things that rest freely on a surface, exactly on it, in the house's order.
 
-    Of two that are in one another the first is free. What lies on another small thing lies on it where that is laid.
+    Of two things that overlap, the first is free. A thing on another small thing follows it to that thing's new place.
     """
     small = {thing.id for thing in house.things if catalog.kind(thing.kind).pickable}
     standing = (thing for thing in house.things if thing.id not in small or not thing.parent)
@@ -74,7 +74,7 @@ def _laid(thing: Thing, laid: Thing) -> Thing:
 
 
 def _on_surface(thing: Thing, support: Thing | None) -> Thing | None:
-    """The thing on the surface of ``support`` that is nearest below or above it, None where none is near."""
+    """The thing on the surface of ``support`` that is nearest below or above it; None when no surface is near."""
     x, y, z = thing.centre
     low = z - thing.size[2] / 2
     heights = [] if support is None else _heights(support, thing.centre)
@@ -100,18 +100,18 @@ def _body(thing: Thing) -> Slab:
 
 
 class _Crowd:
-    """Solids that grow in number, and whether one more is deep in any of them. Plain floats: loading needs no numpy."""
+    """A growing set of solids, and whether a new one is deep in any of them. Plain floats: loading needs no numpy."""
 
     def __init__(self, first: Iterable[Slab]) -> None:
         self._rows: list[tuple[float, float, float, float, float, Slab]] = []
         self.add(first)
 
     def add(self, more: Iterable[Slab]) -> None:
-        """These stand there, too."""
+        """Add these solids."""
         self._rows += [(*slab.centre, math.hypot(*slab.size) / 2, slab.low, slab.high, slab) for slab in more]
 
     def holds(self, body: Slab) -> bool:
-        """Whether the body is deeper than `SUNK_M` in any of them."""
+        """Whether the body is deeper than `SUNK_M` in any of the solids."""
         (x, y), radius = body.centre, math.hypot(*body.size) / 2
         low, high = body.low + SUNK_M, body.high - SUNK_M
         return any(

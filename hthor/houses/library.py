@@ -1,4 +1,4 @@
-"""Houses by name: those that come with hthor, and those that a suite or a run brings along."""
+"""Houses by name: those that come with hthor, and those in the folder of a suite or a run."""
 
 from importlib import resources
 from pathlib import Path
@@ -20,10 +20,10 @@ _OWN = {
 
 
 class HouseLibrary(Struct, frozen=True, kw_only=True):
-    """Where houses are found by name: first among those that come with hthor, then in ``folder``, if there is one.
+    """Finds houses by name: first among those that come with hthor, then in ``folder``, if it is not None.
 
-    A suite and a run carry the library of their own houses; it can be sent to another process. A task holds its
-    house's hash, so that a house that is not the one it was made for is refused.
+    A suite and a run have a library of their own houses; it can be sent to another process. A task has its house's
+    hash, so that any other house is refused.
     """
 
     folder: Path | None = None
@@ -33,8 +33,8 @@ class HouseLibrary(Struct, frozen=True, kw_only=True):
 
         Args:
             name_or_path: one of `names`, of either group; the name of a house in ``folder``; or the path of a file.
-            assets: a ProcTHOR asset database, or the folder it lies in, for files with foreign assets. Without it the
-                database is looked for where the environment variable HTHOR_ASSETS says, then beside the file and in
+            assets: a ProcTHOR asset database, or the folder with it, for files with foreign assets. If it is None, the
+                database is searched where the environment variable HTHOR_ASSETS says, then next to the file and in
                 the folders above, in ``shared/houses/databases`` of any folder above the current one, and in an
                 installed ``procthor`` package.
 
@@ -48,7 +48,7 @@ class HouseLibrary(Struct, frozen=True, kw_only=True):
         return loader.convert_house(house, path.stem, jsonio.sha256(document), file, Assets(path, assets))
 
     def _locate(self, given: str) -> tuple[Path, str]:
-        """The path of a house's file, and what errors call it."""
+        """The path of a house's file, and its name in errors."""
         folders = [*_OWN.values(), *(() if self.folder is None else (self.folder,))]
         if given and given == Path(given).name:  # a name, not a path in disguise
             for folder in folders:

@@ -1,10 +1,10 @@
-"""From the content of a house file to a `HouseSpec`: frames turned, rooms named, doors classified.
+"""Converts the content of a house file to a `HouseSpec`: turns frames, names rooms, classifies doors.
 
 Unity's (x, y up, z) becomes the house frame's (x, z, y), and its clockwise yaw a counter-clockwise one.
 
 An L- or C-shaped worktop, for which ProcTHOR's database gives one bounding box up to 3 m square, becomes the straight
-units that it is made of, each a thing of its own with its front to the inside: so it is as deep as a worktop everywhere
-for who walks, reaches, looks and searches.
+units that it is made of, each a separate thing with its front to the inside. So it has a worktop's depth everywhere,
+for walking, reaching, seeing and searching.
 """
 
 import math
@@ -26,7 +26,7 @@ from hthor.houses.schema import Agent, HouseFile, OpeningRow, RoomRow, WallRow
 from hthor.types import HouseSpec, Opening, Pose, Room, Thing, Vec2, Vec3, Wall
 
 DEPTH_M = 0.61
-"""How deep a worktop is: as ProcTHOR's straight ones are."""
+"""Depth of a worktop: that of ProcTHOR's straight worktops."""
 _LEAST_M = 0.1
 
 
@@ -34,7 +34,7 @@ def house_from_document(document: Any, name: str) -> HouseSpec:
     """A house from a document in memory, such as `hthor.houses.generator` makes; ``name`` becomes its id.
 
     Raises:
-        HouseError: naming ``name`` as the file, and the field.
+        HouseError: names ``name`` as the file, and the field.
     """
     house = schema.convert_document(document, name)
     structure.validate_structure(house, name)
@@ -45,7 +45,7 @@ def convert_house(house: HouseFile, name: str, sha256: str, file: str, assets: A
     """A house with the id ``name``, from the valid content of a house file, which errors call ``file``.
 
     Raises:
-        HouseError: naming ``file`` and the field.
+        HouseError: names ``file`` and the field.
     """
     walls = {wall.id: wall for wall in house.walls}
     found = structure.find_start(house)
@@ -68,7 +68,7 @@ def convert_house(house: HouseFile, name: str, sha256: str, file: str, assets: A
 
 
 def _rooms(rows: list[RoomRow]) -> tuple[Room, ...]:
-    """Rooms named by their kind, numbered where a kind comes more than once: kitchen, bedroom 1, bedroom 2."""
+    """Rooms named by their kind, numbered if a kind occurs more than once: kitchen, bedroom 1, bedroom 2."""
     total = Counter(row.room_type for row in rows)
     seen: Counter[str] = Counter()
     rooms = []
@@ -103,7 +103,7 @@ def _opening(row: OpeningRow, wall: WallRow, *, door: bool) -> Opening:
     low, high = sorted(corner.y for corner in row.hole_polygon)
     beyond = EXTERIOR if row.room1 == row.room0 else row.room1
     indoors = EXTERIOR not in (row.room0, beyond)
-    # Door frames carry no openness: nothing hangs in them. A door that can be opened stands open when a trial begins.
+    # Door frames have no openness, as they have no leaf. A door that can be opened stands open when a trial begins.
     passable = door and indoors and (row.openness is None or row.openness > 0.0 or bool(row.openable))
     return Opening(
         id=row.id,
@@ -148,11 +148,11 @@ def _pose(agent: Agent) -> Pose:
 
 
 def split_worktop(thing: Thing, plan: str) -> tuple[Thing, ...]:
-    """The units of a worktop whose bounding box is ``thing``, the one along the back first, under the worktop's own id.
+    """The units of a worktop whose bounding box is ``thing``; the first is along the back and has the worktop's id.
 
     Args:
         plan: "L", along the back and forward on the right, as seen from behind; "C", along the back and forward on
-            both sides; anything else, or a box too small for these, gives the thing itself.
+            both sides; anything else, or a box too small for units, gives the thing itself.
     """
     w, d, _ = thing.size
     wide = DEPTH_M * {"L": 1, "C": 2}.get(plan, 0)
@@ -179,7 +179,7 @@ def _units(thing: Thing, plan: str) -> Iterator[Thing]:
 
 
 def _unit(thing: Thing, name: str, low: Vec2, high: Vec2, turns: int) -> Thing:
-    """The unit between two corners [m] of the worktop's frame, turned by so many quarters."""
+    """The unit between two corners [m] of the worktop's frame, turned by this number of quarter turns."""
     (x0, y0), (x1, y1) = low, high
     across, along = (x1 - x0, y1 - y0) if not turns else (y1 - y0, x1 - x0)
     return msgspec.structs.replace(

@@ -1,7 +1,7 @@
 """ProcTHOR's house file, schema 1.0.0, as records: reading, finiteness and structure.
 
-Only the keys that hthor uses are declared; others are let through unread. Lengths are metres and angles degrees in
-Unity's left-handed frame: x right, y up, z forward, yaw clockwise seen from above.
+Only the keys that hthor uses are declared; other keys are ignored. Lengths are metres and angles degrees in Unity's
+left-handed frame: x right, y up, z forward, yaw clockwise seen from above.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class Position(Struct, frozen=True):
 
 
 class Rotation(Struct, frozen=True):
-    """Euler angles; only the yaw ``y`` is heeded."""
+    """Euler angles; only the yaw ``y`` is used."""
 
     y: float = 0.0
 
@@ -76,7 +76,7 @@ class RoomRow(Struct, frozen=True, rename="camel"):
 
 
 class WallRow(Struct, frozen=True, rename="camel"):
-    """One entry of ``walls``; an ``empty`` one stands where two rooms are open to each other."""
+    """One entry of ``walls``; an ``empty`` wall marks where two rooms are open to each other."""
 
     id: str
     room_id: str
@@ -100,7 +100,7 @@ class OpeningRow(Struct, frozen=True, rename="camel"):
 
 
 class ObjectRow(Struct, frozen=True, rename="camel"):
-    """One entry of ``objects``, or of another one's ``children``; ``position`` is the bounding box's centre."""
+    """One entry of ``objects``, or of an object's ``children``; ``position`` is the bounding box's centre."""
 
     id: str
     asset_id: str
@@ -141,7 +141,7 @@ def read_house_file(path: Path, file: str) -> tuple[Any, HouseFile]:
     """The file's JSON document, and the same as records; ``file`` is its name as the user gave it, for errors.
 
     Raises:
-        HouseError: when the file cannot be read, is not JSON, holds a number that is not finite, is of another
+        HouseError: when the file cannot be read, is not JSON, contains a number that is not finite, has another
             version, or lacks a key or has a value of the wrong type.
     """
     document = _document(path, file)
@@ -149,7 +149,7 @@ def read_house_file(path: Path, file: str) -> tuple[Any, HouseFile]:
 
 
 def convert_document(document: Any, file: str) -> HouseFile:
-    """A house's JSON document as records; errors as those of `read`, naming ``file``."""
+    """A house's JSON document as records; errors as for `read_house_file`, with the name ``file``."""
     try:
         for where, value in _values(document, ""):
             if isinstance(value, str):
@@ -183,7 +183,7 @@ def _document(path: Path, file: str) -> Any:
 
 
 def _values(value: Any, where: str) -> Iterator[tuple[str, str | float]]:
-    """All texts, keys included, and numbers, with where they stand."""
+    """All texts, keys included, and numbers, with their field paths."""
     if isinstance(value, dict):
         for key, item in value.items():
             yield where or "$", key
@@ -217,7 +217,7 @@ _WORDS = {
 
 
 def _structural(message: str, file: str) -> HouseError:
-    """The error of a structural fault, from msgspec's words for it."""
+    """The error for a structural fault, from msgspec's message."""
     match = _WHERE.match(message)
     what, where = (match["what"], match["field"] or "") if match else (message, "")
     if missing := _MISSING.match(what):

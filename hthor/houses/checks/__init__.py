@@ -1,1 +1,1 @@
-"""Is a house sound? Structure, floor plan and furniture, judged by rules."""
+"""Checks whether a house is sound: structure, floor plan and furniture, judged by rules."""

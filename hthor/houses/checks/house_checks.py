@@ -1,8 +1,8 @@
-"""Is a house fit for a body to live in? Findings in words.
+"""Checks whether a body can live in a house; findings in words.
 
-Errors make a house unsound for a body: a start that is not free, a room that it cannot reach. Everything else is a
-warning, because real floor plans are full of it: a receptacle out of reach, a narrow door, furniture in a wall or in
-other furniture. A house of our own has no such excuse: judged strictly, more rules hold and nearly all are errors.
+Errors make a house unsound for a body: a start that is not free, a room that it cannot reach. All other findings are
+warnings, because they are frequent in real floor plans: a receptacle out of reach, a narrow door, furniture in a wall
+or in other furniture. hthor's own houses are judged strictly: more rules apply, and nearly all findings are errors.
 """
 
 import math
@@ -45,10 +45,10 @@ STRICT = (
 
 
 def check(house: HouseSpec, radius: float, height: float = 1.8, *, strict: bool = False) -> tuple[Finding, ...]:
-    """Everything that is wrong with a house for a body of this radius and height [m]; errors come first.
+    """All findings about a house for a body of this radius and height [m]; errors come first.
 
     Args:
-        strict: judge as one of our own: the rules of `STRICT` are errors, those about a lived-in home included.
+        strict: judge as one of hthor's own houses: the rules of `STRICT`, also those about a lived-in home, are errors.
     """
     space = FreeSpace.of(house, radius, height)
     start, findings = house.start, []
@@ -92,7 +92,7 @@ def _doors(house: HouseSpec, radius: float, height: float) -> Iterator[Finding]:
 
 
 def _receptacles(house: HouseSpec, space: FreeSpace, reached: Bools) -> Iterator[Finding]:
-    """Standing floor must be in the receptacle's own room: a wall's other side is no place to reach it from."""
+    """The place to stand must be in the receptacle's own room, since nobody can reach through a wall."""
     floors = {room.id: space.centres(reached & space.room_mask(room)) for room in house.rooms}
     anywhere = space.centres(reached)
     for thing in house.things:
@@ -136,7 +136,7 @@ def _objects(house: HouseSpec, space: FreeSpace, reached: Bools) -> Iterator[Fin
 
 
 def _opened(thing: Thing, support: Thing | None) -> Vec3:
-    """Where the thing is once its support stands open: what lies in a drawer comes out with it."""
+    """Where the thing is when its support is open: a thing in a drawer moves out with the drawer."""
     below = boxes.surface_below(thing, support) if support is not None else None
     if support is None or below is None or not below[0].moves:
         return thing.centre

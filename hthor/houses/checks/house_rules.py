@@ -1,6 +1,6 @@
-"""What is wrong with a house, in words, and the rules that find it.
+"""The rules that a house must follow, and their findings in words.
 
-How large rooms are, how wide doorways; how things stand, with room for their doors.
+They are about the size of rooms, the width of doorways, and how things stand, with space for their doors.
 """
 
 import itertools
@@ -24,9 +24,9 @@ WIDTH_M = 1.4
 CLEAR_M = 0.8
 """Least clear width of a doorway."""
 BEFORE_M = 0.3
-"""What stands nearer than this to a doorway, on either side, narrows it."""
+"""Things nearer than this to a doorway, on either side, narrow it."""
 LEAF_M = 0.06
-"""What an open leaf and the frame that it hangs in take of a doorway's width."""
+"""Width of a doorway that an open leaf and its frame take up."""
 _DOUBLE_M = 1.3
 """Wider doorways have two leaves."""
 _HAIR_M = 1e-6
@@ -37,15 +37,15 @@ _DEEP_M = 0.15
 FLOAT_M = 0.01
 """How far above or below the floor or its support a thing may be."""
 HANG_M = 0.02
-"""How far off a wall's face the back of a thing that hangs there may be."""
+"""How far the back of a hanging thing may be from the wall's face."""
 GRAZE_M = 0.005
 """How deep a swinging door may cut into something."""
 _STEPS = 12
-"""At how many places of its travel a door or drawer is tried."""
+"""Number of positions in which an opening door or drawer is tested."""
 
 
 class Finding(Struct, frozen=True, kw_only=True):
-    """Something wrong with a house: which ``rule``, ``where`` (an id), what the ``problem`` is, in words."""
+    """A fault of a house: the ``rule`` that is broken, ``where`` (an id), and the ``problem`` in words."""
 
     severity: Literal["error", "warning"]
     rule: str
@@ -62,7 +62,7 @@ def error(rule: str, where: str, problem: str) -> Finding:
 
 
 def warning(rule: str, where: str, problem: str) -> Finding:
-    """A finding that a house may have and still be lived in."""
+    """A finding that does not make a house unsound."""
     return Finding(severity="warning", rule=rule, where=where, problem=problem)
 
 
@@ -77,7 +77,7 @@ def readable_kind(kind: str) -> str:
 
 
 def check_rooms(house: HouseSpec) -> Iterator[Finding]:
-    """``room-size``: smaller than `AREA_M2`, or somewhere narrower than `WIDTH_M`."""
+    """``room-size``: a room smaller than `AREA_M2`, or narrower than `WIDTH_M` at some place."""
     for room in house.rooms:
         area, width = abs(signed_area(room.polygon)), least_width(room.polygon)
         if area < AREA_M2:
@@ -89,7 +89,7 @@ def check_rooms(house: HouseSpec) -> Iterator[Finding]:
 
 
 def least_width(polygon: tuple[Vec2, ...]) -> float:
-    """Least length [m] of any cut through the polygon along x or y; its least width when its corners are square."""
+    """Shortest cut [m] through the polygon along x or y; the polygon's least width if its corners are square."""
     turned = tuple((y, x) for x, y in polygon)
     return min(_narrowest(polygon), _narrowest(turned))
 
@@ -118,7 +118,7 @@ def check_doors(house: HouseSpec, height: float) -> Iterator[Finding]:
 
 
 def _leaves(opening: Opening, width: float) -> list[tuple[float, float]]:
-    """The stretches [m] along a doorway that its open leaves take: at its end ``a``, of a wide one at both."""
+    """The stretches [m] along a doorway that its open leaves take: at its end ``a``, in wide doorways at both ends."""
     if not opening.openable:
         return []
     return [(0.0, LEAF_M)] if width <= _DOUBLE_M else [(0.0, LEAF_M), (width - LEAF_M, width)]
@@ -133,7 +133,7 @@ def widest_gap(width: float, spans: list[tuple[float, float]]) -> float:
 
 
 def _shadow(opening: Opening, slab: Slab) -> tuple[float, float] | None:
-    """The stretch [m] along the doorway that a box takes of the floor before it, None for a box that is elsewhere."""
+    """The stretch [m] along the doorway in front of which a box stands; None for a box that is elsewhere."""
     width = math.dist(opening.a, opening.b)
     if width < _HAIR_M:
         return None
@@ -172,7 +172,7 @@ def check_indoors(house: HouseSpec) -> Iterator[Finding]:
 
 
 def check_overlaps(house: HouseSpec) -> Iterator[Finding]:
-    """``thing-in-wall`` and ``thing-in-thing``: bounding boxes that are deep in a wall or in one another."""
+    """``thing-in-wall`` and ``thing-in-thing``: bounding boxes that overlap deeply with a wall or with each other."""
     pieces, walls = solids.furniture_slabs(house), solids.wall_slabs(house)
     for k, (thing, box) in enumerate(pieces):
         if any(solids.overlap_depth(box, wall) > _DEEP_M for wall in walls):
@@ -186,7 +186,7 @@ def check_overlaps(house: HouseSpec) -> Iterator[Finding]:
 def check_supported(house: HouseSpec) -> Iterator[Finding]:
     """``thing-floats``: a thing that neither stands on the floor, nor lies on its support, nor hangs on a wall.
 
-    What lies on a support is judged by the height that the house's file gives it.
+    Things on a support are judged by the height in the house's file.
     """
     things = {thing.id: thing for thing in house.things}
     for thing in house.things:

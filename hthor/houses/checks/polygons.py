@@ -1,4 +1,4 @@
-"""What makes a floor polygon sound: crossings, overlaps, nearness to the outline."""
+"""Geometry of floor polygons: crossings, overlaps, distance to the outline."""
 
 import itertools
 import math
@@ -11,7 +11,7 @@ _SAME_M = 1e-6
 
 
 def simplify(polygon: Polygon) -> tuple[Vec2, ...]:
-    """The corners without those that repeat the one before, or the first at the end."""
+    """The corners without repetitions of the corner before, or of the first corner at the end."""
     corners: list[Vec2] = []
     for corner in polygon:
         if not corners or math.dist(corner, corners[-1]) > _SAME_M:
@@ -45,9 +45,9 @@ def distance_to_outline(point: Vec2, polygon: Polygon) -> float:
 
 
 def _meet(p: tuple[Vec2, Vec2], q: tuple[Vec2, Vec2]) -> bool:
-    """Whether two segments cross, or an end of one lies on the other; a common end alone is no meeting.
+    """Whether two segments cross, or an end of one lies on the other; a common end alone does not count.
 
-    So a floor may touch itself corner to corner, as one grown cell by cell does.
+    So a floor may touch itself corner to corner, as a floor grown cell by cell does.
     """
     if _side(*p, q[0]) * _side(*p, q[1]) < 0 and _side(*q, p[0]) * _side(*q, p[1]) < 0:
         return True

@@ -1,4 +1,4 @@
-"""Consistency of a house file beyond its schema: ids that agree, polygons that fit.
+"""Checks the consistency of a house file beyond its schema: matching ids, valid polygons.
 
 Whether a body can live in the house is checked in `house_checks`.
 """
@@ -14,7 +14,7 @@ from hthor.types import Vec2
 
 ROOM_KINDS = {"Kitchen": "kitchen", "LivingRoom": "living_room", "Bedroom": "bedroom", "Bathroom": "bathroom"}
 EXTERIOR = "exterior"
-"""Stands where a room's id would, for what lies outside."""
+"""Used in place of a room's id for the outside."""
 OVERLAP_M2 = 0.01
 OUTSIDE_M = 1.0
 """How far the middle of an object may lie outside of every room, above the ceiling or below the floor.
@@ -24,12 +24,12 @@ those.
 """
 _SLACK_M = 0.02
 _HOLE_M = 0.1
-"""How far a hole may reach beyond its wall, which is then all hole there."""
+"""How far a hole may reach beyond its wall, which is then open up to that edge."""
 _AREA_M2 = 0.01
 
 
 class StructureFault(Exception):
-    """A field and what is wrong there, on its way to becoming a `HouseError`."""
+    """A field and its problem, later reported as a `HouseError`."""
 
     def __init__(self, field: str, problem: str) -> None:
         self.field, self.problem = field, problem
@@ -37,7 +37,7 @@ class StructureFault(Exception):
 
 
 def validate_structure(house: HouseFile, file: str) -> None:
-    """Raise `HouseError` for the first fault found; returns for a sound file."""
+    """Check a house file's structure; raises `HouseError` for the first fault."""
     try:
         _check_ids(house)
         _check_rooms(house.rooms)
@@ -64,7 +64,7 @@ def iter_objects(house: HouseFile) -> Iterator[tuple[str, ObjectRow, str]]:
 
 
 def find_start(house: HouseFile) -> tuple[str, Agent] | None:
-    """The start pose with its field path: the single one, else the default robot's, else the first robot's."""
+    """The start pose with its field path: the file's single pose, else the default robot's, else the first robot's."""
     if house.metadata.agent is not None:
         return "metadata.agent", house.metadata.agent
     poses = house.metadata.agent_poses or {}
@@ -81,7 +81,7 @@ def floor_polygon(room: RoomRow) -> tuple[Vec2, ...]:
 
 
 def wall_line(wall: WallRow) -> tuple[Vec2, Vec2]:
-    """Foot of a wall, from the corner that openings are measured from."""
+    """The wall's line on the floor, from the corner from which openings are measured."""
     a, b = wall.polygon[:2]
     return (a.x, a.z), (b.x, b.z)
 

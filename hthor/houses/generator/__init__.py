@@ -22,12 +22,12 @@ CODE_PART = "tools"
 __all__ = ["OPTIONAL", "SPECS", "VERSION", "GeneratorError", "generate", "write"]
 
 VERSION = 1
-"""Grows when the same seed gives another house."""
+"""Increased when the same seed gives a different house."""
 TRIES = 20
 
 
 class GeneratorError(HthorError):
-    """No attempt gave a valid house. ``reasons`` are the rules broken, by attempt."""
+    """No attempt gave a valid house. ``reasons`` are the broken rule and problem of each attempt."""
 
     def __init__(self, seed: int, rooms: int, reasons: tuple[tuple[str, str], ...]) -> None:
         self.reasons = reasons
@@ -46,21 +46,21 @@ def generate(
     needs: Iterable[str] | None = None,
     first: int = 0,
 ) -> dict[str, Any]:
-    """A house file's document, ProcTHOR's JSON schema 1.0.0 with our own assets.
+    """A house file's document, ProcTHOR's JSON schema 1.0.0 with hthor's own assets.
 
     Every house has the benchmark's eight receptacles, a sink and a chair, and none of its targets.
 
     Args:
         seed: any whole number.
         rooms: 4 to 7.
-        spec: the name of one of `SPECS`; None draws one with so many rooms.
-        tries: how many attempts are made, each with draws of its own; the metadata name the one that succeeded.
-        needs: the `OPTIONAL` kinds that the house has, and it has none of the others; None draws them.
-        first: the attempt to begin with, to go on after one that was refused elsewhere.
+        spec: the name of one of `SPECS`; None draws a spec with this number of rooms.
+        tries: how many attempts are made, each with its own draws; the metadata name the successful attempt.
+        needs: the `OPTIONAL` kinds that the house has; it has no other optional kinds. None draws them.
+        first: the number of the first attempt, to go on after an attempt that the caller rejected.
 
     Raises:
         HthorError: for a number of rooms, a spec or a need that does not exist.
-        GeneratorError: when all attempts failed; names the rule that each one broke.
+        GeneratorError: when all attempts failed; names the rule that each attempt broke.
     """
     reasons = []
     given = None if needs is None or isinstance(needs, str) else frozenset(needs)

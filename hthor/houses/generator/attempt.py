@@ -27,14 +27,14 @@ from hthor.types import HouseSpec
 
 _OUTLINES, _DIVISIONS, _DOORINGS = 40, 60, 10
 _PASSAGE = 0.2
-"""What a door to a living room adds to a plan's quality."""
+"""How much a door to a living room adds to a plan's quality."""
 _START_GRID_M, _START_CLEAR_M = 0.25, 0.45
-"""Start places lie on this grid, with so much free floor all round."""
+"""Grid of start places, and radius of free floor around them."""
 _START_WEIGHTS = {"living_room": 4.0, "kitchen": 3.0, "bedroom": 2.0, "bathroom": 0.4}
 
 
 class AttemptFailed(Exception):
-    """Why an attempt failed: the ``rule`` that it broke, and how."""
+    """An attempt failed: the ``rule`` that it broke, and how."""
 
     def __init__(self, rule: str, problem: str) -> None:
         self.rule, self.problem = rule, problem
@@ -45,7 +45,7 @@ def build_document(spec: RoomSpec, wants: Requirements, dice: Dice, record: dict
     """A house file's document; ``record`` is written into its metadata.
 
     Raises:
-        AttemptFailed: naming the rule that is broken.
+        AttemptFailed: names the rule that is broken.
     """
     plan, found = _floor_plan(spec, dice)
     finish, maker = Finish(plan, dice.of("finish")), ItemStyler(dice.of("maker"))
@@ -111,7 +111,7 @@ def _judged(shell: dict[str, Any], spec: RoomSpec, dice: Dice, record: dict[str,
 
 
 def _floor_plan(spec: RoomSpec, dice: Dice) -> tuple[FloorPlan, list[Door]]:
-    """The best division of the first outline that has one, and its doors."""
+    """The best division of the first outline that can be divided, and its doors."""
     count = sum(1 for _ in iter_leaves(spec.tree))
     for outline in range(_OUTLINES):
         own = dice.of("outline", outline)
@@ -139,7 +139,7 @@ def _floor_plan(spec: RoomSpec, dice: Dice) -> tuple[FloorPlan, list[Door]]:
 
 
 def _middle(plan: FloorPlan) -> tuple[float, float, int]:
-    """Some place indoors, for a house that has no start yet."""
+    """A provisional start: a place indoors, for a house that has no start yet."""
     row, column = next((j, i) for j, line in enumerate(plan.labels) for i, mark in enumerate(line) if mark)
     return ((column + 0.5) * plan.scale, (row + 0.5) * plan.scale, 0)
 
@@ -153,7 +153,7 @@ def _laid(rooms: list[RoomSpace], wants: Requirements, maker: ItemStyler, dice: 
 
 
 def _start(house: HouseSpec, space: FreeSpace, reached: Bools, dice: Dice) -> tuple[float, float, int] | None:
-    """A place (x, y) [m] on the quarter-metre grid and quarter turns clockwise from +y; None when no place is roomy."""
+    """A place (x, y) [m] on the quarter-metre grid and quarter turns clockwise from +y; or None."""
     weights = [_START_WEIGHTS[room.kind] for room in house.rooms]
     for attempt in range(20):
         room = dice.weighted(house.rooms, weights, "room", attempt)
@@ -165,7 +165,7 @@ def _start(house: HouseSpec, space: FreeSpace, reached: Bools, dice: Dice) -> tu
 
 
 def _start_places(space: FreeSpace, floor: Bools) -> np.ndarray[tuple[int, int], np.dtype[np.float64]]:
-    """(N, 2) places of the quarter-metre grid with free floor all round."""
+    """(N, 2) places of the quarter-metre grid with enough free floor around them."""
     reach = round((_START_CLEAR_M - space.radius) / space.cell)
     roomy = floor.copy()
     for shift in range(1, reach + 1):

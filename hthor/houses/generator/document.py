@@ -43,9 +43,9 @@ def rooms(plan: FloorPlan, finish: Finish) -> list[dict[str, Any]]:
 
 
 class Walls:
-    """The rows of ``walls``, and where on them openings are. Every stretch has a face on either side.
+    """The rows of ``walls``, and the places of openings on them. Every stretch of wall has a face on each side.
 
-    A face runs from ``a`` to ``b`` of the opening in it, so that a leaf's hinge is the end that comes first.
+    A face runs from ``a`` to ``b`` of its opening, so that a leaf's hinge is the first of the two ends.
     """
 
     def __init__(self, plan: FloorPlan, finish: Finish, doors: Sequence[Door]) -> None:
@@ -79,11 +79,11 @@ class Walls:
         self.rows.append(row)
 
     def name(self, seam: Seam, room: int) -> str:
-        """The id of the face of a seam without an open stretch, on a room's side."""
+        """The id of a room's face on a seam that has no open stretch."""
         return self._names[room, seam.a, seam.b]
 
     def hole(self, seam: Seam, a: Vec2, b: Vec2, low: float, high: float) -> dict[str, Any]:
-        """Where an opening is on its face: the keys ``holePolygon`` and ``assetPosition``."""
+        """The place of an opening on its face: the keys ``holePolygon`` and ``assetPosition``."""
         start = self._ends[seam.a, seam.b][0]
         near, far = sorted(math.dist(start, end) for end in (a, b))
         return {
@@ -93,7 +93,7 @@ class Walls:
 
 
 def doors(found: Sequence[Door], walls: Walls, style: int) -> list[dict[str, Any]]:
-    """The rows of ``doors``; where there is no wall there is no row."""
+    """The rows of ``doors``; openings without a wall have no row."""
     rows = []
     for door in found:
         if door.sort == "open":
@@ -138,7 +138,7 @@ def windows(found: Sequence[Window], walls: Walls) -> list[dict[str, Any]]:
 
 
 def names(pieces: Sequence[Piece]) -> Iterator[str]:
-    """Ids of the pieces, each followed by its children's: kinds, numbered where a kind comes more than once."""
+    """Ids of the pieces, each followed by its children's: kinds, with a number if a kind occurs more than once."""
     kinds = [each.kind for piece in pieces for each in (piece, *piece.children)]
     total, seen = Counter(kinds), Counter[str]()
     for kind in kinds:
@@ -147,7 +147,7 @@ def names(pieces: Sequence[Piece]) -> Iterator[str]:
 
 
 def without(pieces: Sequence[Piece], gone: Set[str]) -> list[Piece]:
-    """The pieces less those of these ids."""
+    """The pieces without those with the ids ``gone``."""
     name, left = names(pieces), []
     for piece in pieces:
         stays = next(name) not in gone
@@ -183,7 +183,7 @@ def _object(piece: Piece, name: str, at: Vec2, yaw: float) -> dict[str, Any]:
 
 
 def metadata(spec: str, start: tuple[float, float, int], generator: dict[str, Any]) -> dict[str, Any]:
-    """The ``metadata``: version, start pose and what the house was made from."""
+    """The ``metadata``: version, start pose and the generator's record."""
     x, y, quarter = start
     return {
         "schema": "1.0.0",

@@ -1,4 +1,4 @@
-"""Draws by name for one part of a house."""
+"""Random draws by name for one part of a house."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ _GOLDEN = (math.sqrt(5.0) - 1.0) / 2.0
 
 
 class Dice(Struct, frozen=True):
-    """A root of draws. A draw depends on the root and its names only, never on the draws before it."""
+    """A root of draws. A draw depends only on the root and its names, never on earlier draws."""
 
     root: int
 
     def of(self, *names: seeds.Name) -> Dice:
-        """Dice of their own for a part of what these are for."""
+        """Separate dice for the part of these dice's purpose with these names."""
         return Dice(seeds.derive(self.root, *names))
 
     def unit(self, *names: seeds.Name) -> float:
@@ -42,7 +42,7 @@ class Dice(Struct, frozen=True):
         return low + min(int(self.unit(*names) * (high - low + 1)), high - low)
 
     def pick(self, options: Sequence[T], *names: seeds.Name) -> T:
-        """One of the options, all alike."""
+        """One of the options, all equally likely."""
         return options[self.whole(0, len(options) - 1, *names)]
 
     def weighted(self, options: Sequence[T], weights: Sequence[float], *names: seeds.Name) -> T:
@@ -63,6 +63,6 @@ class Dice(Struct, frozen=True):
         return a / (a + b)
 
     def scatter(self, count: int, *names: seeds.Name) -> NDArray[np.float64]:
-        """(count,) numbers in [0, 1), evenly spread: one draw, turned on by the golden section."""
+        """(count,) numbers in [0, 1), evenly spread: multiples of the golden section, shifted by one draw."""
         turned: NDArray[np.float64] = (self.unit(*names) + _GOLDEN * np.arange(count, dtype=np.float64)) % 1.0
         return turned

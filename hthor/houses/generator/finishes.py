@@ -51,7 +51,7 @@ class Finish:
     """The looks of one house.
 
     Attributes:
-        height: of the ceiling [m]. outdoors: material of the outer walls.
+        height: height of the ceiling [m]. outdoors: material of the outer walls.
     """
 
     def __init__(self, plan: FloorPlan, dice: Dice) -> None:
@@ -78,7 +78,7 @@ class Finish:
         return {"name": self._floors[room]}
 
     def wall(self, room: int) -> dict[str, Any]:
-        """Material of a room's walls, or of the outer ones."""
+        """Material of a room's walls, or of the outer walls."""
         return self.outdoors if room == OUTSIDE else self._walls[room]
 
     def lights(self, plan: FloorPlan) -> list[dict[str, Any]]:
@@ -100,7 +100,7 @@ def material(name: str, rgb: Rgb) -> dict[str, Any]:
 
 
 def _lamp(room: RoomPlan, plan: FloorPlan, height: float) -> dict[str, Any]:
-    """In the middle of the room's cell that is nearest to its middle."""
+    """A lamp in the middle of the room's cell that is nearest to the room's middle."""
     cells = [(i, j) for j, row in enumerate(plan.labels) for i, mark in enumerate(row) if mark == room.number]
     u, v = (sum(axis) / len(cells) for axis in zip(*cells, strict=True))
     whole = (round(u), round(v)) in cells and (int(u), int(v)) in cells

@@ -1,8 +1,8 @@
-"""The houses that come with hthor: what each is made from, so that anybody can make them again.
+"""The recipes of the houses that come with hthor, so that anybody can make them again.
 
 ``python -m hthor.houses.generator.shipped`` writes the ten scenes and the ten unseen houses to the folders that they
-ship in, or all of them to one folder given. The unseen houses are what ten seeds in a row give, none left out; there
-are as many of 4, 5, 6 and 7 rooms as among the scenes, so that they differ from the scenes only in being new.
+ship in, or all of them to one given folder. The unseen houses come from ten successive seeds, none left out; there are
+as many of 4, 5, 6 and 7 rooms as among the scenes, so that they differ from the scenes only in being new.
 """
 
 import sys
@@ -16,8 +16,8 @@ from hthor.houses import generator
 
 
 class Recipe(Struct, frozen=True):
-    """One house. ``needs`` are the optional kinds that it has, and it has none of the others; None draws them, as None
-    draws ``spec``.
+    """One house. ``needs`` are the only optional kinds that it has. If ``needs`` or ``spec`` is None, the generator
+    draws it.
     """
 
     name: str
@@ -43,7 +43,7 @@ SCENES = (
     _row("rowan", 10, 6, "2-bed-2-bath", "armchair bowl coffee_machine dresser pillow plate shelf television"),
     _row("willow", 57, 5, "2-bed-1-bath", "bread laptop pillow plate television"),
 )
-"""The benchmark's scenes, in the order of the scene priors' table of which scene has which optional reference."""
+"""The benchmark's scenes, in the order of the scene priors' table of the optional references of each scene."""
 UNSEEN = (
     Recipe("aspen", 1001, 4),
     Recipe("beech", 1002, 5),

@@ -1,4 +1,4 @@
-"""The rules that a generated house must meet, each violation with the name of its rule."""
+"""The rules that a generated house must meet; each violation names its rule."""
 
 import math
 from collections.abc import Iterator
@@ -17,12 +17,12 @@ from hthor.houses.space.solids import WALL_M, Slab
 from hthor.types import HouseSpec, Opening, Thing
 
 Fault = tuple[str, str, str]
-"""A rule, the id of what breaks it, and how, in words."""
+"""A rule, the id of the thing, room or opening that breaks it, and the problem in words."""
 DOOR_M = 0.8
-"""Least clear width of a doorway, an open leaf in it."""
+"""Least clear width of a doorway with an open leaf."""
 RADIUS_M, HEIGHT_M = 0.25, 1.8
 DEEP_M = 0.005
-"""How far solids may be in one another."""
+"""How far solids may overlap."""
 
 
 def leaves(house: HouseSpec) -> tuple[tuple[float, float, float, float, float], ...]:
@@ -58,8 +58,8 @@ def floor(house: HouseSpec, radius: float = RADIUS_M) -> tuple[FreeSpace, Bools]
 
 
 def reached(free: Bools) -> Bools:
-    """The cells that one can walk to from the largest stretch of free floor."""
-    from skimage.measure import label  # late: it brings much with it
+    """The cells of the largest connected stretch of free floor."""
+    from skimage.measure import label  # late: a slow import
 
     labels = label(free, connectivity=1)
     counts = np.bincount(labels.ravel())
@@ -69,9 +69,9 @@ def reached(free: Bools) -> Bools:
 
 
 def find_faults(house: HouseSpec, space: FreeSpace, walkable: Bools) -> Iterator[Fault]:
-    """Everything that is wrong: by rule, id and words.
+    """All faults of a generated house.
 
-    The rules of `hthor.houses.checks.house_checks`, applied strictly, then those about open doors, solids and free
+    First by the strict rules of `hthor.houses.checks.house_checks`, then by those about open doors, solids and free
     surfaces.
     """
     for finding in check(house, RADIUS_M, HEIGHT_M, strict=True):
@@ -83,7 +83,7 @@ def find_faults(house: HouseSpec, space: FreeSpace, walkable: Bools) -> Iterator
 
 
 def _leaves(house: HouseSpec, space: FreeSpace, walkable: Bools) -> Iterator[Fault]:
-    """Whether one can walk everywhere past the open leaves, and through the doorways that they hang in."""
+    """``leaf-passable``: whether a body can walk past the open leaves everywhere, and through their doorways."""
     for room in house.rooms:
         if not (walkable & space.room_mask(room)).any():
             yield "leaf-passable", room.id, f"an open door keeps one out of the {room.name}"
@@ -101,7 +101,7 @@ def _within(thing: Thing, box: Slab, reach: float) -> bool:
 
 
 def _solids(house: HouseSpec) -> Iterator[Fault]:
-    """Nothing stands in anything else; where bounding boxes meet, as a chair's and its table's, the solids decide."""
+    """Whether things overlap; if bounding boxes do, such as a chair's and its table's, the solids decide."""
     walls = solids.wall_slabs(house)
     leaf = [Slab((x, y), (2 * w, 2 * d), yaw, 0.0, 2.0) for x, y, w, d, yaw in leaves(house)]
     boxes = solids.furniture_slabs(house)
@@ -136,7 +136,7 @@ def _surfaces(house: HouseSpec) -> Iterator[Fault]:
 
 
 def _laid(child: Thing, parent: Thing, centre: tuple[float, float, float]) -> tuple[float, ...] | None:
-    """A child's box on a surface, local to the surface's middle; None for one on another surface."""
+    """A child's box on a surface, local to the surface's middle; None for a child on another surface."""
     x, y, z = to_local(child.centre, parent.centre, parent.yaw)
     if abs(z - child.size[2] / 2 - centre[2]) > 0.01:
         return None

@@ -1,4 +1,4 @@
-"""Every solid part of a house's things as a turned box, closed or open.
+"""Solid parts of a house's things as turned boxes, with doors closed or open.
 
 A cylinder or a sphere counts as the box around it.
 """
@@ -47,7 +47,7 @@ def posed_boxes(
 
 
 def joint_motion(joint: Joint, point: Vec3, share: float) -> tuple[Vec3, Floats]:
-    """Where a joint ``share`` of the way open takes a point of the local frame, and how it turns what is there."""
+    """Where a joint, open by ``share``, moves a point of the local frame, and the rotation (3, 3) there."""
     if joint.kind == "slide":
         x, y, z = (p + a * joint.travel * share for p, a in zip(point, joint.axis, strict=True))
         return (x, y, z), np.eye(3)
@@ -67,13 +67,13 @@ def rotation(axis: Vec3, angle: float) -> Floats:
 
 
 def bounding_slab(box: Box) -> Slab:
-    """The upright box around a box: exact for one that only turned about z."""
+    """The upright box around a box: exact for a box that is turned only about z."""
     upright = abs(abs(box.turn[2, 2]) - 1.0) < 1e-12
     if upright:
         yaw = math.atan2(box.turn[1, 0], box.turn[0, 0])
         size = (2 * box.half[0], 2 * box.half[1])
         return Slab(box.centre[:2], size, yaw, box.centre[2] - box.half[2], box.centre[2] + box.half[2])
-    # Tipped over, as an oven's door: turned about a level axis, so one level direction of the box is still an edge.
+    # Tilted, like an oven's door: turned about a level axis, so one edge of the box is still level.
     level = min(range(3), key=lambda axis: abs(box.turn[2, axis]))
     yaw = math.atan2(box.turn[1, level], box.turn[0, level])
     frame = rotation((0.0, 0.0, 1.0), yaw).T @ box.turn

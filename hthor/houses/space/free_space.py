@@ -1,6 +1,6 @@
 """The free-space grid: where a body's axis may be in a house.
 
-The world stops bodies with this very grid, so what a planner calls free is free.
+The world stops bodies with the same grid, so every place that is free for a planner is free in the world.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from hthor.houses.space.grid_kernel import (
 from hthor.types import HouseSpec, Room, Vec2
 
 STEP_M = 0.05
-"""What is no higher than this (a rug) stops nobody."""
+"""Things up to this height, such as a rug, stop nobody."""
 _PAD = 2
 _SEAM_M = 2e-3
 _SHORT_M = 1e-6
@@ -38,7 +38,7 @@ class FreeSpace:
     """Where the axis of an upright cylinder may be.
 
     A cell is free when a disc of ``radius`` about its centre touches no wall, no furniture that stands in the way of a
-    body ``height`` tall, and stays inside the rooms. A place is free when its cell is; a cell's edge belongs to both
+    body ``height`` tall, and stays inside the rooms. A place is free if its cell is free; a cell's edge belongs to both
     sides. Where two blocked cells meet only at a corner, nothing passes between them.
 
     Attributes:
@@ -71,11 +71,11 @@ class FreeSpace:
     @staticmethod
     @functools.lru_cache(maxsize=32)
     def of(house: HouseSpec, radius: float, height: float = 1.8) -> FreeSpace:
-        """The same as the constructor, worked out once a process."""
+        """The same as the constructor, computed once per process."""
         return FreeSpace(house, radius, height)
 
     def cell_of(self, x: float, y: float) -> tuple[int, int]:
-        """Row and column of the cell that holds the place, inside the grid or not."""
+        """Row and column of the cell that contains the place, inside the grid or not."""
         return math.floor((y - self.origin[1]) / self.cell), math.floor((x - self.origin[0]) / self.cell)
 
     def centre_of(self, row: int, column: int) -> Vec2:
@@ -99,15 +99,15 @@ class FreeSpace:
         return free_share(self.free, (a[0] - ox) / c, (a[1] - oy) / c, (b[0] - ox) / c, (b[1] - oy) / c) >= 1.0  # type: ignore[no-any-return]
 
     def advance(self, a: Vec2, b: Vec2) -> float:
-        """The share [0, 1] of the way from ``a`` straight to ``b`` that is free; 0 when ``a`` is not."""
+        """The share [0, 1] of the straight way from ``a`` to ``b`` that is free; 0 when ``a`` is not free."""
         ox, oy, c = *self.origin, self.cell
         return float(free_share(self.free, (a[0] - ox) / c, (a[1] - oy) / c, (b[0] - ox) / c, (b[1] - oy) / c))
 
     def nearest_free(self, x: float, y: float, within: Bools | None = None) -> Vec2:
-        """The place itself when free, or else the middle of the nearest free cell.
+        """The place itself if it is free, else the middle of the nearest free cell.
 
         Args:
-            within: (ny, nx) mask that narrows the choice, such as a component; then the place itself must be in it.
+            within: (ny, nx) mask, such as a component, in which the result must be.
 
         Raises:
             HthorError: when no cell is free.
@@ -121,13 +121,13 @@ class FreeSpace:
         return self.centre_of(row, column)
 
     def component(self, x: float, y: float) -> Bools:
-        """(ny, nx) mask of the cells that can be reached from the place; all false where it is not free."""
+        """(ny, nx) mask of the cells that can be reached from the place; all false when the place is not free."""
         label = self.label(x, y)
         mask: Bools = (self.components == label) & (label > 0)
         return mask
 
     def label(self, x: float, y: float) -> int:
-        """The number of the place's component, 0 where it is not free."""
+        """The number of the place's component, 0 when the place is not free."""
         return int(
             label_at(self.free, self.components, (x - self.origin[0]) / self.cell, (y - self.origin[1]) / self.cell)
         )
@@ -135,7 +135,7 @@ class FreeSpace:
     @functools.cached_property
     def components(self) -> NDArray[np.int32]:
         """(ny, nx) int32: 0 for blocked cells, else the number of the cell's component, counted row by row from 1."""
-        from skimage.measure import label  # late: it brings much with it, and not every use of a grid needs it
+        from skimage.measure import label  # late: a slow import, and not every use of a grid needs it
 
         labels: NDArray[np.int32] = label(self.free, connectivity=1).astype(np.int32)
         labels.setflags(write=False)

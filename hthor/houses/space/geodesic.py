@@ -1,7 +1,7 @@
 """Exact shortest paths of a body's axis through the free cells of a grid.
 
 Free cells are open squares, so a shortest path is straight except for bends at the corners of blocked cells. The graph
-joins those corners that see one another and where a taut string could bend; a query adds its two ends.
+joins corners that see one another and at which a taut string could bend; a query adds its two ends.
 """
 
 from __future__ import annotations
@@ -39,14 +39,14 @@ class Geodesics:
     @staticmethod
     @functools.lru_cache(maxsize=32)
     def of(space: FreeSpace) -> Geodesics:
-        """The same as the constructor, worked out once a process for one free space."""
+        """The same as the constructor, computed once per process for each free space."""
         return Geodesics(space)
 
     def field(self, sources: ArrayLike, costs: ArrayLike | None = None) -> DistanceField:
         """Distances from the nearest of several places.
 
         Args:
-            sources: (K, 2) [m] house frame. costs: (K,) [m] what it costs to be at each to begin with; default none.
+            sources: (K, 2) [m] house frame. costs: (K,) [m] initial cost at each source; default 0.
         """
         points = np.asarray(sources, dtype=float).reshape(-1, 2)
         first = np.zeros(len(points)) if costs is None else np.asarray(costs, dtype=float)
@@ -66,7 +66,7 @@ class Geodesics:
 
 
 class DistanceField:
-    """Distance to everywhere from a set of sources, each with a cost to begin with."""
+    """Distances from a set of sources, each with an initial cost, to all places."""
 
     def __init__(self, owner: Geodesics, sources: Floats, costs: Floats) -> None:
         self._owner, self._sources = owner, sources
@@ -83,7 +83,7 @@ class DistanceField:
         self._known = np.unique(np.array(labels, dtype=np.int64))
 
     def at(self, points: ArrayLike) -> Floats:
-        """(N,) [m]: the least of cost and way to each of ``points`` (N, 2); inf where no source reaches it."""
+        """(N,) [m]: the least sum of cost and way to each of ``points`` (N, 2); inf if no source reaches it."""
         lengths, _ = self._query(points)
         metres: Floats = lengths * self._owner.space.cell
         return metres
@@ -121,5 +121,5 @@ class DistanceField:
 
 
 def house_geodesics(house: HouseSpec, radius: float, height: float = 1.8) -> Geodesics:
-    """Shortest paths for a body in a house, worked out once a process."""
+    """Shortest paths for a body in a house, computed once per process."""
     return Geodesics.of(FreeSpace.of(house, radius, height))

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 EPS = 2e-5
-"""Slack [cells] of every contact with a blocked cell's edge, so that rounding stops nobody who slides along it."""
+"""Slack [cells] at blocked cells' edges, so that rounding does not stop a body that slides along an edge."""
 
 
 @numba.njit(cache=True)
@@ -81,7 +81,7 @@ def is_free_point(free: Any, x: float, y: float) -> bool:
 
 @numba.njit(cache=True)
 def are_free_points(free: Any, places: Floats) -> Any:
-    """(N,) bool: `stand` for each of the places (N, 2)."""
+    """(N,) bool: `is_free_point` for each of the places (N, 2)."""
     out = np.empty(len(places), dtype=np.bool_)
     for k in range(len(places)):
         out[k] = is_free_point(free, places[k, 0], places[k, 1])
@@ -90,7 +90,7 @@ def are_free_points(free: Any, places: Floats) -> Any:
 
 @numba.njit(cache=True)
 def nearest_free_cell(free: Any, ox: float, oy: float, cell: float, x: float, y: float) -> Any:
-    """Row and column of the free cell whose middle is nearest to a point [m], the first of equals; -1 for none."""
+    """Row and column of the free cell with its middle nearest to a point [m], the first of equals; -1 for none."""
     row, column, least = -1, -1, math.inf
     for j in range(free.shape[0]):
         dy = oy + (j + 0.5) * cell - y
@@ -123,7 +123,7 @@ def cells_within(xs: Floats, ys: Floats, points: Floats, reach: float) -> Any:
 
 @numba.njit(cache=True)
 def label_at(free: Any, labels: Any, x: float, y: float) -> int:
-    """The label of the free cell that the point lies in or on the edge of; 0 when there is none."""
+    """The label of the free cell that contains the point, edges included; 0 when there is no such cell."""
     if is_free_point(free, x, y):
         for j in (math.floor(y - EPS), math.floor(y + EPS)):
             for i in (math.floor(x - EPS), math.floor(x + EPS)):
@@ -134,7 +134,7 @@ def label_at(free: Any, labels: Any, x: float, y: float) -> int:
 
 @numba.njit(cache=True)
 def free_share(free: Any, ax: float, ay: float, bx: float, by: float) -> float:
-    """The share of the segment that is free from its beginning on: 1.0 when all of it is."""
+    """The share of the segment that is free, counted from its beginning: 1.0 when all of it is free."""
     if not is_free_point(free, ax, ay):
         return 0.0
     dx, dy = bx - ax, by - ay

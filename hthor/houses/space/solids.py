@@ -1,4 +1,4 @@
-"""What stands in the way, as upright boxes: walls cut at doorways, and furniture."""
+"""Obstacles as upright boxes: walls cut at doorways, and furniture."""
 
 import math
 from collections.abc import Iterator
@@ -9,7 +9,7 @@ from hthor.types import HouseSpec, Opening, Thing, Vec2, Wall
 WALL_M = 0.10
 """Thickness of every wall, half of it on either side of the line that the house file gives."""
 _LINE_M = 0.08
-"""How far a doorway's ends may lie from a wall's line and still cut it, for a wall's two faces may be apart."""
+"""How far a doorway's ends may lie from the line of a wall that it cuts, since a wall's two faces may be apart."""
 _SHORT_M = 1e-6
 
 
@@ -39,7 +39,7 @@ def wall_slabs(house: HouseSpec) -> tuple[Slab, ...]:
 def furniture_slabs(house: HouseSpec) -> tuple[tuple[Thing, Slab], ...]:
     """Every thing that stands on the floor or hangs on a wall with its bounding box.
 
-    What rests on or in another thing is left out: its support already stands there.
+    Things on or in other things are left out: their supports are included.
     """
     return tuple((thing, _box(thing)) for thing in house.things if not thing.parent or _bottom(thing) <= 0.05)
 
@@ -54,7 +54,7 @@ def _box(thing: Thing) -> Slab:
 
 
 def _key(slab: Slab) -> tuple[int, ...]:
-    """Equal for the two faces of one wall, whichever way they run."""
+    """A key that is equal for the two faces of one wall, whatever their directions."""
     yaw = round(math.degrees(slab.yaw) * 100) % 18000
     numbers = (*slab.centre, *slab.size, slab.low, slab.high)
     return (*(round(number * 1e4) for number in numbers), yaw)
@@ -105,7 +105,7 @@ def _slab(wall: Wall, along: Vec2, begin: float, end: float, low: float, high: f
 
 
 def overlap_depth(one: Slab, two: Slab) -> float:
-    """How deep [m] two boxes are in one another, by the least sideways shift that parts them; 0 when they are apart."""
+    """How deep [m] two boxes overlap, by the least sideways shift that separates them; 0 when they do not."""
     if one.low >= two.high or two.low >= one.high:
         return 0.0
     depth = math.inf
@@ -117,7 +117,7 @@ def overlap_depth(one: Slab, two: Slab) -> float:
 
 
 def penetration(one: Slab, two: Slab) -> float:
-    """How deep [m] two boxes are in one another, by the least shift that parts them, sideways or upward."""
+    """How deep [m] two boxes overlap, by the least shift, sideways or upward, that separates them."""
     return min(overlap_depth(one, two), min(one.high, two.high) - max(one.low, two.low))
 
 

@@ -19,14 +19,14 @@ Bools = NDArray[np.bool_]
 _CLEAR = 0.5
 """Parts less opaque than this, such as glass, hide nothing."""
 _NEAR_TOP = 0.4
-"""Share of its height from a thing's centre to the point near its top."""
+"""Height of the point near a thing's top above its centre, as a share of the thing's height."""
 
 
 class LinesOfSight:
-    """What can be seen past opaque boxes.
+    """Lines of sight past opaque boxes.
 
     Args:
-        opaque: the boxes. own: by id of a thing, the range of the boxes that are its own.
+        opaque: the boxes. own: for the id of a thing, the range of its own boxes among them.
     """
 
     def __init__(self, opaque: Sequence[Box], own: Mapping[str, tuple[int, int]] | None = None) -> None:
@@ -37,11 +37,11 @@ class LinesOfSight:
         self._own = own or {}
 
     def seen(self, eyes: ArrayLike, points: ArrayLike) -> Bools:
-        """(N,) bool: from which of the eyes (N, 3) [m] any of the points (P, 3) [m] can be seen, at any distance."""
+        """(N,) bool: whether each of the eyes (N, 3) [m] sees any of the points (P, 3) [m], at any distance."""
         return self._seen(eyes, points, (0, 0), first=False)
 
     def visible(self, thing: Thing, at: Vec3, eyes: ArrayLike) -> bool:
-        """Whether any of the ``eyes`` (N, 3) [m] sees the thing, taken to be ``at`` [m]; the first are tried first."""
+        """Whether any of the ``eyes`` (N, 3) [m] sees the thing, assumed to be ``at`` [m]; eyes are tried in order."""
         points = sighting_points(at, thing.size[2])
         own = self._own.get(thing.id, (0, 0))  # the parts of a thing do not hide it
         return bool(self._seen(eyes, points, own, first=True).any())
@@ -54,7 +54,7 @@ class LinesOfSight:
 
 
 def sighting_points(centre: Vec3, height: float) -> tuple[Vec3, Vec3]:
-    """Where a thing is looked for, as the world does: its centre [m], and a point near its top."""
+    """The points at which a thing is seen, as in the world: its centre [m], and a point near its top."""
     x, y, z = centre
     return centre, (x, y, z + _NEAR_TOP * height)
 
@@ -84,7 +84,7 @@ def wall_boxes(house: HouseSpec) -> list[Box]:
 def _seen(
     eyes: Any, points: Any, half: Any, pos: Any, mat: Any, radius: Any, skip0: int, skip1: int, first: bool
 ) -> Any:
-    """(N,) which eyes see any of the points; ``first`` ends the search at the first that does."""
+    """(N,) whether each eye sees any of the points; ``first`` ends the search at the first eye that does."""
     out = np.zeros(len(eyes), dtype=np.bool_)
     reach = 0.0
     for k in range(len(eyes)):

@@ -1,7 +1,7 @@
 """Compiled search for taut strings among the corners of blocked cells.
 
 A corner is a grid vertex with just one blocked neighbour: the only places where a shortest path bends. Coordinates and
-lengths are in cells, as in ``cells``.
+lengths are in cells, as in `grid_kernel`.
 """
 
 import heapq
@@ -36,13 +36,13 @@ def find_corners(free: Any) -> Any:
 
 @numba.njit(cache=True)
 def can_bend(signs: Any, k: int, vx: float, vy: float) -> bool:
-    """Whether a string from corner ``k`` along v can bend there: v does not point away from the blocked cell."""
+    """Whether a string from corner ``k`` along v can bend at ``k``: v does not point away from the blocked cell."""
     return not (vx * signs[k, 0] < 0.0 and vy * signs[k, 1] < 0.0)
 
 
 @numba.njit(cache=True)
 def turns_round(signs: Any, k: int, ux: float, uy: float, vx: float, vy: float) -> bool:
-    """Whether a string that comes to corner ``k`` along u and leaves along v bends round the blocked cell, or not."""
+    """Whether a string that comes to corner ``k`` along u and leaves along v is straight or bends around the cell."""
     turn = ux * vy - uy * vx
     side = ux * signs[k, 1] - uy * signs[k, 0]
     return turn * side >= 0.0 or turn * turn <= 1e-18 * (ux * ux + uy * uy) * (vx * vx + vy * vy)
@@ -50,7 +50,7 @@ def turns_round(signs: Any, k: int, ux: float, uy: float, vx: float, vy: float) 
 
 @numba.njit(cache=True)
 def graph_edges(free: Any, corners: Any, signs: Any) -> Any:
-    """The graph in compressed rows: (N + 1,) first edge of each corner, (E,) where it leads, (E,) how long it is."""
+    """The graph in compressed rows: (N + 1,) first edge of each corner, (E,) end of each edge, (E,) its length."""
     n = len(corners)
     one, two = [0], [0]
     one.pop()
@@ -85,7 +85,7 @@ def graph_edges(free: Any, corners: Any, signs: Any) -> Any:
 def shortest_to_corners(
     free: Any, corners: Any, signs: Any, start: Any, end: Any, length: Any, sources: Any, costs: Any
 ) -> Any:
-    """Dijkstra's algorithm from the sources: (N,) lengths, (N,) corner before or -1 - source, (N, 2) way from it."""
+    """Dijkstra's algorithm: (N,) lengths, (N,) previous corner or -1 - source, (N, 2) step from that place."""
     n = len(corners)
     reach, before, came = np.full(n, np.inf), np.full(n, -1, np.int64), np.zeros((n, 2))
     heap = [(0.0, 0)]
@@ -130,7 +130,7 @@ def shortest_to_places(
     known: Any,
     places: Any,
 ) -> Any:
-    """For each place the least length, and the corner before it, or -1 - source."""
+    """For each place, the least length, and the previous corner or -1 - source."""
     n = len(places)
     best, last = np.full(n, np.inf), np.full(n, -1, np.int64)
     for p in range(n):

@@ -1,4 +1,4 @@
-"""Which rooms a door joins, and where it stands and swings."""
+"""Chooses the rooms that doors join, and where doors stand and swing."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -22,10 +22,10 @@ from hthor.types import Vec2
 
 HIGH_M = 2.05
 LEAF_M = (-0.03, 0.11)
-"""What an open leaf takes with its handles, along the wall from its hinge's end of the opening."""
+"""The stretch that an open leaf and its handles take, along the wall from the opening's end with the hinge."""
 _WIDTH_M, _OUTSIDE_M = 0.95, 1.0
 _HINGE_M = 0.14
-"""From the corner of two walls' lines to the hinge of a leaf that stands along the wall when open."""
+"""Distance from the corner of two walls' lines to the hinge of a leaf that opens along a wall."""
 _JAMB_M = 0.2
 _OPEN = 0.75
 _STUB_M = 0.4
@@ -34,8 +34,8 @@ _STUB_M = 0.4
 class Door(Struct, frozen=True):
     """An opening from ``a`` to ``b`` [m] between ``room0`` and ``room1``.
 
-    A ``leaf`` is hinged at ``a`` and stands in room0, square to the wall; a ``frame`` holds none; ``open`` is no wall
-    at all; ``outside`` is the closed front door.
+    Its ``sort`` is "leaf" (hinged at ``a``, open in room0, square to the wall), "frame" (without a leaf), "open" (no
+    wall at all) or "outside" (the closed front door).
     """
 
     sort: str
@@ -47,14 +47,14 @@ class Door(Struct, frozen=True):
 
     @property
     def width(self) -> float:
-        """[m]"""
+        """Width of the opening [m]."""
         return math.dist(self.a, self.b)
 
 
 def choose_doors(tree: RoomGroup, plan: FloorPlan, dice: Dice) -> list[tuple[int, int]] | None:
-    """Pairs of rooms to join so that all are connected; None when walls do not allow it.
+    """Pairs of rooms to join so that all are connected; None when the walls do not allow that.
 
-    At each level the parts are joined one by one, bathrooms last and never as a way through; a bathroom within a part
+    At each level the parts are joined one by one, bathrooms last and never as a passage; a bathroom within a part
     is private to it.
     """
     found: list[tuple[int, int]] = []
@@ -106,7 +106,7 @@ def _doorways(plan: FloorPlan, one: int, two: int) -> list[Seam]:
 
 
 def _wish(plan: FloorPlan, one: int, two: int) -> float:
-    """How much a door between two rooms is wanted: people walk through living rooms, not from kitchen to bath."""
+    """The weight of a door between two rooms: people walk through living rooms, not from kitchen to bathroom."""
     kinds = {plan.room(one).kind, plan.room(two).kind}
     if kinds == {KITCHEN, BATHROOM}:
         return 0.05
@@ -147,7 +147,7 @@ def _inner(one: int, two: int, plan: FloorPlan, dice: Dice, others: list[Door]) 
 
 
 def _leaves(seam: Seam, room: int, plan: FloorPlan) -> list[Door]:
-    """The doors whose open leaf stands along a side wall of the room: one for each end of the seam in its corner."""
+    """Doors whose open leaf stands along a side wall of the room: one for each end of the seam in a corner of it."""
     beyond = seam.right if seam.left == room else seam.left
     found = []
     for start, end in ((seam.a, seam.b), (seam.b, seam.a)):
@@ -158,7 +158,7 @@ def _leaves(seam: Seam, room: int, plan: FloorPlan) -> list[Door]:
 
 
 def _inner_corner(corner: Vec2, room: int, plan: FloorPlan) -> bool:
-    """Whether the room fills three of the four quarters about its corner."""
+    """Whether the room fills three of the four quarters around its corner."""
     x, y = corner
     polygon = plan.room(room).polygon
     return sum(inside((x + dx, y + dy), polygon) for dx in (-0.2, 0.2) for dy in (-0.2, 0.2)) != 1
@@ -202,7 +202,7 @@ def inward(door: Door, room: int) -> Vec2:
 
 
 def zones(door: Door) -> list[tuple[int, float, float, float, float]]:
-    """What must stay free of furniture: (room, x0, y0, x1, y1) [m], before the doorway and where its leaf swings."""
+    """Floor that must stay free: (room, x0, y0, x1, y1) [m], in front of the doorway and where its leaf swings."""
     found = []
     for room in (door.room0,) if door.sort == "outside" else (door.room0, door.room1):
         swing = door.sort == "leaf" and room == door.room0

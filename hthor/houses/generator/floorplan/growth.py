@@ -1,4 +1,4 @@
-"""The outline of a house, whole cells of a grid with some corners cut off, and rooms that grow on these cells.
+"""Draws the outline of a house, cells of a grid with some corners cut off, and grows rooms on these cells.
 
 Rooms grow after Lopes et al. 2010: first as rectangles, then to L-shapes.
 """
@@ -26,7 +26,7 @@ _STEP_M = 0.05
 _CUT_CELLS, _CUT_SIDE = 6, 3
 Labels = NDArray[np.int32]
 _FILL = 0.9
-"""A rectangle stops growing at this share of the floor that its room is due."""
+"""A rectangle stops growing at this share of its room's intended floor area."""
 
 
 class Boundary(Struct, frozen=True):
@@ -37,7 +37,7 @@ class Boundary(Struct, frozen=True):
 
 
 def draw_boundary(rooms: int, dice: Dice) -> Boundary | None:
-    """An outline for so many rooms; None for draws that leave too little or too much floor, or fall apart."""
+    """An outline for this number of rooms; None for draws with too little, too much or unconnected floor."""
     mean = _SIDE[rooms]
     nx, ny = (round(dice.between(mean - _SPREAD, mean + _SPREAD, axis)) for axis in ("nx", "ny"))
     cells = np.ones((ny, nx), dtype=bool)
@@ -51,7 +51,7 @@ def draw_boundary(rooms: int, dice: Dice) -> Boundary | None:
 
 
 def _cut(cells: Cells, dice: Dice) -> None:
-    """Take a small rectangle off one of the four corners."""
+    """Remove a small rectangle at one of the four corners."""
     ny, nx = cells.shape
     width = dice.whole(1, min(_CUT_SIDE, nx // 2), "width")
     depth = dice.whole(1, max(1, min(_CUT_SIDE, ny // 2, math.floor(_CUT_CELLS / width))), "depth")
@@ -61,7 +61,7 @@ def _cut(cells: Cells, dice: Dice) -> None:
 
 
 def is_connected(cells: Cells) -> bool:
-    """Whether the true cells hang together by their sides."""
+    """Whether the true cells are connected by their sides."""
     todo = np.argwhere(cells)
     if not len(todo):
         return False
@@ -79,7 +79,7 @@ def is_connected(cells: Cells) -> bool:
 def grow_rooms(cells: Cells, tree: RoomGroup, dice: Dice, first: int = 2) -> Labels | None:
     """(ny, nx) numbers of rooms, counted from ``first`` in the order of the tree's leaves; 0 outdoors.
 
-    None when some room found no place.
+    None when a room found no place.
     """
     labels: Labels = np.zeros(cells.shape, dtype=np.int32)
     return labels if _share_out(labels, cells, tree, first, dice) else None
@@ -102,7 +102,7 @@ def _share_out(labels: Labels, region: Cells, part: RoomLeaf | RoomGroup, first:
 
 
 def _divide(region: Cells, ratios: Sequence[float], dice: Dice) -> Labels | None:
-    """Divide a region among parts, numbered from 1; None when the seeds find no room."""
+    """Divide a region among parts, numbered from 1; None when the parts' first cells find no place."""
     owner: Labels = np.where(region, 0, -1).astype(np.int32)
     boxes: list[list[int]] = []
     for number in range(len(ratios)):
@@ -150,7 +150,7 @@ def _run(owner: Labels, boxes: list[list[int]], due: Sequence[float], dice: Dice
 
 
 def _sides(box: list[int], owner: Labels) -> list[tuple[int, int, Any]]:
-    """The lines of cells beyond the four sides of a box: which bound moves, to where, and the cells."""
+    """The lines of cells beyond the four sides of a box: the bound that moves, its new value, and the cells."""
     j0, j1, i0, i1 = box
     ny, nx = owner.shape
     lines: list[tuple[int, int, Any]] = []
@@ -166,7 +166,7 @@ def _sides(box: list[int], owner: Labels) -> list[tuple[int, int, Any]]:
 
 
 def _extend(owner: Labels, box: list[int], mark: int, dice: Dice, whole: bool) -> bool:
-    """Grow one part by the longest side that it can; by a free stretch of a side when not ``whole``."""
+    """Grow one part by the longest possible side; if not ``whole``, a free stretch of a side is enough."""
     best: tuple[float, int, int, Any] | None = None
     for bound, value, where in _sides(box, owner):
         free = owner[where] == 0
@@ -194,7 +194,7 @@ def _touches(owner: Labels, where: Any, free: Cells, bound: int, mark: int) -> b
 
 
 def _adopt(owner: Labels) -> None:
-    """Give what is left over to a neighbour, the smallest one first."""
+    """Give cells that are left over to a neighbour, the smallest first."""
     while True:
         left = np.argwhere(owner == 0)
         taken = False

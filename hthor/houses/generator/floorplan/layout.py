@@ -13,10 +13,10 @@ from hthor.houses.generator.floorplan.room_specs import BATHROOM, BEDROOM, KITCH
 from hthor.types import Vec2
 
 OUTSIDE = 1
-"""Stands where a room's number would, for what lies outdoors; rooms count from 2."""
+"""Used in place of a room's number for the outside; rooms count from 2."""
 AREA_MIN_M2 = 4.0
 _CORE_M = {KITCHEN: (3.2, 4.0), LIVING: (3.2, 4.6), BEDROOM: (3.2, 3.2), BATHROOM: (1.6, 3.2)}
-"""The rectangle [m] that a room of each type must hold, either way round."""
+"""The rectangle [m] that must fit into a room of each type, in either orientation."""
 _BATH_MAX_M2 = 17.0
 
 
@@ -30,7 +30,7 @@ class RoomPlan(Struct, frozen=True):
 
 
 class Seam(Struct, frozen=True):
-    """A straight stretch ``a`` to ``b`` [m] between room ``left`` of it and room ``right`` of it."""
+    """A straight stretch from ``a`` to ``b`` [m], with room ``left`` on its left and room ``right`` on its right."""
 
     a: Vec2
     b: Vec2
@@ -39,7 +39,7 @@ class Seam(Struct, frozen=True):
 
     @property
     def length(self) -> float:
-        """[m]"""
+        """Length of the seam [m]."""
         return math.dist(self.a, self.b)
 
 
@@ -76,7 +76,7 @@ def plan_rooms(boundary: Boundary, labels: Labels, tree: RoomGroup) -> FloorPlan
 
 
 def plan_quality(division: Labels, tree: RoomGroup) -> float:
-    """How well rooms fit their shares, and how far they are from rectangles: higher is better, 2 at most."""
+    """How well rooms fit their shares, and how nearly they are rectangles: higher is better, 2 at most."""
     total, ideal = float((division > 0).sum()), _shares(tree, 1.0)
     fit, shape = 0.0, 0.0
     for number, share in enumerate(ideal, OUTSIDE + 1):
@@ -97,7 +97,7 @@ def _shares(tree: RoomGroup, share: float) -> list[float]:
 
 
 def _runs(cells: Cells) -> list[tuple[int, int]]:
-    """(width, depth) of every rectangle of true cells that cannot be widened to the right from where it starts."""
+    """(width, depth) of every rectangle of true cells that cannot be extended to the right."""
     ny, nx = cells.shape
     sums = np.zeros((ny + 1, nx + 1), dtype=int)
     sums[1:, 1:] = cells.cumsum(0).cumsum(1)
@@ -129,7 +129,7 @@ def _corner(i: int, j: int, scale: float) -> Vec2:
 
 
 def _outline(cells: Cells, scale: float) -> tuple[Vec2, ...] | None:
-    """The outline counter-clockwise; None when the cells have a hole, fall apart or touch at a corner."""
+    """The outline counter-clockwise; None when the cells have a hole, are not connected or touch at a corner."""
     ny, nx = cells.shape
     full = np.pad(cells, 1)
     after: dict[tuple[int, int], tuple[int, int]] = {}

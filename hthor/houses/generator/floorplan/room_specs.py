@@ -1,4 +1,4 @@
-"""Which rooms a house has and how they belong together."""
+"""The rooms that a house can have, and how they are grouped."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ KITCHEN, LIVING, BEDROOM, BATHROOM = "Kitchen", "LivingRoom", "Bedroom", "Bathro
 
 
 class RoomLeaf(Struct, frozen=True):
-    """A room: its type and the share of its group's floor that it asks for. A bathroom within a group is private."""
+    """A room: its type, and its wanted share of its group's floor. A bathroom within a group is private."""
 
     room: str
     ratio: float
@@ -27,7 +27,7 @@ class RoomGroup(Struct, frozen=True):
 
 
 class RoomSpec(Struct, frozen=True):
-    """A named set of rooms; ``weight`` is its share of the draws among those with as many rooms."""
+    """A named set of rooms; ``weight`` is its weight in the draw among the specs with as many rooms."""
 
     name: str
     weight: float
@@ -74,11 +74,11 @@ SPECS = (
 
 
 def choose_spec(rooms: int, dice: Dice, name: str | None) -> RoomSpec:
-    """The spec of that name, or one drawn among those with so many rooms.
+    """The spec of that name, or a spec drawn among those with this number of rooms.
 
     Raises:
         UnknownName: when there is no spec of that name.
-        HthorError: when none has so many rooms, or the one named has another number.
+        HthorError: when no spec has this number of rooms, or the named spec has another number.
     """
     counts = sorted({sum(1 for _ in iter_leaves(spec.tree)) for spec in SPECS})
     if rooms not in counts:

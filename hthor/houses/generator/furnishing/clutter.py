@@ -1,4 +1,4 @@
-"""Putting small things on furniture, so that every surface still takes every target."""
+"""Puts small things on furniture, so that every surface still has room for every target."""
 
 import math
 from collections import Counter
@@ -27,9 +27,9 @@ from hthor.types import Surface
 Floats = NDArray[np.float64]
 
 GAP_M, EDGE_M = 0.014, 0.014
-"""Least gap between things on a surface, and between them and a target; least distance from its edge."""
+"""Least gap between things on a surface, also to a target; least distance from the surface's edge."""
 _SLACK_M = 0.002
-"""How much less is accepted when a finished house is checked."""
+"""Tolerance below these distances when a finished house is checked."""
 _STEP_M = 0.04
 _COVER = 0.45
 """The share of a surface that small things may cover."""
@@ -39,13 +39,13 @@ _LOW_M = 0.3
 
 
 class Table:
-    """One piece of furniture whose surfaces are being laid. ``room`` is its room's type."""
+    """One piece of furniture while small things are put on it. ``room`` is its room's type."""
 
     def __init__(self, piece: Piece, room: str) -> None:
         self.piece, self.room = piece, room
         rests = piece.sort.rests(piece.size)
         height = piece.bottom + piece.size[2] / 2
-        # What lies on a shelf's lowest board is seen from afar only.
+        # Things on a shelf's lowest board are visible only from far away.
         self.surfaces = [rest for rest in rests if piece.kind != "shelf" or rest.centre[2] + height > _LOW_M]
         self.children: list[Piece] = []
         self._laid: list[list[tuple[float, ...]]] = [[] for _ in self.surfaces]
@@ -53,13 +53,13 @@ class Table:
 
     @property
     def habits(self) -> tuple[ClutterRule, ...]:
-        """What people leave there."""
+        """The small things that people leave on this furniture."""
         if self.room == "Bathroom" and self.piece.kind in BATHROOM:
             return BATHROOM[self.piece.kind]
         return CLUTTER_RULES.get(self.piece.kind, ())
 
     def lay(self, habit: ClutterRule, maker: ItemStyler, dice: Dice) -> bool:
-        """Put the thing down where it belongs, False when it finds no place."""
+        """Put a small thing down as the rule says; False when there is no place."""
         for k in dice.order(range(len(self.surfaces)), "surface"):
             surface, laid = self.surfaces[k], self._laid[k]
             size = _screen(self.piece) if habit.kind == "television" else habit.size
@@ -96,7 +96,7 @@ class Table:
 
 
 def _screen(stand: Piece) -> Size:
-    """The largest television that leaves room beside it on its stand."""
+    """The largest television that leaves space next to it on its stand."""
     fitting = [size for size in SCREENS if size[0] / 100 <= stand.size[0] - 0.5]
     return fitting[-1] if fitting else SCREENS[0]
 
@@ -110,9 +110,9 @@ def _spot(
     spot: str,
     dice: Dice,
 ) -> tuple[float, float] | None:
-    """The middle of a free place of that size where the targets still find theirs; local to the surface's middle.
+    """The middle of a free place of that size that still leaves places for the targets; local to the surface's middle.
 
-    ``ahead`` [m] is what the thing's door takes before it, ``swept`` what those of others take.
+    ``ahead`` [m] is the depth that the thing's door needs in front of it; ``swept`` is the space of others' doors.
     """
     spare = (surface.half[0] - size[0] / 2 - EDGE_M, surface.half[1] - size[1] / 2 - EDGE_M)
     if min(spare) < 0.0:
@@ -146,9 +146,9 @@ def _clear(u: Floats, v: Floats, size: Sequence[float], laid: Sequence[Sequence[
 
 
 def all_fit(surface: Surface, laid: Sequence[Sequence[float]], *, strict: bool = False) -> bool:
-    """Whether every target finds a place among the boxes laid on a surface.
+    """Whether every target finds a place among the boxes put on a surface.
 
-    A target that even the bare surface does not take counts only when ``strict``.
+    A target for which even the empty surface has no place counts only when ``strict``.
     Places are looked for on the grid on which objects are put down: square to the surface, from its middle outwards.
     """
     for name in catalog.TARGETS:

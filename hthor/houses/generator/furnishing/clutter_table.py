@@ -1,4 +1,4 @@
-"""What people leave where: for each kind of furniture the small things on it and how often."""
+"""The small things that people leave on each kind of furniture, and how often."""
 
 from typing import Any, Literal, get_args
 
@@ -9,7 +9,7 @@ Size = tuple[int, int, int]
 
 
 class ClutterRule(Struct, frozen=True):
-    """A small thing: its ``kind``, the ``share`` of places that have one, ``most`` of them, where, its size [cm]."""
+    """A small thing: ``kind``, ``share`` of furniture with it, ``most`` per piece, ``spot`` on it, ``size`` [cm]."""
 
     kind: str
     share: float
@@ -25,8 +25,8 @@ SCREENS: tuple[Size, ...] = ((76, 20, 50), (96, 22, 60), (110, 24, 68), (122, 24
 def _rules(text: str) -> tuple[ClutterRule, ...]:
     """Rules from their notation, such as ``bowl 0.3 x2, lamp 0.7 back 18x18x36``.
 
-    After the kind and the share of places that have one come, where they are not the usual ones, how many there are at
-    most, where they are put, and their size [cm].
+    After the kind and the share come, if they differ from the defaults of `ClutterRule`, the greatest number, the spot
+    and the size [cm].
     """
     rules = []
     for kind, share, *more in (row.split() for row in text.split(", ")):
@@ -92,9 +92,9 @@ BATHROOM: dict[str, tuple[ClutterRule, ...]] = {
     "sink": _rules("soap 0.25 back"),
     "side_table": _rules("candle 0.5 x2, soap_bottle 0.6, toilet_paper 0.7, cloth 0.2"),
 }
-"""What differs in bathrooms."""
+"""Rules that replace those above in bathrooms."""
 MAX_COUNT = {"coffee_machine": 1, "microwave": 1, "toaster": 1, "kettle": 1, "paper_roll": 1, "laptop": 3, "pan": 1}
-"""How many of a kind a house has at most."""
+"""The greatest number of things of a kind in a house."""
 USUAL_PLACES: dict[str, tuple[str, ...]] = {
     "television": ("tv_stand",),
     "pillow": ("bed", "sofa"),
@@ -105,4 +105,4 @@ USUAL_PLACES: dict[str, tuple[str, ...]] = {
     "egg": ("fridge", "counter_top"),
     "coffee_machine": ("counter_top",),
 }
-"""Where a small thing that the house must have goes."""
+"""The furniture on which a small thing is put that the house must have."""

@@ -31,15 +31,15 @@ _HIGH_M = 3.0
 _BODY_M = 1.8
 _TRIES = 12
 _SWING_M = 0.13
-"""What a door needs beside it to open wider than a right angle."""
+"""The space that a door needs next to it to open wider than a right angle."""
 
 
 class RoomSpace:
     """A room, what stands in it, and what must stay free.
 
     Attributes:
-        pieces: what has been placed, in order. solids, keeps: (N, 6) rectangles.
-        doorways: what must stay free before the doors. swept: what doors and drawers of furniture take.
+        pieces: the placed pieces, in order. solids, keeps: (N, 6) rectangles.
+        doorways: floor that must stay free at the doors. swept: space that furniture's doors and drawers need.
     """
 
     def __init__(self, room: RoomPlan, plan: FloorPlan, doors: Sequence[Door], space: FreeSpace) -> None:
@@ -79,7 +79,7 @@ class RoomSpace:
         return ((door.a[0] + door.b[0]) / 2 + nx * _DOOR_M, (door.a[1] + door.b[1]) / 2 + ny * _DOOR_M)
 
     def place(self, group: PieceGroup, dice: Dice, wish: Any = None) -> bool:
-        """Put the group at a random good place, False when there is none.
+        """Put the group at a random good place; False when there is no place.
 
         Args:
             wish: gives a bonus (N,) for origins (N, 2), turns (N,) [quarter turns]; None for none.
@@ -122,7 +122,7 @@ class RoomSpace:
         return True
 
     def spread(self, piece: Piece, near: Vec2, within: float, dice: Dice) -> bool:
-        """Lay a flat thing on free floor as near to a place as may be, ``within`` [m]; it blocks nothing."""
+        """Lay a flat thing on free floor as near to a place as possible, at most ``within`` [m]; it blocks nothing."""
         origins, turns = self._middles(0.1)
         w, d, _ = piece.size
         boxes = _placed((-w / 2 - GAP_M, -d / 2 - GAP_M, w / 2 + GAP_M, d / 2 + GAP_M), origins, turns)
@@ -140,7 +140,7 @@ class RoomSpace:
         return True
 
     def hang(self, pieces: Sequence[Piece]) -> None:
-        """Count things on walls among what stands in the room."""
+        """Add things on walls to the things in the room."""
         self.pieces += pieces
         self.solids = np.vstack([self.solids, [(*p.rect, p.bottom, p.top) for p in pieces]])
 
@@ -226,8 +226,8 @@ class RoomSpace:
         view[np.hypot(dx[None, :], dy[:, None]) < RADIUS_M] = False
 
     def _reachable(self, free: Bools, claims: Sequence[Rect]) -> bool:
-        """Whether one stretch of floor joins all doors, and comes to every claim."""
-        from skimage.measure import label  # late: it brings much with it
+        """Whether one connected stretch of floor joins all doors, and comes to every rectangle of ``claims``."""
+        from skimage.measure import label  # late: a slow import
 
         labels = label(free, connectivity=1)
         cell, marks = self._space.cell, []
@@ -254,7 +254,7 @@ def _turned(rect: Rect, origin: Vec2, quarter: int) -> Rect:
 
 
 def _placed(rect: Rect, origins: Floats, turns: NDArray[np.int64]) -> Floats:
-    """(N, 4) the rectangle of a group's frame, for groups that stand at the origins with these quarter turns."""
+    """(N, 4) a rectangle of a group's frame, for groups at these origins with these quarter turns."""
     x0, y0, x1, y1 = rect
     four = np.array([(x0, y0, x1, y1), (-y1, x0, -y0, x1), (-x1, -y1, -x0, -y0), (y0, -x1, y1, -x0)])
     placed: Floats = four[turns] + np.tile(origins, (1, 2))
@@ -262,7 +262,7 @@ def _placed(rect: Rect, origins: Floats, turns: NDArray[np.int64]) -> Floats:
 
 
 def _hits(boxes: Floats, others: Floats, low: float, high: float) -> Bools:
-    """(N,) which boxes (N, 4) share floor with any of the others (M, 6) whose heights overlap low to high."""
+    """(N,) whether boxes (N, 4) share floor with any of the others (M, 6) that overlap the heights low to high."""
     rivals = others[(others[:, 4] < high) & (others[:, 5] > low)]
     x = np.minimum(boxes[:, None, 2], rivals[None, :, 2]) - np.maximum(boxes[:, None, 0], rivals[None, :, 0])
     y = np.minimum(boxes[:, None, 3], rivals[None, :, 3]) - np.maximum(boxes[:, None, 1], rivals[None, :, 1])

@@ -1,4 +1,4 @@
-"""Chooses the furniture of each room, what is required first."""
+"""Chooses the furniture of each room, required furniture first."""
 
 from collections.abc import Iterable, Sequence
 
@@ -11,7 +11,7 @@ from hthor.houses.generator.furnishing.pieces import PieceGroup
 from hthor.houses.generator.furnishing.requirements import ALWAYS, Requirements
 
 _DINING_M2 = 15.0
-"""A kitchen of this size holds the dining table."""
+"""Kitchens from this area on have the dining table."""
 _CORNERS = ("corner", "wall")
 _WALLS = ("wall", "corner")
 
@@ -83,7 +83,7 @@ def _sit(
 
 
 def _scatter(rooms: Sequence[RoomSpace], maker: ItemStyler, dice: Dice) -> None:
-    """Sofa and coffee table apart, where no room takes them together."""
+    """Sofa and coffee table apart, when no room has space for both together."""
     for kind in ("sofa", "coffee_table"):
         for number, room in enumerate(rooms):
             if room.place(groups.single(maker, kind, front=0.5, anchors=_WALLS), dice.of(kind, number)):
@@ -129,7 +129,7 @@ def _wash(room: RoomSpace, maker: ItemStyler, dice: Dice) -> None:
 
 
 def _store(rooms: Sequence[RoomSpace], wants: Requirements, maker: ItemStyler, dice: Dice) -> None:
-    """The furniture that the house must have, in the first room that takes it."""
+    """The furniture that the house must have, in the first room that has space for it."""
     for kind in ("dresser", "shelf", "armchair"):
         if kind not in wants.must or any(piece.kind == kind for room in rooms for piece in room.pieces):
             continue
@@ -152,13 +152,13 @@ _MORE = {
     "vacuum_cleaner 0.1, dumbbell 0.1",
     BATHROOM: "washing_machine 0.4, laundry_hamper 0.35, bin 0.5, brush 0.4, house_plant 0.15, side_table 0.1",
 }
-"""What else stands in a room, in this order: kinds, each with how often."""
+"""More furniture of a room, in this order: kinds, each with its probability."""
 _RUGS: dict[str, tuple[tuple[str, ...], float, float, tuple[tuple[int, int, int], ...]]] = {
     LIVING: (("tv_stand", "coffee_table"), 0.6, 0.8, ((200, 140, 1), (180, 120, 1), (160, 90, 1), (140, 70, 1))),
     BEDROOM: (("bed",), 1.8, 0.55, ((160, 110, 1), (140, 80, 1), (120, 60, 1))),
     BATHROOM: (("sink",), 1.0, 0.5, ((80, 50, 1), (60, 45, 1))),
 }
-"""Rugs by room: what they lie between, how near [m], how often, and their sizes [cm], the largest first."""
+"""Rugs by room: the things that they lie near, how near [m], probability, and sizes [cm], the largest first."""
 _ISLAND_M2 = 24.0
 _BACKED = frozenset(
     {"wardrobe", "shelf", "dresser", "cart", "washing_machine", "side_table", "laundry_hamper", "ottoman"}

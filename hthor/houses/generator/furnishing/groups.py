@@ -11,7 +11,7 @@ from hthor.houses.generator.furnishing.pieces import Piece, PieceGroup, Rect
 from hthor.types import Vec2
 
 TUCK_M = 0.18
-"""How far a chair stands under its table."""
+"""How far a chair is pushed under its table."""
 _SEAM_M = 0.008
 _TURN = math.radians(6.0)
 HALF = math.pi
@@ -26,8 +26,8 @@ _RUNS: tuple[tuple[int | str, ...], ...] = (
     (150, "sink"),
     (120, "sink"),
 )
-"""What stands to the left of the fridge, longest first: counters by their width [cm]. Next to the fridge nothing has a
-door at its right end, which would hit the fridge when open."""
+"""Units to the left of the fridge, the longest run first; counters are given by their width [cm]. The unit next to the
+fridge has no door at its right end, which would hit the fridge when open."""
 
 
 def kitchen(maker: ItemStyler, dice: Dice) -> Iterator[PieceGroup]:
@@ -72,7 +72,7 @@ def fridge(maker: ItemStyler) -> PieceGroup:
 
 
 def washing_up(maker: ItemStyler) -> PieceGroup:
-    """A short counter beside a sink."""
+    """A short counter next to a sink."""
     sink = maker.make("sink", middle=(0.6 + _SEAM_M + 0.4, 0.31), size=(80, 62, 108))
     counter = maker.make("counter_top", middle=(0.0, 0.31), size=(120, 62, 90))
     return PieceGroup(
@@ -81,7 +81,7 @@ def washing_up(maker: ItemStyler) -> PieceGroup:
 
 
 def dining(maker: ItemStyler, dice: Dice) -> Iterator[PieceGroup]:
-    """A table with chairs: free in the room, then smaller ones, then with one long side to the wall."""
+    """A table with chairs: free in the room, then smaller tables, then with one long side to the wall."""
     for number, size in enumerate(((dice.pick(SIZES["dining_table"], "size")), (130, 85, 74), (110, 75, 74))):
         yield _table(maker, dice.of(number), size, wall=False)
     yield _table(maker, dice.of("wall"), (130, 80, 74), wall=True)
@@ -121,7 +121,7 @@ def _chair(maker: ItemStyler, x: float, y: float, yaw: float, dice: Dice) -> Pie
 
 
 def seating(maker: ItemStyler, dice: Dice, depths: list[float], extras: tuple[str, ...]) -> Iterator[PieceGroup]:
-    """TV stand against a wall, the sofa facing it over a coffee table; ``extras`` stand beside the sofa.
+    """TV stand against a wall, the sofa facing it over a coffee table; ``extras`` stand next to the sofa.
 
     ``depths`` are the room's widths [m]: a sofa stands with its back to the opposite wall, or free in the room.
     """
@@ -137,7 +137,7 @@ def seating(maker: ItemStyler, dice: Dice, depths: list[float], extras: tuple[st
 
 
 def resting(maker: ItemStyler) -> Iterator[PieceGroup]:
-    """A sofa with its back to the wall and a coffee table before it, without a television."""
+    """A sofa with its back to the wall and a coffee table in front of it, without a television."""
     for wide in (180, 155):
         sofa, low = maker.against("sofa", size=(wide, 88, 80)), maker.make("coffee_table", size=(90, 50, 40))
         table = maker.make("coffee_table", middle=(0.0, 0.88 + 0.38 + low.size[1] / 2), size=(90, 50, 40))
@@ -183,7 +183,7 @@ def _seating(
 
 
 def sleeping(maker: ItemStyler, dice: Dice, *, double: bool) -> Iterator[PieceGroup]:
-    """A bed with its head to the wall and side tables, then with fewer, then a narrow one in a corner."""
+    """A bed with its head to the wall and side tables, then with fewer tables, then a narrow bed in a corner."""
     sizes = [dice.pick(SIZES["bed"], "size"), (140, 208, 92)] if double else [(120, 206, 90)]
     for size in (*sizes, (100, 204, 88)):
         for tables in (2, 1, 0) if size[0] >= 120 else (1, 0):
@@ -227,7 +227,7 @@ def _put(piece: Piece, middle: Vec2, yaw: float = 0.0) -> Piece:
 def single(
     maker: ItemStyler, kind: str, *names: str | int, front: float = 0.6, anchors: tuple[str, ...] = ("wall",)
 ) -> PieceGroup:
-    """One thing with its back to the wall and so much free floor [m] before it."""
+    """One thing with its back to the wall and ``front`` [m] of free floor in front of it."""
     piece = maker.against(kind, *names)
     w, d, _ = piece.size
     free = ((-w / 2, d + 0.01, w / 2, d + front),) if front > 0.0 else ()
@@ -237,14 +237,14 @@ def single(
 def sized(
     maker: ItemStyler, kind: str, size: tuple[int, int, int], *, front: float, anchors: tuple[str, ...]
 ) -> PieceGroup:
-    """As `single`, of this size [cm]."""
+    """As `single`, with this size [cm]."""
     piece = maker.against(kind, size=size)
     w, d, _ = piece.size
     return PieceGroup(name=kind, pieces=(piece,), free=((-w / 2, d + 0.01, w / 2, d + front),), anchors=anchors)
 
 
 def reading(maker: ItemStyler, *, lamp: bool) -> PieceGroup:
-    """An armchair in a corner with a lamp beside it."""
+    """An armchair in a corner with a lamp next to it."""
     chair = maker.make("armchair")
     wide, deep, _ = chair.size
     chair = _put(chair, (wide / 2, deep / 2))
@@ -267,7 +267,7 @@ def bath(maker: ItemStyler) -> PieceGroup:
 def loose(
     maker: ItemStyler, dice: Dice, kind: str, *names: str | int, turned: bool = True, anchors: tuple[str, ...]
 ) -> PieceGroup:
-    """A thing that stands about, turned at will."""
+    """A thing that stands loosely in the room, in any direction if ``turned``."""
     yaw = dice.between(-HALF, HALF, *names, "yaw") if turned else 0.0
     piece = maker.make(kind, *names, yaw=yaw)
     piece = maker.make(kind, *names, yaw=yaw, middle=(0.0, -piece.rect[1]))

@@ -1,4 +1,4 @@
-"""Choosing sizes and finishes of things, alike within one house."""
+"""Chooses sizes and finishes of things, the same within one house."""
 
 from hthor import catalog
 from hthor.houses.generator.draws import Dice
@@ -6,7 +6,7 @@ from hthor.houses.generator.furnishing.pieces import Piece
 from hthor.types import Vec2, Vec3
 
 FINISHES = 4
-"""Variants 0 to 3 are drawn; a kind with fewer finishes counts round."""
+"""Variants 0 to 3 are drawn; a kind with fewer finishes repeats them."""
 
 SIZES: dict[str, tuple[tuple[int, int, int], ...]] = {
     "fridge": ((75, 72, 178), (70, 70, 172), (80, 72, 184)),
@@ -46,15 +46,15 @@ SIZES: dict[str, tuple[tuple[int, int, int], ...]] = {
     "towel": ((50, 4, 60),),
     "lamp": ((26, 26, 42), (22, 22, 38), (28, 28, 48)),
 }
-"""Sizes [cm] that are drawn. They are written into the house file, so a house keeps its size for good."""
+"""Sizes [cm] that are drawn. They are written into the house file, so a house keeps them permanently."""
 _VARIED = frozenset({"painting", "house_plant", "bottle", "vase", "box", "bin", "pillow", "rug", "teddy_bear"})
 """Kinds whose things differ within one house."""
 _MATCHES = {"kitchen_cabinet": "counter_top", "side_table": "dresser", "wardrobe": "dresser"}
-"""Kinds that take the finish of another one."""
+"""Kinds that take the finish of another kind."""
 
 
 class ItemStyler:
-    """Makes the things of one house: every sofa of it has the same finish, every chair is of one make."""
+    """Makes the things of one house: all its sofas have the same finish, and all its chairs the same model."""
 
     def __init__(self, dice: Dice) -> None:
         self._dice = dice

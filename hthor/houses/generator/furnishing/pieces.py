@@ -1,6 +1,6 @@
-"""Things to be placed and groups of them, as records, and the room that doors and drawers of a thing take.
+"""Records of things to be placed and of groups of them, and the space that a thing's doors and drawers need.
 
-A group's frame: origin in the middle of its back edge, x to its right seen from inside it, y to the front.
+A group's frame: origin in the middle of its back edge, x to its right for somebody in it, y to the front.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ Box = tuple[float, float, float, float, float, float]
 
 
 class Piece(Struct, frozen=True, kw_only=True):
-    """A thing with its ``middle`` [m] on the plan, the height of its ``bottom``, and its ``yaw`` [rad].
+    """A thing with its ``middle`` [m] on the plan, the height of its ``bottom`` [m], and its ``yaw`` [rad].
 
     ``asset`` is its id in the house file. ``within`` names the surface of its parent that it rests on.
     """
@@ -51,17 +51,17 @@ class Piece(Struct, frozen=True, kw_only=True):
 
     @property
     def rect(self) -> Rect:
-        """The upright rectangle about its footprint."""
+        """The axis-parallel rectangle around its footprint."""
         return _rect(self.middle, self.size, self.yaw)
 
 
 class PieceGroup(Struct, frozen=True, kw_only=True):
     """Things that are placed together.
 
-    ``free`` are rectangles before and beside them that must stay free of furniture but may be shared; ``backs`` are
-    rectangles that a wall must pass through. ``anchors`` are the ways to place it, best first: "corner" (either side
-    against a wall), "left" or "right" corner, "wall", "middle". One must be able to come to each
-    of the first ``serve`` free rectangles.
+    ``free`` are rectangles in front of and next to them that must stay free of furniture but may be shared; ``backs``
+    are rectangles that a wall must pass through. ``anchors`` are the ways to place the group, best first: "corner"
+    (either side against a wall), "left" or "right" corner, "wall", "middle". A body must be able to come to each of the
+    first ``serve`` free rectangles.
     """
 
     name: str
@@ -73,7 +73,7 @@ class PieceGroup(Struct, frozen=True, kw_only=True):
 
     @property
     def extent(self) -> Rect:
-        """The rectangle about all pieces."""
+        """The rectangle around all pieces."""
         x0s, y0s, x1s, y1s = zip(*(piece.rect for piece in self.pieces), strict=True)
         return (min(x0s), min(y0s), max(x1s), max(y1s))
 
@@ -87,7 +87,7 @@ def move_piece(piece: Piece, origin: Vec2, yaw: float) -> Piece:
 
 @lru_cache(maxsize=512)
 def swept_boxes(kind: str, size: Vec3) -> tuple[Box, ...]:
-    """For each door or drawer, the box around all its places, from the thing's middle on the plan and the floor up."""
+    """For each door or drawer, the box around all its positions; origin at the middle of the thing's bottom."""
     row = catalog.kind(kind)
     if not row.joints(size):
         return ()
@@ -104,14 +104,14 @@ def swept_boxes(kind: str, size: Vec3) -> tuple[Box, ...]:
 
 
 def _rect(centre: Vec2, size: Sequence[float], yaw: float) -> Rect:
-    """The upright rectangle about one that is turned by ``yaw``."""
+    """The axis-parallel rectangle around a rectangle that is turned by ``yaw``."""
     cos, sin = abs(math.cos(yaw)), abs(math.sin(yaw))
     hx, hy = (cos * size[0] + sin * size[1]) / 2, (sin * size[0] + cos * size[1]) / 2
     return (centre[0] - hx, centre[1] - hy, centre[0] + hx, centre[1] + hy)
 
 
 def swept_boxes_of_piece(piece: Piece) -> list[Box]:
-    """The same for a piece where it stands; its yaw must be whole quarter turns."""
+    """`swept_boxes` for a piece where it stands; its yaw must be whole quarter turns."""
     cos, sin = round(math.cos(piece.yaw)), round(math.sin(piece.yaw))
     placed = []
     for x0, y0, x1, y1, z0, z1 in swept_boxes(piece.kind, piece.size):

@@ -1,4 +1,4 @@
-"""Which kinds a house must have, may have and must not have."""
+"""The kinds that a house must have, may have and must not have."""
 
 from collections.abc import Iterable
 
@@ -38,10 +38,10 @@ class Requirements(Struct, frozen=True):
 
 
 def draw_requirements(needs: Iterable[str] | None, dice: Dice) -> Requirements:
-    """The requirements asked for, or random ones when none are given.
+    """The given requirements, or random requirements when none are given.
 
     Raises:
-        UnknownName: for a need that is not an optional kind.
+        UnknownName: when a need is not an optional kind.
     """
     if needs is None:
         return Requirements(frozenset(kind for kind in OPTIONAL if dice.chance(_SHARE.get(kind, 0.6), kind)))

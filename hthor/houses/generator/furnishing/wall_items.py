@@ -1,4 +1,4 @@
-"""Windows, curtains, pictures, towels and switches on the walls that furniture left free."""
+"""Windows, curtains, pictures, towels and switches on the free parts of walls."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -20,14 +20,14 @@ from hthor.types import Vec2
 _FACE_M = WALL_M / 2
 _END_M = 0.25
 _OVER_M = 1.48
-"""Height of the lower edge of what hangs over a worktop."""
+"""Height of the lower edge of things that hang over a worktop."""
 _PICTURE_M = 1.58
 """Height of a picture's middle."""
 _STEP_M = 0.1
 _COUNTS = {KITCHEN: (0.05, 0.5, 0.45), LIVING: (0.0, 0.3, 0.7), BEDROOM: (0.0, 0.5, 0.5), BATHROOM: (0.55, 0.45, 0.0)}
-"""Shares of rooms with none, one and two windows."""
+"""Shares of rooms with no, one and two windows."""
 _EXTRA_M = {"tv_stand": 0.85, "counter_top": 0.1}
-"""How much higher than itself a thing counts before a window, for what will stand on it."""
+"""Height added to a thing in front of a window, for small things that will stand on it."""
 
 
 class Window(Struct, frozen=True):
@@ -42,7 +42,7 @@ class Window(Struct, frozen=True):
 
     @property
     def pane(self) -> Rect:
-        """The floor under it, 0.1 m wider all round."""
+        """The floor under the window, 0.1 m wider on all sides."""
         (ax, ay), (bx, by) = self.a, self.b
         return (min(ax, bx) - 0.1, min(ay, by) - 0.1, max(ax, bx) + 0.1, max(ay, by) + 0.1)
 
@@ -57,7 +57,7 @@ class _Face(Struct, frozen=True):
 
     @property
     def yaw(self) -> float:
-        """Of what hangs there and looks into the room [rad]."""
+        """Yaw of things that hang there and face the room [rad]."""
         return math.atan2(self.n[1], self.n[0]) - math.pi / 2
 
     def rect(self, begin: float, end: float, out: float, depth: float) -> Rect:
@@ -67,7 +67,7 @@ class _Face(Struct, frozen=True):
         return (min(xs), min(ys), max(xs), max(ys))
 
     def point(self, along: float, out: float = 0.0) -> Vec2:
-        """[m]"""
+        """The point at ``along`` on the line, ``out`` off it [m]."""
         return (
             round(self.p[0] + self.u[0] * along + self.n[0] * out, 4),
             round(self.p[1] + self.u[1] * along + self.n[1] * out, 4),
@@ -75,7 +75,7 @@ class _Face(Struct, frozen=True):
 
 
 class WallDecorator:
-    """The walls of one room while things are hung on them. ``windows`` are those of the room."""
+    """The walls of one room while things are hung on them. ``windows`` are the room's windows."""
 
     def __init__(
         self, space: RoomSpace, plan: FloorPlan, doors: Sequence[Door], maker: ItemStyler, height: float
@@ -94,7 +94,7 @@ class WallDecorator:
                 yield _Face(seam.a, u, (-sign * u[1], sign * u[0]), seam.length), seam
 
     def _clear(self, rect: Rect, low: float, high: float, *, glass: bool = False) -> bool:
-        """Whether nothing stands or hangs there, and no door is there."""
+        """Whether no thing and no door is in this space."""
         for piece in self._space.pieces:
             top = piece.top + (_EXTRA_M.get(piece.kind, 0.0) if glass or piece.kind == "tv_stand" else 0.0)
             if _meet(rect, piece.rect) and piece.bottom < high and top > low:
@@ -103,7 +103,7 @@ class WallDecorator:
         return not any(_meet(rect, other) for other in taken)
 
     def glaze(self, dice: Dice) -> None:
-        """Windows, some with curtains."""
+        """Add windows, some with curtains."""
         kind = self._space.room.kind
         for number in range(dice.weighted((0, 1, 2), _COUNTS[kind], "count")):
             own = dice.of(number)
@@ -125,7 +125,7 @@ class WallDecorator:
                     break
 
     def _drape(self, face: _Face, begin: float, end: float, high: float) -> None:
-        """A curtain at either side of a window, long ones if furniture lets them."""
+        """Add a curtain at each side of a window, long curtains if furniture leaves space."""
         for size in ((28, 8, 160), (28, 8, 125)):
             bottom = high + 0.1 - size[2] / 100
             spans = ((begin - 0.26, begin + 0.02), (end - 0.02, end + 0.26))
@@ -144,7 +144,7 @@ class WallDecorator:
                 return
 
     def decorate(self, dice: Dice) -> None:
-        """Pictures, towels and light switches."""
+        """Add pictures, towels and light switches."""
         room = self._space.room
         if room.kind == BATHROOM:
             self._mirror()
@@ -159,7 +159,7 @@ class WallDecorator:
             self._switch(dice.of("switch"))
 
     def _backed(self, *kinds: str) -> Iterator[tuple[Piece, _Face]]:
-        """Things of these kinds that stand with their backs to a wall, and its face, counted from their middle."""
+        """Things of these kinds with their backs to a wall, and the wall's face, measured from their middle."""
         for piece in [piece for piece in self._space.pieces if piece.kind in kinds]:
             n = (-math.sin(piece.yaw), math.cos(piece.yaw))
             depth = piece.size[1] / 2 + GAP_M + _FACE_M
@@ -168,7 +168,7 @@ class WallDecorator:
                 yield piece, _Face(foot, (n[1], -n[0]), n, 0.0)
 
     def _cabinets(self) -> None:
-        """Wall cabinets over the counters, and a hood over the stove."""
+        """Add wall cabinets over the counters, and a hood over the stove."""
         for piece, face in self._backed("counter_top", "stove"):
             hood, w = piece.kind == "stove", piece.size[0]
             count = 1 if hood else int((w - 0.12) / 0.6)
@@ -200,7 +200,7 @@ class WallDecorator:
             self._space.hang([self._flat("painting", face, s, low, size, self._space.room.number, number)])
 
     def _above(self, face: _Face, along: float) -> bool:
-        """Whether a low thing stands at the wall right below, with its middle there."""
+        """Whether the middle of a low thing at the wall is directly below."""
         x, y = face.point(along, _FACE_M + 0.1)
         for piece in self._space.pieces:
             x0, y0, x1, y1 = piece.rect
@@ -224,7 +224,7 @@ class WallDecorator:
             self._space.hang(hung)
 
     def _switch(self, dice: Dice) -> None:
-        """A switch beside the doorway, where the leaf does not hide it."""
+        """Add a switch next to the doorway, where the leaf does not hide it."""
         number = self._space.room.number
         for door in [door for door in dice.order(self._doors, "door") if door.sort != "open"]:
             u = ((door.b[0] - door.a[0]) / door.width, (door.b[1] - door.a[1]) / door.width)
