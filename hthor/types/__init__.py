@@ -1,4 +1,4 @@
-"""The records that rooms pass to one another; begin with `events` (`Mind`) and `observations`.
+"""The records that the packages of hthor exchange; begin with `events` (`Mind`) and `observations`.
 
 Frames and units, everywhere in hthor: metres, radians, seconds; the *house frame* is MuJoCo's world frame (x right,
 y forward, z up). A body's ``yaw`` is its heading, counter-clockwise from +x. A thing's ``yaw`` turns its *local

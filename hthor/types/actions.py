@@ -8,8 +8,8 @@ from hthor.types.house import Vec3
 class Move(Struct, tag="move", frozen=True, kw_only=True):
     """Walk by ``forward`` and ``left`` [m] in the body's frame, at the body's speed.
 
-    The vector is at most `rules.MOVE_MAX_M` long. The body slides along what it meets at an angle, and stops, with an
-    outcome that names the obstacle, where it cannot.
+    The vector is at most `rules.MOVE_MAX_M` long. The body slides along an obstacle that it meets at an angle. Where it
+    cannot slide it stops, and the outcome names the obstacle.
     """
 
     forward: float
@@ -24,36 +24,36 @@ class Rotate(Struct, tag="rotate", frozen=True, kw_only=True):
 
 
 class Pick(Struct, tag="pick", frozen=True, kw_only=True):
-    """Take the object with this id in hand: in reach, in front of the body, in sight, and not too heavy."""
+    """Pick up the object with this id; it must be in reach, in front of the body, in sight, and not too heavy."""
 
     object: str
 
 
 class Place(Struct, tag="place", frozen=True, kw_only=True):
-    """Put what is held on or in the thing ``on`` (an id), nearest to ``position`` [m], house frame, if given."""
+    """Put the held object on or in the thing ``on`` (an id), as near as possible to ``position`` [m], house frame."""
 
     on: str
     position: Vec3 | None = None
 
 
 class Drop(Struct, tag="drop", frozen=True, kw_only=True):
-    """Let go of what is held: it falls, rolls, and comes to rest on what is below the hand."""
+    """Let go of the held object: it falls, may roll, and comes to rest on whatever is below the hand."""
 
 
 class Open(Struct, tag="open", frozen=True, kw_only=True):
-    """Open the thing or door with this id, in reach and in sight."""
+    """Open the thing or door with this id; it must be in reach and in sight."""
 
     thing: str
 
 
 class Close(Struct, tag="close", frozen=True, kw_only=True):
-    """Close the thing or door with this id, in reach and in sight."""
+    """Close the thing or door with this id; it must be in reach and in sight."""
 
     thing: str
 
 
 class Wait(Struct, tag="wait", frozen=True, kw_only=True):
-    """Stand still for ``seconds``, rounded up to whole ticks, at least one; at most an hour."""
+    """Stand still for ``seconds`` [s], at most an hour; rounded up to whole ticks, at least one tick."""
 
     seconds: float = 0.1
 
@@ -62,9 +62,10 @@ Motion = Move | Rotate | Pick | Place | Drop | Open | Close | Wait
 
 
 class Send(Struct, tag="send", frozen=True, kw_only=True):
-    """A robot's message to the person: ``text`` and the sender's own view now.
+    """A robot's message to the person: ``text`` and a picture of what the sender sees now.
 
-    ``object`` (an id or a kind) is what it is about, ``position`` [m], house frame, where that is believed to be.
+    ``object`` is the id or kind of the thing that the message is about; ``position`` [m], house frame, is where the
+    sender believes that thing to be.
     """
 
     text: str
@@ -80,7 +81,7 @@ class Reply(Struct, tag="reply", frozen=True, kw_only=True):
 
 
 class Action(Struct, frozen=True, kw_only=True):
-    """One motion and at most one utterance; speaking never stops walking."""
+    """One motion and at most one utterance; an utterance never interrupts a motion."""
 
     motion: Motion = Wait()
     say: Send | Reply | None = None

@@ -24,10 +24,10 @@ _EXAMPLE = "Expected WIDTHxHEIGHT in pixels, such as 320x240"
 
 
 def parse(text: str) -> CameraSpec:
-    """The camera of a name ("own" or one of `NAMED`), of a size ("320x240"), or of both ("thor:128x128").
+    """The camera with a name ("own" or one of `NAMED`), with a size ("320x240"), or with both ("thor:128x128").
 
     Raises:
-        HthorError: when it is none of these.
+        HthorError: when the text is none of these.
     """
     name, colon, size = text.partition(":")
     if not colon and _SIZE.fullmatch(name):
@@ -42,13 +42,13 @@ def parse(text: str) -> CameraSpec:
 
 
 def canonical_name(name: str, size: str = "") -> str:
-    """The same camera in one spelling.
+    """The canonical spelling of a camera's name and size.
 
     Args:
-        name: as `read` takes it. size: "320x240", empty for the camera's own.
+        name: a text that `parse` reads. size: such as "320x240"; empty for the camera's own size.
 
     Raises:
-        HthorError: as `read`, and when both give a size.
+        HthorError: when `parse` raises it, or when ``name`` and ``size`` both give a size.
     """
     if size and (":" in name or _SIZE.fullmatch(name)):
         raise HthorError(f"the camera '{name}' has a size already; leave out the size '{size}'.")

@@ -20,7 +20,7 @@ def parse(text: str) -> DetectorSpec:
     Rates that are left out are 0. The record's name is the text in canonical spelling: rates in order, zeros left out.
 
     Raises:
-        HthorError: when the text is neither, or a rate is out of range.
+        HthorError: when the text is neither a name nor a list of rates, or a rate is out of range.
     """
     if text in _NAMED:
         return _NAMED[text]
@@ -42,7 +42,7 @@ def canonical_name(text: str) -> str:
     """The canonical spelling of a detector; "own" stays as it is.
 
     Raises:
-        HthorError: as `read`.
+        HthorError: when `parse` raises it.
     """
     return OWN if text == OWN else parse(text).name
 

@@ -22,10 +22,10 @@ class Pose(Struct, frozen=True, kw_only=True):
 
 
 class Part(Struct, frozen=True, kw_only=True):
-    """One solid of a thing, in the thing's local frame.
+    """One solid that a thing consists of, in the thing's local frame.
 
     ``half`` [m] holds the half extents of its bounding box: (r, r, half height) of an upright cylinder, (r, r, r) of a
-    sphere. ``axis`` is the direction of a cylinder. ``moves`` names the `Joint` that it moves with, empty for none.
+    sphere. ``axis`` is a cylinder's direction. ``moves`` names the `Joint` that moves the solid, empty for none.
     """
 
     shape: Literal["box", "cylinder", "sphere"]
@@ -40,8 +40,8 @@ class Surface(Struct, frozen=True, kw_only=True):
     """A flat place of a thing where objects can rest, in the thing's local frame.
 
     ``centre`` [m] is the middle of the surface, ``half`` [m] its half extents along local x and y, ``clearance`` [m]
-    the free height above it. ``inside`` marks a surface that only an open door gives access to. ``moves`` names the
-    `Joint` that it moves with, as a drawer's floor does; ``centre`` is then where it is while closed.
+    the free height above it. ``inside`` marks a surface that is accessible only while a door is open. ``moves`` names
+    the `Joint` that moves the surface, such as a drawer's floor; ``centre`` is then its place while closed.
     """
 
     name: str
@@ -53,7 +53,7 @@ class Surface(Struct, frozen=True, kw_only=True):
 
 
 class Joint(Struct, frozen=True, kw_only=True):
-    """How a door turns or a drawer slides, in the thing's local frame; 0 is closed, ``travel`` open.
+    """How a door turns or a drawer slides, in the thing's local frame: position 0 is closed, ``travel`` is open.
 
     A hinge turns by ``travel`` [rad] about the unit vector ``axis`` through ``anchor`` [m], right-handed; a slide goes
     ``travel`` [m] along ``axis``. All joints of a thing move together.
@@ -67,10 +67,10 @@ class Joint(Struct, frozen=True, kw_only=True):
 
 
 class Thing(Struct, frozen=True, kw_only=True):
-    """A piece of furniture or a small object of a house, where it stands, or lies on its support.
+    """A piece of furniture or a small object of a house, at the place where it stands or lies.
 
     ``centre`` [m] house frame is the middle of the bounding box, ``size`` [m] its extents along the thing's local
-    x (width), y (depth) and z (height) axes. ``variant`` picks one of its kind's finishes; it changes looks only.
+    x (width), y (depth) and z (height) axes. ``variant`` picks one of the kind's finishes, for looks only.
     ``lift`` [m] is how far it was lowered from its height in the house's file (`hthor.houses.laying`).
     """
 
@@ -97,7 +97,7 @@ class Room(Struct, frozen=True, kw_only=True):
 
 
 class Wall(Struct, frozen=True, kw_only=True):
-    """One quad of wall seen from ``room`` (or "exterior"), from ``a`` to ``b`` [m], ``height`` [m] tall."""
+    """A rectangular wall face on the side of ``room`` (or "exterior"), from ``a`` to ``b`` and ``height`` tall [m]."""
 
     id: str
     room: str
@@ -109,10 +109,10 @@ class Wall(Struct, frozen=True, kw_only=True):
 
 
 class Opening(Struct, frozen=True, kw_only=True):
-    """A hole in a wall: the floor segment ``a`` to ``b`` [m] and the heights ``low`` and ``high`` [m] it spans.
+    """A hole in a wall, above the floor segment from ``a`` to ``b`` [m], between the heights ``low`` and ``high`` [m].
 
-    A ``passable`` one is an open doorway; the closed outside door and windows are not. An ``openable`` one has a door
-    that stands open when a trial begins; other doorways have none. ``asset`` is what fills it.
+    A ``passable`` opening is an open doorway; windows and the closed outside door are not passable. An ``openable``
+    doorway has a door, which stands open when a trial begins; other doorways have none. ``asset`` is what fills it.
     """
 
     id: str
@@ -131,9 +131,9 @@ class HouseSpec(Struct, frozen=True, kw_only=True):
     """A floor plan with everything in it.
 
     Attributes:
-        id: its name. sha256: hash of the file's canonical JSON.
+        id: the house's name. sha256: hash of the canonical JSON of the house's file.
         rooms, walls, openings, things: its contents, in the house frame [m]; ids are unique within the house.
-        height: [m] of the ceilings. start: where bodies stand unless a task says otherwise.
+        height: [m] of the ceilings. start: where bodies stand unless a task gives other starts.
     """
 
     id: str

@@ -1,4 +1,4 @@
-"""What an agent or a human model is given: messages, observations, briefings."""
+"""The input of an agent or a human model: messages, observations, briefings."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from hthor.types.specs import RELATIONS, BodySpec, Job
 if TYPE_CHECKING:
     ImageSource: TypeAlias = Callable[[], RgbImage] | None
     SeatSenses: TypeAlias = Senses
-else:  # an observation crosses to an agent's process without its senses and images, which are asked for there
+else:  # an observation is sent to an agent's process without its senses and images, which that process requests
     ImageSource = SeatSenses = Any
 
 Status = Literal["sent", "shown", "confirmed", "declined", "covered"]
@@ -25,10 +25,10 @@ class Message(Struct, frozen=True, kw_only=True):
 
     Attributes:
         id: number of the message in its trial, from 0. sender: the robot's seat. tick: when it was sent.
-        text: what it says, on one line, at most `rules.TEXT_MAX` characters.
-        object: id or kind of what it is about, empty for nothing in particular.
+        text: its words, on one line, at most `rules.TEXT_MAX` characters.
+        object: id or kind of the thing that the message is about, empty for none.
         position: [m], house frame, where the sender believes ``object`` to be.
-        image: when called, renders the sender's own view at the sending tick, (H, W, 3) uint8; None without a picture.
+        image: when called, renders what the sender saw at the tick of sending, (H, W, 3) uint8; None without a picture.
     """
 
     id: int
@@ -41,10 +41,10 @@ class Message(Struct, frozen=True, kw_only=True):
 
 
 class Receipt(Struct, frozen=True, kw_only=True):
-    """The status of a robot's last message, by its number; ``tick`` is when that status began.
+    """The status of a robot's last message: ``message`` is its number, ``tick`` is when this status began.
 
-    A message is "sent", then "shown" to the person, and ends as "confirmed" (accepted), "declined", or "covered" by a
-    newer one.
+    A message is "sent", then "shown" to the person. Its last status is "confirmed" (accepted), "declined", or "covered"
+    (replaced by a newer message).
     """
 
     message: int
@@ -53,9 +53,9 @@ class Receipt(Struct, frozen=True, kw_only=True):
 
 
 class Outcome(Struct, frozen=True, kw_only=True):
-    """How a seat's last motion ended: ``motion`` is its name, such as "move".
+    """How a seat's last motion ended; ``motion`` is the motion's name, such as "move".
 
-    ``reason`` says why it failed, empty when ``ok``; ``by`` names the seat, thing or "wall" in the way.
+    ``reason`` says why the motion failed, empty when ``ok``; ``by`` is the seat, thing or "wall" that was in the way.
     """
 
     motion: str
@@ -65,9 +65,10 @@ class Outcome(Struct, frozen=True, kw_only=True):
 
 
 class ThingState(Struct, frozen=True, kw_only=True):
-    """True state of an object or of an openable thing. ``support`` is what it rests on or in, ``held_by`` a seat.
+    """True state of an object or of an openable thing.
 
-    ``bearers`` are all seats that hold it by a handle; as long as they cannot lift it, ``held_by`` is empty.
+    ``support`` is the id of the thing that it rests on or in, ``held_by`` the seat that has it in hand. ``bearers`` are
+    all seats that hold it by a handle; as long as they cannot lift it, ``held_by`` is empty.
     """
 
     id: str
@@ -80,15 +81,15 @@ class ThingState(Struct, frozen=True, kw_only=True):
 
 
 class Observation(Struct, frozen=True, kw_only=True):
-    """What an agent or a human model is given when it is asked to act; see `Mind.act`.
+    """What an agent or a human model is given when it has to act; see `Mind.act`.
 
     Attributes:
         tick: ticks since the trial began. pose: of the seat's body, house frame.
-        idle: whether the body is free for a new motion; otherwise only ``Action.say`` takes effect.
+        idle: whether the body is free for a new motion; if not, only ``Action.say`` takes effect.
         senses: the seat's sensors, which the properties below read.
-        room: id of the room that the body is in, the last one while it is between rooms.
-        holding: id of the object in hand, or held by a handle; empty for none.
-        outcome: how the last motion ended; None before any has.
+        room: id of the room that the body is in; between rooms, of the room that it was in last.
+        holding: id of the object that the body has in hand or holds by a handle; empty for none.
+        outcome: how the last motion ended; None before any motion has ended.
         inbox: the open message, for the person only. receipt: the status of the robot's last message.
         truth: true states of all objects, only for agents that declare the privilege ``object_poses``.
     """
@@ -136,15 +137,15 @@ class Observation(Struct, frozen=True, kw_only=True):
 
 
 class Briefing(Struct, frozen=True, kw_only=True):
-    """What an agent or a human model is told before a trial.
+    """What an agent or a human model learns before a trial.
 
     Attributes:
-        seat: its own seat. body: its own body. teammates: all other seats. crew: every seat's body, its own included.
+        seat: its own seat. body: its own body. teammates: all other seats. crew: the body in every seat, its own too.
         instruction: the task in words. kind: the task kind. time_limit: [s] of the trial. tick_s: [s] of one tick.
-        target, destination, relation: the first job: the object's id, the kind of thing to place it in or on (empty for
-            a search), and "find", "on", "in" or "at".
-        jobs: everything there is to do.
-        privileges: what it declared and was granted. house: the floor plan, only with the privilege ``house_map``.
+        target, destination, relation: of the first job: the object's id, the kind of thing to place it in or on (empty
+            for a search), and "find", "on", "in" or "at".
+        jobs: all jobs of the task.
+        privileges: declared and granted. house: the floor plan, only with the privilege ``house_map``.
     """
 
     seat: str
@@ -164,7 +165,7 @@ class Briefing(Struct, frozen=True, kw_only=True):
 
     @property
     def todo(self) -> tuple[Job, ...]:
-        """All there is to do; a briefing without a list of jobs stands for a single one."""
+        """All jobs of the task; a briefing without a list of jobs describes a single job."""
         if self.jobs:
             return self.jobs
         destinations = (self.destination,) if self.destination else ()

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     RgbImage: TypeAlias = NDArray[np.uint8]
     DepthImage: TypeAlias = NDArray[np.float32]
     LabelImage: TypeAlias = NDArray[np.int32]
-else:  # readings cross to agents' processes without their arrays, which are sent apart
+else:  # readings are sent to agents' processes without their arrays, which are sent separately
     Floats = RgbImage = DepthImage = LabelImage = Any
 
 
@@ -25,11 +25,11 @@ class Detection(Struct, frozen=True, kw_only=True):
     """One thing in view: an object, a piece of furniture, a doorway, a person or a robot.
 
     Attributes:
-        id: of the thing, or the seat of a person or robot. kind: its kind, such as "mug", "fridge" or a robot's name.
+        id: of the thing, or the seat of a person or robot. kind: such as "mug" or "fridge", or a robot's name.
         position: [m], house frame, of its centre. size: [m] along its own x, y and z. yaw: [rad] its heading.
         distance: [m] from the eye to ``position``.
-        state: "open" or "closed" for what opens, else empty.
-        support: id of what an object rests on or in, where the sensor can tell.
+        state: "open" or "closed" for a thing that opens, else empty.
+        support: id of the thing that an object rests on or in, if the sensor can tell.
         held_by: the seat that has it in hand. bearers: all seats that hold it by a handle.
     """
 
@@ -52,14 +52,14 @@ class Scan(Struct, frozen=True, kw_only=True):
     Walls, furniture and shut doors stop it; people, robots and movable objects are not in the scan.
 
     Attributes:
-        origin: the pose it was taken from.
+        origin: the pose from which the scan was taken.
         bearings: (N,) float64 [rad], relative to the heading, left positive.
-        ranges: (N,) float64 [m] from the body's axis; ``limit`` where nothing was met.
+        ranges: (N,) float64 [m] from the body's axis; ``limit`` where the beam met nothing.
         limit: [m] the sensor's range.
-        tops: (N,) float64 [m], heights of what was met, as a depth camera tells a table from a wall; infinite for walls
-            and where nothing was met.
-        beyond: (N,) float64 [m], distance to the first thing behind that is too tall to be looked over, as people see a
-            wall over a table; ``limit`` where there is none. None from a robot's sensor, which does not look over.
+        tops: (N,) float64 [m], heights of the things that the beams met, by which a table differs from a wall; infinite
+            for walls and where a beam met nothing.
+        beyond: (N,) float64 [m], distance to the first thing too tall to look over, as people see a wall behind a
+            table; ``limit`` where there is none. None from a robot's sensor, which cannot look over things.
     """
 
     origin: Pose
@@ -71,10 +71,10 @@ class Scan(Struct, frozen=True, kw_only=True):
 
 
 class CameraSpec(Struct, frozen=True, kw_only=True):
-    """Which pictures a seat's camera takes, as `hthor.types.cameras.parse` reads its name.
+    """The size and field of view of a seat's pictures; `hthor.types.cameras.parse` reads one from its name.
 
     ``size`` is (width, height) [pixels], None for the body's own. ``fov`` [rad] is the horizontal field of view of the
-    pictures, None for the body's; what a detector reports goes by the body's alone.
+    pictures, None for the body's own. Detectors always use the body's field of view.
     """
 
     name: str = "own"
@@ -87,8 +87,8 @@ class Camera(Struct, frozen=True, kw_only=True):
 
     ``size`` is (width, height) [pixels]. ``matrix`` (3, 3) float64 holds the intrinsics [pixels]; the centre of the
     pixel in column i and row j is at (i, j). ``pose`` (4, 4) float64 takes points [m] from the camera's frame to the
-    house frame. Nothing nearer than ``near`` or farther than ``far`` [m] is in the picture; where nothing is, the depth
-    is ``far``. A pixel (i, j) of depth d shows the point ``pose @ [*(inv(matrix) @ [i, j, 1]) * d, 1]``.
+    house frame. Nothing nearer than ``near`` or farther than ``far`` [m] is in the picture; where there is nothing,
+    the depth is ``far``. A pixel (i, j) of depth d shows the point ``pose @ [*(inv(matrix) @ [i, j, 1]) * d, 1]``.
     """
 
     size: tuple[int, int]
@@ -99,7 +99,7 @@ class Camera(Struct, frozen=True, kw_only=True):
 
 
 class View(Struct, frozen=True, kw_only=True):
-    """What a seat's camera takes at one moment: ``rgb`` (H, W, 3) uint8, ``depth`` (H, W) float32 [m] along the optical
+    """Pictures of a seat's camera at one tick: ``rgb`` (H, W, 3) uint8, ``depth`` (H, W) float32 [m] along the optical
     axis, ``segmentation`` (H, W) int32, indices into the world's list of names, -1 for nothing.
     """
 
@@ -110,11 +110,11 @@ class View(Struct, frozen=True, kw_only=True):
 
 
 class DetectorSpec(Struct, frozen=True, kw_only=True):
-    """How a detector errs; see `hthor.world.perception.detector_noise`.
+    """The error rates of a detector; see `hthor.world.perception.detector_noise`.
 
-    ``miss`` is the chance that an object in view goes unreported, ``false_alarm`` that an object is reported where it
-    is not, each drawn independently for every second of time. ``position_sigma`` [m] is the standard deviation of the
-    reported positions of objects along each axis.
+    ``miss`` is the probability that an object in view is not reported, ``false_alarm`` the probability that an object
+    is reported where it is not; both are drawn independently for every second of time. ``position_sigma`` [m] is the
+    standard deviation of the reported positions of objects along each axis.
     """
 
     name: str
@@ -127,8 +127,8 @@ class Sighting(Struct, frozen=True, kw_only=True):
     """How visible one object is.
 
     Attributes:
-        share: 0 to 1, the part of it that is in the field of view and not hidden.
-        beside: how many other small objects in view appear close to it, as seen from the eye.
+        share: 0 to 1, the part of the object that is in the field of view and not hidden.
+        beside: number of other small objects in view that appear close to it from the eye.
     """
 
     share: float = 0.0
@@ -136,11 +136,11 @@ class Sighting(Struct, frozen=True, kw_only=True):
 
 
 class Senses(Protocol):
-    """A seat's sensors at one tick. Readings are computed when first asked for, then kept for the tick.
+    """A seat's sensors at one tick. Each reading is computed at its first use and then kept for the tick.
 
-    Every method raises `hthor.errors.StaleObservation` once the world has moved on: read inside ``act``, and keep what
-    you need of the readings. Positions are in the house frame [m]. Costs are those of one call in the profile "fast" on
-    one processor core.
+    Every method raises `hthor.errors.StaleObservation` after the tick has ended: read sensors inside ``act``, and keep
+    the readings that you need. Positions are in the house frame [m]. Costs are those of one call in the profile "fast"
+    on one processor core.
     """
 
     def detections(self) -> tuple[Detection, ...]:
@@ -151,9 +151,9 @@ class Senses(Protocol):
         ...
 
     def sighting(self, id: str) -> Sighting:
-        """How visible the object ``id`` is; a share of 0 for what is not in view or is no object.
+        """How visible the object ``id`` is; a share of 0 if it is not in view or not an object.
 
-        For human models only: it is not offered to robots that run in a process of their own.
+        For human models only: robots that run in a process of their own cannot call it.
         """
         ...
 
@@ -162,7 +162,7 @@ class Senses(Protocol):
         ...
 
     def rgb(self) -> RgbImage:
-        """(H, W, 3) uint8, the seat's own camera. The first of the three pictures costs about a millisecond."""
+        """(H, W, 3) uint8, from the seat's camera. A tick's first picture costs about a millisecond."""
         ...
 
     def depth(self) -> DepthImage:
@@ -183,5 +183,5 @@ READINGS: dict[str, Any] = {
     for name, method in inspect.getmembers(Senses, inspect.isfunction)
     if not name.startswith("_") and len(inspect.signature(method).parameters) == 1
 }
-"""What a robot in a process of its own can ask for: the sensors that take no argument, by name, with the types of their
-readings; `Any` for an array."""
+"""The sensors that a robot in a process of its own can read: those that take no argument, by name, with the types of
+their readings; `Any` for an array."""

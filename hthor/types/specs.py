@@ -8,24 +8,24 @@ from msgspec import Struct
 from hthor.types.house import Pose, Vec2, Vec3
 
 Relation = Literal["find", "on", "in", "at"]
-"""How an object has to lie to what a job names: anywhere, once found; on or in a thing; or at a place."""
+"""What a job demands of an object: to be found anywhere, to lie on or in a thing, or to be at a place."""
 RELATIONS: tuple[Relation, ...] = ("find", "on", "in", "at")
 
 
 class BodySpec(Struct, frozen=True, kw_only=True):
-    """What a body can do, of a robot or of the person's avatar.
+    """What the body of a robot, or the person's avatar, can do.
 
     Attributes:
-        name: of a robot, that of its file. title: what people call it.
+        name: for a robot, the name of its file. title: the name in texts for people.
         radius: [m] of the disc that it occupies on the floor. height: [m].
         eye: [m] height of the camera. fov: [rad] horizontal and vertical field of view.
         speed: [m/s] of walking. turn_rate: [rad/s] of turning and of tilting the camera.
-        sight_range: [m] to which its detector reports. scan_range: [m] of its range scan. scan_beams: how many.
-        pitch_limit: [rad] by which the camera tilts at most, up or down.
-        capabilities: "navigate", "pick" (with place and drop), "open" (with close).
+        sight_range: [m] of its detector. scan_range: [m] of its range scan. scan_beams: how many beams the scan has.
+        pitch_limit: [rad] by which the camera can tilt up or down.
+        capabilities: "navigate", "pick" (also place and drop), "open" (also close).
         reach: [m] horizontal, from the body's axis. reach_low, reach_high: [m] heights between which it grasps.
-        strength: [kg] that it lifts. handling: [s] that pick, place, drop, open and close take.
-        detector: how its detector errs unless a trial says otherwise, see `hthor.types.detector_specs.parse`.
+        strength: [kg] that it can lift. handling: [s] that one pick, place, drop, open or close takes.
+        detector: its detector unless a trial names another, see `hthor.types.detector_specs.parse`.
     """
 
     name: str
@@ -56,8 +56,8 @@ class RobotSpec(BodySpec, frozen=True, kw_only=True):
 class Placement(Struct, frozen=True, kw_only=True, omit_defaults=True):
     """Where an object starts.
 
-    ``position`` [m], house frame, is its centre, ``yaw`` [rad] its heading; it rests ``relation`` ("on" or "in") the
-    thing ``support``. ``near`` is the id of what a scene prior wanted it near to, empty if the prior was about
+    ``position`` [m], house frame, is its centre, ``yaw`` [rad] its heading. It rests on or in (``relation``) the thing
+    ``support``. ``near`` is the id of the thing that a scene prior placed it near to, empty if the prior was about
     ``support``.
     """
 
@@ -70,7 +70,7 @@ class Placement(Struct, frozen=True, kw_only=True, omit_defaults=True):
     near: str = ""
 
     def __post_init__(self) -> None:
-        # Defaults are omitted by identity, which neither floats nor words keep on their way to another process.
+        # Only defaults that are the same object are omitted; floats and words from another process are not.
         for name, default in _DEFAULTS:
             if getattr(self, name) == default:
                 msgspec.structs.force_setattr(self, name, default)
@@ -82,10 +82,10 @@ _DEFAULTS = tuple(
 
 
 class Job(Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """One thing to do with one object, ``target``: find it, or bring it on, in or to a destination.
+    """One job with one object, ``target``: to find it, or to bring it on, in or to a destination.
 
-    ``destinations`` are kinds or ids of things, or ids of rooms; any of them will do. ``place`` [m], house frame, is
-    the exact place if that matters. ``hands`` is the number of bodies it takes to carry the object.
+    ``destinations`` are kinds or ids of things, or ids of rooms; one of them is enough. ``place`` [m], house frame, is
+    the exact place if that matters. ``hands`` is the number of bodies that are needed to carry the object.
     """
 
     target: str
@@ -96,7 +96,7 @@ class Job(Struct, frozen=True, kw_only=True, omit_defaults=True):
 
 
 class Goal(Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """What completes a task: find or place ``target`` (an object's id); ``destination`` is a *kind* of thing.
+    """What completes a task: to find or place ``target`` (an object's id). ``destination`` is a *kind* of thing.
 
     With several jobs, ``jobs`` lists them all and the other fields describe the first.
     """
@@ -108,7 +108,7 @@ class Goal(Struct, frozen=True, kw_only=True, omit_defaults=True):
 
     @property
     def todo(self) -> tuple[Job, ...]:
-        """All jobs, whatever the task kind."""
+        """All jobs, for every task kind."""
         if self.jobs:
             return self.jobs
         destinations = (self.destination,) if self.destination else ()
@@ -116,10 +116,10 @@ class Goal(Struct, frozen=True, kw_only=True, omit_defaults=True):
 
 
 class TaskSpec(Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """One task, as frozen data; ``t_star`` [s] is a good time by the shortest path, see `hthor.tasks.kind`.
+    """One task, as frozen data; ``t_star`` [s] is the reference time, see `hthor.tasks.kind`.
 
-    ``difficulty`` is easy, medium or hard, by the task alone; ``split`` says whether its house is one of the ten scenes
-    (seen) or not (new). Both are empty in suites that do not tell.
+    ``difficulty`` is easy, medium or hard, and depends on the task alone; ``split`` is "seen" if its house is one of
+    the ten scenes, else "new". Both are empty in suites that do not state them.
     """
 
     id: str
@@ -138,7 +138,7 @@ class TaskSpec(Struct, frozen=True, kw_only=True, omit_defaults=True):
 
 
 class AgentRef(Struct, frozen=True, kw_only=True):
-    """A robot's agent: its name, where it was loaded from, the hash of its code, and its privileges."""
+    """A robot's agent: its name, the source it was loaded from, the hash of its code, and its privileges."""
 
     name: str
     source: str
@@ -147,11 +147,10 @@ class AgentRef(Struct, frozen=True, kw_only=True):
 
 
 class RobotSeat(Struct, frozen=True, kw_only=True):
-    """One robot of a trial: its body and its agent. ``detector`` as `hthor.types.detector_specs.parse` reads it.
+    """One robot of a trial: its body and its agent. `hthor.types.detector_specs.parse` reads ``detector``.
 
-    ``camera`` is set only if it is not the body's own, as `hthor.types.cameras.parse` reads it.
-    ``robot_sha256`` is the hash of the body's code: of the file of a user's own, of the syntax of one that ships
-    with hthor.
+    ``camera`` is set only if it is not the body's own; `hthor.types.cameras.parse` reads it. ``robot_sha256`` is the
+    hash of the body's code: of the whole file for a user's own robot, of the syntax tree for one that ships with hthor.
     """
 
     seat: str
@@ -166,11 +165,11 @@ class TrialSpec(Struct, frozen=True, kw_only=True):
     """Everything that determines a trial; its content hash is the trial's key.
 
     Attributes:
-        assets_sha256: hash of what the robots' pictures show and of the code that draws it, empty where no agent is
-            known to take pictures.
-        kind_sha256: hash of a user's own file of the task kind, empty for a kind that ships with hthor.
-        realtime: set only where the robots' thinking took trial time.
-        step_limit_s: [s] set only where submitted agents had another deadline for each action than usual.
+        assets_sha256: hash of what the robots' pictures show and of the code that draws it, empty if no agent is known
+            to take pictures.
+        kind_sha256: hash of the task kind's file if it is a user's own, empty for a kind that ships with hthor.
+        realtime: set only if the trial's clock ran while robots were thinking.
+        step_limit_s: [s] set only if submitted agents had an unusual deadline for each action.
     """
 
     task: TaskSpec
