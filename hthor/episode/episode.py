@@ -1,4 +1,4 @@
-"""A trial as a loop over ticks: who is asked, what is said and started, when the goal is met, what is logged."""
+"""A trial as a loop over ticks: calls agents, passes messages, starts motions, judges the goal, writes the log."""
 
 import time
 import traceback
@@ -35,7 +35,7 @@ from hthor.types import (
 
 _T = TypeVar("_T")
 _EVERY_TICKS = round(1.0 / rules.TICK_S)
-"""Progress is computed at least this often."""
+"""[ticks] Progress is computed at least this often."""
 
 
 def run_episode(
@@ -49,14 +49,14 @@ def run_episode(
     """Run one trial from reset to its end.
 
     Args:
-        trial: its task has the house, the start, the goal and the time limit.
-        world: built for the task's house, with a body for every seat of ``robots``.
+        trial: its task names the house, the starts, the goal and the time limit.
+        world: the simulation of the task's house, with a body for every seat of ``robots``.
         human: the human model, which may remember earlier trials of the session.
         robots: the agent of each robot, by seat.
         clock: measures thinking time [s] in a real-time trial; not used in lock-step.
 
     Raises:
-        Exception: whatever the human model or the world raises; an agent's errors become faults of the log.
+        Exception: any exception of the human model or the world; errors of agents become faults in the log.
     """
     return Episode(trial, world, human, robots, Thinking(clock) if trial.realtime else None).run()
 
@@ -64,10 +64,10 @@ def run_episode(
 class Episode:
     """The state of one trial while it runs; `run_episode` makes one and runs it.
 
-    In every tick, each seat that is free or has mail is asked for an action, and all see the same moment; then messages
-    are passed on and motions started, and the world moves on by a tick.
+    In every tick, each seat whose body is idle or that has mail is asked for an action; all observe the same moment.
+    Then messages are passed on, motions are started, and the world advances by one tick.
 
-    The arguments are as in `run_episode`; ``thinking`` charges agents for thinking time, and is None in lock-step.
+    The arguments are as in `run_episode`; ``thinking`` counts agents' thinking as trial time, and is None in lock-step.
     """
 
     def __init__(
@@ -129,7 +129,7 @@ class Episode:
         )
 
     def _tick(self) -> None:
-        """All seats that are asked see the same moment; only then do their actions take effect."""
+        """Play one tick: all seats that must act observe the same moment; only then do their actions take effect."""
         world, mailbox = self.world, self.mailbox
         ready = [seat for seat in self.agents if world.idle(seat) or mailbox.changed(seat)]
         asked = {seat: self._observe(seat) for seat in ready if self.thinking is None or not self.thinking.busy(seat)}
@@ -152,7 +152,7 @@ class Episode:
     def _timely(
         self, thinking: Thinking, actions: Sequence[tuple[str, Action | None]]
     ) -> Sequence[tuple[str, Action | None]]:
-        """In real time: the actions that are due by now. The bodies that wait for later ones stand still."""
+        """The actions that are due by now in real time; bodies whose action is not due yet stand still."""
         tick = self.world.tick
         for seat, action in actions:
             late = thinking.late(seat)
@@ -166,7 +166,7 @@ class Episode:
                     self._rest(seat, True)
         due = thinking.due(tick, self.agents)
         for one in due:
-            if not one.moves and one.action.say is not None:  # a seat that is asked while it moves may only speak
+            if not one.moves and one.action.say is not None:  # while it moves, a seat may only speak
                 self._say(one.seat, one.action)
         return [(one.seat, one.action) for one in due if one.moves]
 
@@ -201,14 +201,14 @@ class Episode:
             self.events.extend(self.mailbox.reply(tick, seat, say))
 
     def _with_claim_error(self, event: Event, send: Send) -> Event:
-        """The same event; that of a sent message with how far its claim is from the truth."""
+        """The event; for a sent message, with the distance of its claim from the truth added."""
         if event.kind != "sent":
             return event
         claim = claims.claim_error(send, event.data["position"], self.world.snapshot(), self.world.house)
         return msgspec.structs.replace(event, data={**event.data, **claim})
 
     def _rest(self, seat: str, resting: bool) -> None:
-        """Note that the seat's body, from now on, rests (does nothing or waits) or moves; adds up its idle time."""
+        """Note whether the seat's body rests (does nothing or waits) from now on, and add up its idle time."""
         tick, since = self.world.tick, self.resting_since[seat]
         if since is not None and not resting:
             self.idle[seat] += tick - since
@@ -234,7 +234,7 @@ class Episode:
         )
 
     def _guarded(self, seat: str, call: Callable[[], _T]) -> _T | None:
-        """Call an agent. Its failure ends its part in the trial; a human model's failure is a bug of ours."""
+        """Call an agent or the human model. An agent that fails leaves the trial; a human model's error is raised."""
         if seat == HUMAN:
             return call()
         try:
@@ -269,7 +269,7 @@ def _checked(action: object) -> Action:
 
 
 class GoalProgress:
-    """The share of the goal that is met: ``value``, from 0 to 1, or None for task kinds that count no parts."""
+    """The share of the goal that is met: ``value``, from 0 to 1, or None for task kinds without partial goals."""
 
     def __init__(self, kind: TaskKind, task: TaskSpec) -> None:
         counts = type(kind).progress is not TaskKind.progress
@@ -283,8 +283,8 @@ class GoalProgress:
         It is computed when an object changed, once a second, and at the end; not while an object is only carried.
 
         Args:
-            met: the goal is met.
-            has_events: something happened in this tick.
+            met: whether the goal is met.
+            has_events: whether anything happened in this tick.
         """
         changed = snapshot.things is not self._things and (has_events or not any(snapshot.holding.values()))
         due = met or changed or snapshot.tick % _EVERY_TICKS == 0 or snapshot.tick == self._last

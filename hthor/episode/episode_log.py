@@ -1,4 +1,4 @@
-"""What one trial leaves behind; a trial's record and its metrics are made from it."""
+"""The log of one trial, from which its record and its metrics are made."""
 
 from msgspec import Struct
 
@@ -6,7 +6,7 @@ from hthor.types import Event
 
 
 class Fault(Struct, frozen=True, kw_only=True):
-    """An agent failed at ``tick``, and the trial went on without it. ``detail`` is its traceback or what it did."""
+    """The failure of an agent at ``tick``; the trial went on without it. ``detail`` has its traceback or its error."""
 
     seat: str
     kind: str
@@ -15,20 +15,20 @@ class Fault(Struct, frozen=True, kw_only=True):
 
 
 class EpisodeLog(Struct, frozen=True, kw_only=True):
-    """What one trial leaves behind.
+    """The log of one trial.
 
     Attributes:
         events: what happened, in order; docs/logs.md lists the kinds of events.
-        paths: for each seat and every `rules.LOG_EVERY_TICKS` ticks from tick 0, (x, y, yaw) in the house's frame, in
-            whole millimetres and milliradians.
+        paths: for each seat, (x, y, yaw) every `rules.LOG_EVERY_TICKS` ticks from tick 0, house frame, in whole
+            millimetres and milliradians.
         ticks: the trial's length.
-        met: the goal was met.
-        trust: the participant's rating, None without a robot.
+        met: whether the goal was met.
+        trust: the participant's rating of trust, 1 to 7; None without a robot.
         faults: failures of agents.
-        progress: the share of the goal that is met in the end, from 0 to 1; None where the task kind counts no parts.
-            Whenever it changes there is an event "progress" with its ``value``.
+        progress: the share of the goal that is met at the end, from 0 to 1; None for task kinds without partial goals.
+            Every change of it is an event "progress" with the new ``value``.
         idle: for how many ticks each seat's body carried out no motion, or only waited.
-        journal: what the human's recorder and model add: stick, pitch, attempts, glimpses and choices, as
+        journal: events from the human's recorder and model: stick, pitch, attempts, glimpses and choices, as
             `hthor.humans.core.behaviour_log` lists them.
     """
 

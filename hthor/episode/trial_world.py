@@ -1,4 +1,4 @@
-"""The world's side of a trial: what an `Episode` asks of the world that it runs in."""
+"""The interface of the world that an `Episode` runs in."""
 
 from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
@@ -8,7 +8,7 @@ from hthor.types.sensors import RgbImage
 
 
 class TrialWorld(Protocol):
-    """A house with bodies in it, which moves on tick by tick; `hthor.world.World` is one.
+    """A house with bodies in it, simulated tick by tick; `hthor.world.World` implements it.
 
     A seat names a body: "human", "robot", "robot2" ... Time is counted in ticks of `rules.TICK_S` seconds from `reset`.
     Positions are in metres and angles in radians, in the house's frame: x and y on the floor, z up, yaw
@@ -32,10 +32,10 @@ class TrialWorld(Protocol):
         """Ticks since `reset`."""
 
     def reset(self, task: TaskSpec, seed: int = 0) -> None:
-        """Go back to tick 0 of a task: its objects placed, its bodies at their start poses.
+        """Begin a task at tick 0, with its objects in place and all bodies at their start poses.
 
         Args:
-            task: of this world's house and objects.
+            task: a task in this world's house, with this world's objects.
             seed: the root of all random draws of the world, such as detection errors.
         """
 
@@ -46,13 +46,13 @@ class TrialWorld(Protocol):
         """Begin a motion of an idle body. A motion that is impossible ends at once; `outcome` says why."""
 
     def outcome(self, seat: str) -> Outcome | None:
-        """How the body's last motion ended; None before the first and during one."""
+        """How the body's last motion ended; None before the first motion and during a motion."""
 
     def advance(self) -> tuple[Event, ...]:
-        """Move on by one tick, and return what happened in it."""
+        """Advance by one tick, and return the events of this tick."""
 
     def pose(self, seat: str) -> Pose:
-        """Where the body is, and where it looks [m, rad]."""
+        """The position [m] and heading of the body, and the pitch of its camera [rad]."""
 
     def holding(self, seat: str) -> str:
         """The id of the object in the body's hands, empty for none."""
@@ -70,4 +70,4 @@ class TrialWorld(Protocol):
         """The true state of the world at this tick, by which the goal is judged."""
 
     def frame(self, seat: str) -> Callable[[], RgbImage]:
-        """What the body's camera shows at this tick: draws the picture, (height, width, 3) uint8, when called."""
+        """A function that draws the picture of the body's camera at this tick, (height, width, 3) uint8."""
