@@ -1,4 +1,4 @@
-"""Plane geometry on plain floats: angles, polygons, turned rectangles."""
+"""Plane geometry on Python floats: angles, polygons, turned rectangles."""
 
 import itertools
 import math
@@ -20,13 +20,13 @@ def turn(vector: Vec2, yaw: float) -> Vec2:
 
 
 def to_house(local: Vec3, centre: Vec3, yaw: float) -> Vec3:
-    """A point of a thing's local frame, in the house frame."""
+    """The house-frame coordinates of a point that is given in a thing's local frame."""
     x, y = turn((local[0], local[1]), yaw)
     return (centre[0] + x, centre[1] + y, centre[2] + local[2])
 
 
 def to_local(point: Vec3, centre: Vec3, yaw: float) -> Vec3:
-    """A point of the house frame, in a thing's local frame."""
+    """The local-frame coordinates of a point that is given in the house frame."""
     x, y = turn((point[0] - centre[0], point[1] - centre[1]), -yaw)
     return (x, y, point[2] - centre[2])
 
@@ -69,13 +69,13 @@ def rectangle(centre: Vec2, size: Vec2, yaw: float) -> tuple[Vec2, Vec2, Vec2, V
 
 
 def distance_to_rectangle(point: Vec2, centre: Vec2, size: Vec2, yaw: float) -> float:
-    """Distance [m] from a point to a turned rectangle, zero inside."""
+    """Distance [m] from a point to a turned rectangle, 0 for a point inside."""
     x, y = turn((point[0] - centre[0], point[1] - centre[1]), -yaw)
     return math.hypot(max(abs(x) - size[0] / 2, 0.0), max(abs(y) - size[1] / 2, 0.0))
 
 
 def rectangular_strips(polygon: Sequence[Vec2]) -> Iterator[tuple[float, float, float, float]]:
-    """A polygon as rectangles x0, y0, x1, y1 [m], from south to north; exact where all corners are square."""
+    """Rectangles x0, y0, x1, y1 [m] that make up a polygon, from south to north; exact if all corners are square."""
     xs, ys = (sorted({round(corner[axis], 4) for corner in polygon}) for axis in (0, 1))
     for y0, y1 in itertools.pairwise(ys):
         begin = None

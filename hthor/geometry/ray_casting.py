@@ -1,7 +1,7 @@
-"""Line of sight through boxes, compiled.
+"""Compiled test whether boxes block a line of sight.
 
-Every solid is treated as an oriented box, a cylinder or a sphere as the box around it, so round things hide slightly
-more than they should. Arrays have the layout of MuJoCo's geoms, so that its own arrays can be passed.
+Every solid is treated as its oriented bounding box, so cylinders and spheres hide slightly more than they should.
+Arrays have the layout of MuJoCo's geoms, so that MuJoCo's own arrays can be passed.
 """
 
 import numba
@@ -25,12 +25,12 @@ def is_blocked(
     skip0: int,
     skip1: int,
 ) -> bool:
-    """Whether the segment from ``eye`` to ``point`` (3,) [m] meets any box of ``ids``.
+    """Whether the segment from ``eye`` to ``point``, (3,) [m], meets any of the boxes ``ids``.
 
     Args:
         half: (N, 3) half extents [m]. pos: (N, 3) centres [m]. mat: (N, 9) row-major rotations, box to house frame.
-        radius: (N,) bounding radii [m]. ids: indices to test. skip0, skip1: boxes in [skip0, skip1) are left out,
-            those of the target itself.
+        radius: (N,) bounding radii [m]. ids: indices to test. skip0, skip1: the target's own boxes, those in
+            [skip0, skip1), are left out.
     """
     ox, oy, oz = eye[0], eye[1], eye[2]
     ux, uy, uz = point[0] - ox, point[1] - oy, point[2] - oz
