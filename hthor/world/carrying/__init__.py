@@ -1,1 +1,1 @@
-"""Two bodies that carry one trunk."""
+"""Several bodies that carry one thing, such as a trunk, together."""

@@ -1,31 +1,31 @@
-"""Rules of carrying together: what is too heavy for one body is taken by its handles and lifted by several.
+"""Rules of joint carrying: several bodies lift a thing that is too heavy for one of them by its handles.
 
 A thing with handles (`hthor.catalog.Kind.handles`, such as a trunk) has one at either end of its length. A body that is
-not strong enough to take it in hand takes hold of a handle instead, with the same action:
+not strong enough to take the thing in hand takes hold of a handle instead, with the same action:
 
-- ``Pick(object=...)`` takes hold of the free handle nearest to the body. The usual rules hold (the body can pick, its
-  hands are empty, the handle is in reach and in front, the thing in sight), except that weight does not matter. The
+- ``Pick(object=...)`` takes hold of the free handle nearest to the body. The usual rules apply (the body can pick, its
+  hands are empty, the handle is in reach and in front, the thing in sight), but the weight does not matter, and the
   body must not stand on the thing. The outcome is ok, the event is ``held``, ``Observation.holding`` the thing's id.
-- By a handle, a body lifts `rules.HANDLE_STRENGTH` times its ``strength``. When all bearers together lift at least its
-  mass, it rises: the event ``lifted`` names its ``bearers``. Until then it stays on the floor, and a bearer may turn,
-  wait, or let go; a ``Move`` is refused and says how much is missing.
-- While it is up, a ``Move`` of any bearer carries it along. The others are drawn along by their handle, no faster than
-  they walk, whatever else they do: one leads and the others wait (or turn, or look around). If several move in the same
-  tick, the first in the order of the seats leads, the person before all robots. Everyone goes at `rules.HANDLE_PACE`
-  times the speed of the slowest.
+- By a handle, a body lifts `rules.HANDLE_STRENGTH` times its ``strength``. When all bearers together can lift its mass,
+  the thing rises: the event ``lifted`` names its ``bearers``. Until then it stays on the floor, and a bearer may turn,
+  wait, or let go; a ``Move`` is refused, and the outcome's reason states the mass and what the bearers can lift.
+- While the thing is up, a ``Move`` of any bearer carries it along. The other bearers are drawn along by their handles,
+  no faster than they walk, while they wait, turn or look around. If several bearers move in the same tick, the first
+  in the order of the seats leads, the person before all robots. All bearers move at `rules.HANDLE_PACE` times the speed
+  of the slowest.
 - Every body stays on its own free floor, and the thing, as a rectangle, touches no wall, furniture, shut door or other
-  body. A step that would tear it from a hand (farther from a handle than that body's reach) or push it into something
-  is not taken: the move ends ``blocked``, as it does for a body alone.
-- ``Drop()`` by any bearer lets go. If the others are too weak, the thing is put down there and nobody holds it: event
-  ``lowered``. Before it was up, only that body lets go: event ``released``. ``Place(on="floor")`` does the same; it
-  cannot be placed on furniture.
+  body. A step that would take a handle out of its bearer's reach or push the thing into an obstacle is not taken: the
+  move ends ``blocked``, as it does for a body alone.
+- ``Drop()`` by any bearer lets go. If the other bearers are too weak, the thing is put down where it is and nobody
+  holds it: event ``lowered``. If it was not up yet, only that body lets go: event ``released``. ``Place(on="floor")``
+  does the same; the thing cannot be placed on furniture.
 
-In the truth and to detectors, ``bearers`` names all who hold it, in the order in which they took hold; ``held_by`` is
-empty while it is on the floor and names the first bearer while it is up.
+In true states and detections, ``bearers`` names all seats that hold the thing, in the order in which they took hold;
+``held_by`` is empty while the thing is on the floor and names the first bearer while it is up.
 
-It follows like a trailer: a leader who pulls gets it round corners, one who pushes moves it straight ahead only. The
-body that is to lead should take the handle at the end where the route begins, and where possible use floor on which a
-disc of 0.40 m radius has room.
+The thing follows like a trailer: a leader who pulls can take it round corners, one who pushes moves it straight ahead
+only. The leader should take the handle at the end where the route begins and, where possible, use floor on which a disc
+of 0.40 m radius has room.
 """
 
 import math
@@ -51,11 +51,11 @@ from hthor.world.state.objects import Objects
 from hthor.world.state.overlap_test import OverlapTest
 
 _LOWER_STEP_M = 0.01
-"""[m] Steps in which a free height is sought for what is put down, from the floor up."""
+"""[m] Steps, from the floor up, in which the search for a free height for a lowered thing proceeds."""
 _STANDING_ON_M = 0.05
-"""[m] by which a body's disc may overlap a thing on the floor that it takes hold of."""
+"""[m] by which a body's disc may overlap a thing on the floor when it takes hold of a handle."""
 _CARRY_HEIGHT_M = 1.0
-"""[m] What begins higher above the floor is not in the way of a carried thing."""
+"""[m] Obstacles that begin higher above the floor are not in the way of a carried thing."""
 EventList = tuple[tuple[str, dict[str, Any]], ...]
 """Kinds of events with their data."""
 
@@ -76,17 +76,17 @@ class JointCarrying:
         self._loads.clear()
 
     def of(self, seat: BodyState) -> TrailerLoad | None:
-        """What ``seat`` holds by a handle; None for nothing."""
+        """The thing that ``seat`` holds by a handle; None for none."""
         load = self._loads.get(seat.holding)
         return load if load is not None and seat.name in load.ends else None
 
     @staticmethod
     def takes(seat: BodyState, item: MovableObject) -> bool:
-        """Whether ``seat`` can take the object only by a handle: it is too heavy, or others hold it by one."""
+        """Whether ``seat`` can take the object only by a handle: it is too heavy, or others hold it by a handle."""
         return catalog.kind(item.kind).handles and (item.mass > seat.spec.strength or bool(item.bearers))
 
     def refusal(self, seat: BodyState, item: MovableObject) -> str:
-        """Why ``seat`` cannot take hold of it, empty when it can."""
+        """Why ``seat`` cannot take hold of the thing, empty when it can."""
         load = self._loads.get(item.id)
         if load is not None and len(load.ends) == 2:
             return f"both handles of {item.id} are taken, by {' and '.join(load.ends)}"
@@ -97,7 +97,7 @@ class JointCarrying:
         return out_of_reach(seat, f"the handle of {item.id}", self._handle(seat, item)[1])
 
     def stuck(self, seat: BodyState) -> str:
-        """Why ``seat`` cannot move because of what it holds; empty when it can."""
+        """Why ``seat`` cannot move because of the thing that it holds; empty when it can."""
         load = self.of(seat)
         if load is None or load.up:
             return ""
@@ -146,7 +146,7 @@ class JointCarrying:
         return np.concatenate((self._fixed, np.array(shut))) if shut else self._fixed
 
     def _lower(self, load: TrailerLoad) -> None:
-        """Put it down where it is, on the floor or on what lies there."""
+        """Put the thing down where it is, on the floor or on objects that lie there."""
         item, top = load.item, load.z
         low = item.size[2] / 2 + _LOWER_STEP_M / 10
         for step in range(math.ceil((top - low) / _LOWER_STEP_M)):
@@ -171,7 +171,7 @@ class CarryMotion:
     """Moving with a load along a straight line, as far as the house, the other bodies and the load allow.
 
     Args:
-        culprit: names what blocks a place, for the outcome.
+        culprit: returns the name of the obstacle at a place, for the outcome.
     """
 
     def __init__(
@@ -199,7 +199,7 @@ class CarryMotion:
         return outcome, (Event(tick=tick, seat=self._seat.name, kind=kind, data={"by": by}),)
 
     def _go(self, dx: float, dy: float, step: float) -> bool:
-        """Straight on, or else along one axis, unless hardly anything of the step is along it."""
+        """Go straight on, or else along one axis, unless the step is nearly perpendicular to it."""
         ways = ((dx, dy), *(way for way in ((dx, 0.0), (0.0, dy)) if abs(way[0] + way[1]) > SLIDE_SHARE_MIN * step))
         return any(self._load.lead(self._seat, *way) for way in ways)
 

@@ -1,4 +1,4 @@
-"""A thing held by its handles: who holds which end, where it is, and what the bearers lift together."""
+"""A thing held by its handles: the bearer at each end, its pose, and the mass that the bearers can lift."""
 
 import math
 from collections.abc import Sequence
@@ -15,14 +15,14 @@ from hthor.world.state.body_state import BodyState
 from hthor.world.state.movable_object import MovableObject
 
 LIFT_M = 0.30
-"""[m] Height of the underside of what is carried; our choice."""
+"""[m] Height of the underside of a carried thing; our choice."""
 
 
 class Load:
-    """One thing with handles, from when the first body takes hold of it.
+    """One thing with handles that at least one body holds.
 
     Attributes:
-        ends: seat -> +1 or -1, the end that it holds, in the order in which they took hold.
+        ends: seat -> +1 or -1, the end that it holds, in the order in which the seats took hold.
         state: (3,) [m, rad] x, y and yaw. z: [m] height of its middle. half: (2,) [m] half its width and depth.
         up: whether it is off the floor.
     """
@@ -38,17 +38,17 @@ class Load:
 
     @property
     def bearers(self) -> tuple[BodyState, ...]:
-        """Who holds it, in the order in which they took hold."""
+        """The bodies that hold the thing, in the order in which they took hold."""
         return tuple(self._named[name] for name in self.ends)
 
     @property
     def lifted(self) -> float:
-        """[kg] that its bearers lift together."""
+        """[kg] The mass that its bearers together can lift."""
         return math.fsum(rules.HANDLE_STRENGTH * seat.spec.strength for seat in self.bearers)
 
     @property
     def holders(self) -> str:
-        """The seats that hold it, with the verb, for messages."""
+        """The seats that hold the thing, followed by the verb "lift", for messages."""
         return f"{' and '.join(self.ends)} {'lifts' if len(self.ends) == 1 else 'together lift'}"
 
     @property
@@ -57,12 +57,12 @@ class Load:
         return rules.HANDLE_PACE * min(seat.spec.speed for seat in self.bearers)
 
     def handle(self, end: int) -> Vec3:
-        """Where the handle of that end is [m]."""
+        """Position of the handle at that end [m]."""
         x, y = turn((end * float(self.half[0]), 0.0), float(self.state[2]))
         return (float(self.state[0]) + x, float(self.state[1]) + y, self.z)
 
     def pose(self) -> QPose:
-        """Its pose, for the engine."""
+        """The thing's pose, for the engine."""
         return (float(self.state[0]), float(self.state[1]), self.z, *geoms.quaternion(float(self.state[2])))
 
     def follows(self, seat: BodyState, tick: int) -> bool:

@@ -6,11 +6,11 @@ Seen from above, the thing is a rectangle with a handle at either end; each bear
             arm  handle   handle  arm
 
 Like a trailer on a drawbar, the thing has no drive of its own. Each step is solved by position-based dynamics (Müller
-et al. 2007, "Position based dynamics"): the handles are drawn towards the bearers until no arm is longer than allowed,
-and the rectangle is pushed out of walls and bodies; every correction is the smallest shift and turn of a uniform plate
-that meets it (`hthor.world.carrying.trailer_kernel`). Then the followers walk after their handles, along the path that
-the handle took, so that they come round the same corners. A solved step is taken only if it leaves the thing in no wall
-and no body, and no arm longer than its body's reach.
+et al. 2007, "Position based dynamics"): the handles are pulled towards the bearers until no arm is longer than allowed,
+and the rectangle is pushed out of walls and bodies. Each correction is the smallest shift and turn of a uniform plate
+that satisfies its constraint (`hthor.world.carrying.trailer_kernel`). Then each follower walks after its handle, along
+the handle's path, and so goes round the same corners. A solved step is taken only if the thing then overlaps no wall
+and no body, and no arm is longer than its body's reach.
 
 All lengths, angles and counts below are our choice.
 """
@@ -30,28 +30,28 @@ from hthor.world.state.body_state import BodyState
 from hthor.world.state.movable_object import MovableObject
 
 ARM_M = 0.30
-"""[m] from a bearer's side to the handle it carries; an arm stretches further only for a while."""
+"""[m] from a bearer's side to its handle; an arm is longer than this only for a short time."""
 ELBOW_M = 0.03
 """[m] kept free between a bearer's disc and the thing."""
 TOUCH_M = 0.002
-"""[m] Overlaps up to this depth are ignored: what the solver leaves of a contact."""
+"""[m] Overlaps up to this depth are ignored because the solver does not remove them completely."""
 _ITERATIONS = 4
-"""How often in a step the thing and the followers are solved in turn."""
+"""How many times per step the solver alternates between the thing and the followers."""
 _LEADER_PULL_M, _FOLLOWER_PULL_M = 0.005, 0.001
 """[m] The most by which one pull moves a leader's or a follower's handle, so that the thing slides along obstacles."""
 _STEP_SHARES = (1.0, 0.5, 0.25, 0.0)
-"""Shares of a step that a leader tries in turn; with the last one only the others catch up."""
+"""Shares of a step that a leader tries in turn; with the last share only the followers move, to catch up."""
 _STEP_MAX_M = 0.3
-"""[m] Nothing goes farther in one step; obstacles beyond are left out of it."""
+"""[m] The longest motion in one step; obstacles farther away are ignored in that step."""
 _IN_WAY_GAP_M = 0.06
 """[m] A body farther than this from the leader or the thing is not named as being in the way."""
 _PATH_RESOLUTION_M = 1e-4
-"""[m] Points of a path that are closer than this are one point."""
+"""[m] Points of a path that are closer together than this count as one point."""
 _STANDSTILL_M = 0.002
-"""[m] What moves less in a tick stands still."""
+"""[m] A thing that moves less than this in a tick counts as standing still."""
 _STUCK_STRETCH_M, _STEER_GAIN_M = 0.05, 0.008
-"""[m] A thing that stands still while the leader's path to it is this much too long is stuck; then the pull is turned
-aside if that moves the thing by the second length."""
+"""[m] A thing is stuck if it stands still while the leader's path to it is too long by the first length; then the pull
+is turned aside if that moves the thing by the second length."""
 _STEER_ANGLES = tuple(math.radians(angle) for angle in (30.0, -30.0, 60.0, -60.0, 90.0, -90.0))
 """[rad] by which the pull on a stuck thing is turned aside, tried in this order."""
 _STEER_TICKS = 8
@@ -64,7 +64,7 @@ _Step = tuple[Floats, dict[str, Vec2], dict[str, tuple[Vec2, ...]]]
 
 
 class TrailerLoad(Load):
-    """A load that its bearers move together.
+    """A thing that its bearers carry together.
 
     Args:
         obstacles: returns the rectangles (N, 5) in its way now, see `hthor.world.carrying.trailer_kernel`.
@@ -96,7 +96,7 @@ class TrailerLoad(Load):
         return step is not None and self._take_step(*step, obstacles, leader)
 
     def body_in_the_way(self, leader: BodyState) -> str:
-        """The seat of a body that is too close to the leader, or of another that is too close to the thing."""
+        """The seat of a body too close to the leader or, unless it is a bearer, to the thing; empty for none."""
         for other in self.seats:
             apart = math.dist((leader.pose.x, leader.pose.y), (other.pose.x, other.pose.y))
             disc = np.array((other.pose.x, other.pose.y, other.spec.radius + _IN_WAY_GAP_M))
@@ -106,7 +106,7 @@ class TrailerLoad(Load):
         return ""
 
     def _step(self, leader: BodyState, by: Vec2, steer: float, obstacles: Floats, strangers: Floats) -> _Step | None:
-        """The largest share of a step that ends validly; None if there is none."""
+        """The solution with the largest share of a step that is valid; None if no share is."""
         before = trailer_kernel.deepest_contacts(self.state, self.half, obstacles, strangers)
         for share in _STEP_SHARES:
             to = (leader.pose.x + share * by[0], leader.pose.y + share * by[1])
@@ -121,7 +121,7 @@ class TrailerLoad(Load):
         return None
 
     def _displacement(self, step: _Step) -> float:
-        """How far the thing moves in a step [m], its turn counted at the ends."""
+        """How far the thing's ends move in a step [m], by its shift and its turn."""
         (x, y, yaw), now = step[0], self.state
         return math.hypot(x - now[0], y - now[1]) + float(self.half[0] * abs(yaw - now[2]))
 
@@ -156,7 +156,7 @@ class TrailerLoad(Load):
     def _pull_points(
         self, state: Floats, places: dict[str, Vec2], obstacles: Floats, leader: BodyState, steer: float
     ) -> tuple[Floats, Floats]:
-        """The point that each bearer pulls its handle towards, round corners, and the arm length left there [m]."""
+        """The point towards which each bearer pulls its handle round corners, and the arm length left there [m]."""
         hands, ropes = [], []
         for seat in self.bearers:
             way = self._path_to(seat, state, places[seat.name])
@@ -170,7 +170,7 @@ class TrailerLoad(Load):
         return np.array(hands), np.array(ropes)
 
     def _follow(self, seat: BodyState, state: Floats, places: dict[str, Vec2], obstacles: Floats) -> Vec2:
-        """Where a follower goes when its handle is drawn away from it, or the thing is pushed into it."""
+        """The place to which a follower goes when its handle moves away from it or the thing is pushed into it."""
         here = places[seat.name]
         way = self._path_to(seat, state, here)[::-1]
         aim = trailer_kernel.aim_index(way, obstacles)
@@ -199,7 +199,7 @@ class TrailerLoad(Load):
         return (float(state[0]) + x, float(state[1]) + y)
 
     def _path_to(self, seat: BodyState, state: Floats, place: Vec2) -> tuple[Vec2, ...]:
-        """From the handle to its bearer, along the path that one took after the other."""
+        """The path from the handle to its bearer, along which one of the two has followed the other."""
         return (self._handle(seat, state), *self._paths.get(seat.name, ()), place)
 
     def _path(self, seat: BodyState, state: Floats, place: Vec2) -> tuple[Vec2, ...]:
@@ -212,7 +212,7 @@ class TrailerLoad(Load):
     def _is_valid(
         self, state: Floats, places: dict[str, Vec2], paths: dict[str, tuple[Vec2, ...]], obstacles: Floats
     ) -> bool:
-        """Whether every arm is within reach, and the thing is in no bearer more deeply than before."""
+        """Whether every arm is within reach, and the thing overlaps no bearer more deeply than before."""
         for seat in self.bearers:
             place = places[seat.name]
             way = (self._handle(seat, state), *paths[seat.name], place)
@@ -232,7 +232,7 @@ class TrailerLoad(Load):
         obstacles: Floats,
         leader: BodyState,
     ) -> bool:
-        """Take the step, unless hardly anything moves by it."""
+        """Take the step unless it moves almost nothing; returns whether it was taken."""
         ways_gone = (math.dist(places[seat.name], (seat.pose.x, seat.pose.y)) for seat in self.bearers)
         if max(self._displacement((state, places, paths)), *ways_gone) <= _STANDSTILL_M:
             return False
@@ -253,7 +253,7 @@ class TrailerLoad(Load):
         return seat.space.segment_free(here, to) and self._clear(seat, here, to, {})
 
     def _clear(self, seat: BodyState, here: Vec2, to: Vec2, places: dict[str, Vec2]) -> bool:
-        """Whether a step comes too close to no other body; moving away from one is always allowed."""
+        """Whether a step stays clear of all other bodies; moving away from a body is always allowed."""
         for other in self.seats:
             if other is not seat:
                 at = places.get(other.name, (other.pose.x, other.pose.y))

@@ -1,13 +1,13 @@
 """A rectangle pulled by its handles between obstacles in the plane: position-based dynamics, compiled.
 
-Also the paths that a bearer or the thing follows, as points: where to head for, how long they are.
+Also the paths, as lists of points, that bearers follow: the point to head for, and the length.
 
 A state is ``(x, y, yaw)`` [m, rad] of a rectangle with half extents ``half`` [m]. Obstacles are rectangles, rows
-``(x, y, half width, half depth, yaw)``, and discs, rows ``(x, y, radius)``. Constraints are met one after another, a
-few times over, each by the smallest shift and turn of a thin uniform plate.
+``(x, y, half width, half depth, yaw)``, and discs, rows ``(x, y, radius)``. Constraints are satisfied one
+after another, in several rounds, each by the smallest shift and turn of a thin uniform plate.
 
 For a plate of mass m and half extents a, b, the moment of inertia is m (a² + b²) / 3. A displacement of length l along
-the unit vector n, applied at arm r = p × n from the centre, is met by the impulse that shifts the centre by
+the unit vector n, applied at arm r = p × n from the centre, results from the impulse that shifts the centre by
 l / (1 + r² k) and turns it by r k l / (1 + r² k), with k = 3 / (a² + b²); see `_displace`.
 """
 
@@ -23,15 +23,15 @@ from hthor.geometry.ray_casting import Floats
 from hthor.types import Vec2
 
 _END_SLACK_M, _TOLERANCE_M = 0.005, 1e-6
-"""[m] A line may start or end this much closer to a rectangle than its margin; errors below the second count as 0."""
+"""[m] How much closer than its margin to a rectangle a line may start or end; the largest error that counts as 0."""
 _PULL_ROUNDS, _PUSH_ROUNDS, _WALL_PASSES = 12, 6, 2
-"""Rounds of pulling and pushing it out of obstacles, then of pushing alone; passes over the walls in each round."""
+"""Rounds of pulling the thing and pushing it out of obstacles; rounds of pushing only; passes over walls per round."""
 MARGINS_M = (0.25, 0.15, 0.05)
-"""[m] clear of corners that a follower tries to stay, the largest first; our choice."""
+"""[m] Clearances from corners that a follower tries to keep, the largest first; our choice."""
 AHEAD_M = 0.25
 """[m] A point nearer than this gives no useful direction."""
 TAUT_MARGIN_M = 0.05
-"""[m] clear of corners at which a path is pulled taut."""
+"""[m] Clearance from corners when a path is pulled taut."""
 
 
 @numba.njit(cache=True)
@@ -102,7 +102,7 @@ def rectangle_contact(state: Floats, half: Floats, row: Floats) -> Any:
 
 @numba.njit(cache=True)
 def disc_contact(state: Floats, half: Floats, disc: Floats) -> Any:
-    """As `rectangle_contact`, for a disc."""
+    """The same as `rectangle_contact`, for the overlap with a disc."""
     cos, sin = math.cos(state[2]), math.sin(state[2])
     dx, dy = disc[0] - state[0], disc[1] - state[1]
     u, v = cos * dx + sin * dy, cos * dy - sin * dx
@@ -113,7 +113,7 @@ def disc_contact(state: Floats, half: Floats, disc: Floats) -> Any:
         return 0.0, 0.0, 0.0, 0.0, 0.0
     if gap > 1e-9:
         return disc[2] - gap, (px - disc[0]) / gap, (py - disc[1]) / gap, px, py
-    if half[0] - abs(u) < half[1] - abs(v):  # its middle is inside: out by the nearer side
+    if half[0] - abs(u) < half[1] - abs(v):  # its middle is inside: push it out at the nearer side
         way = -1.0 if u > 0.0 else 1.0
         return disc[2] + half[0] - abs(u), way * cos, way * sin, px, py
     way = -1.0 if v > 0.0 else 1.0
@@ -138,9 +138,9 @@ def relax(
     """The rectangle's state after it was pulled to the hands and pushed out of all obstacles.
 
     Args:
-        ends: (N,) positions of the handles along its length [m]. hands: (N, 2) [m] the point that each is pulled to.
-        ropes: (N,) [m] how far each hand may be from its handle. pulls: (N,) [m] the most by which each pulls at a
-            time, so that the rectangle slides along obstacles.
+        ends: (N,) positions of the handles along its length [m]. hands: (N, 2) [m] the points that they are pulled to.
+        ropes: (N,) [m] how far each hand may be from its handle. pulls: (N,) [m] the most by which one pull moves each
+            handle, so that the rectangle slides along obstacles.
         rows: (M, 5) rectangles, discs: (K, 3) discs in the way.
     """
     out = state.copy()
@@ -190,7 +190,7 @@ def nearby_rectangles(state: Floats, reach: float, rows: Floats) -> Any:
 def is_line_blocked(ax: float, ay: float, bx: float, by: float, rows: Floats, margin: float) -> bool:
     """Whether a line between two points [m] comes nearer than ``margin`` [m] to any rectangle.
 
-    Coming as near as one of its own ends does not count.
+    If an end of the line is nearer than that to a rectangle, its distance is the margin for this rectangle.
     """
     for k in range(len(rows)):
         cx, cy, hw, hd, yaw = rows[k]
