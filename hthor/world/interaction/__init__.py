@@ -1,1 +1,1 @@
-"""Picking, placing and opening: what actions do to the scene."""
+"""The effects of actions on the scene: picking, placing and opening."""

@@ -1,8 +1,8 @@
-"""Rules of the hand: what a body may pick, place and drop, and the reasons for refusals.
+"""Rules of the hand: which objects a body may pick, place and drop, and the reasons for refusals.
 
-The rules are checked when a motion starts and again when it ends; it takes effect only then. A hand reaches what lies
-in front of the body (within a quarter turn of its heading), within its reach and height, in a straight line of sight of
-its eye; the camera need not point there. For opening and closing see `hthor.world.interaction.opening`.
+The rules are checked when a motion starts and again when it ends, which is when it takes effect. A hand reaches points
+in front of the body (within a quarter turn of its heading), within its reach and heights, and in a straight line of
+sight from its eye; the camera need not point there. For opening and closing see `hthor.world.interaction.opening`.
 """
 
 from __future__ import annotations
@@ -33,12 +33,12 @@ HandAction = Pick | Place | Drop | Open | Close
 
 _EVENT_KINDS = {"pick": "picked", "place": "placed", "drop": "dropped", "open": "opened", "close": "closed"}
 _SPOT_TRIES = 60
-"""Free spots of one surface that are tried before it counts as out of sight."""
+"""How many free spots of one surface are tried before the surface counts as out of sight."""
 _NO_POSE: QPose = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
 
 
 class HandMotion:
-    """A hand at work, for its body's ``handling`` time."""
+    """A motion of the hand, which lasts the body's ``handling`` time."""
 
     def __init__(self, seat: BodyState, motion: HandAction, hands: Manipulation) -> None:
         self._seat, self._motion, self._hands = seat, motion, hands
@@ -46,7 +46,7 @@ class HandMotion:
         hands.begin(seat, motion)
 
     def advance(self, tick: int) -> TickResult:
-        """Carry it on by one tick; it takes effect at the last one."""
+        """Carry the motion on by one tick; it takes effect at its last tick."""
         self._done += 1
         self._hands.during(self._motion, self._done / self._ticks)
         if self._done < self._ticks:
@@ -62,7 +62,7 @@ class HandMotion:
 
 
 class Manipulation:
-    """What bodies can do to the things of one world."""
+    """Picks, places and drops objects, and opens and closes things, for the bodies of one world."""
 
     def __init__(
         self,
@@ -81,12 +81,12 @@ class Manipulation:
         self._news: EventList = ()
 
     def news(self) -> EventList:
-        """The events of the last motion that ended, if it has any of its own; returned once."""
+        """The additional events of the motion that ended last, if any; each is returned only once."""
         news, self._news = self._news, ()
         return news
 
     def refusal(self, seat: BodyState, motion: HandAction) -> str:
-        """Why ``seat`` cannot do it now, empty when it can."""
+        """Why ``seat`` cannot carry out the motion now, empty when it can."""
         if isinstance(motion, (Open, Close)):
             return self._door_handling.refusal(seat, motion)
         if isinstance(motion, Pick):
@@ -96,17 +96,17 @@ class Manipulation:
         return self._drop(seat) if isinstance(motion, Drop) else self._place(seat, motion)[0]
 
     def begin(self, seat: BodyState, motion: HandAction) -> None:
-        """Take hold of a door."""
+        """Begin the motion: take hold of a door, if it opens or closes one."""
         if isinstance(motion, (Open, Close)):
             self._door_handling.begin(seat, motion)
 
     def during(self, motion: HandAction, share: float) -> None:
-        """``share`` of the motion's time has passed: doors swing along."""
+        """Move doors to where they are after ``share`` of the motion's time."""
         if isinstance(motion, (Open, Close)):
             self._door_handling.during(motion, share)
 
     def finish(self, seat: BodyState, motion: HandAction) -> str:
-        """Do it, unless a rule forbids it by now; returns the reason then."""
+        """Let the motion take effect, or return the reason if a rule now forbids it."""
         if isinstance(motion, (Open, Close)):
             return self._door_handling.finish(motion)
         if isinstance(motion, Pick):
@@ -131,8 +131,8 @@ class Manipulation:
         return self._out_of_hand(seat, item)
 
     def out_of_hand(self, seat: BodyState, id: str) -> str:
-        """Why ``seat``, where it stands and with an empty hand, could not pick an object up, or get at a thing's door;
-        empty when it could, and for what has neither.
+        """Why ``seat``, from its place and with an empty hand, could not pick up an object or reach a thing's door;
+        empty when it could, or when ``id`` is neither an object nor a thing with a door.
         """
         item = self._objects.get(id)
         if item is not None:
@@ -163,11 +163,11 @@ class Manipulation:
         assert item is not None, "what is held is in the world"
         return item
 
-    # --------------------------------------------------------------------------------------------- what several hold
+    # --------------------------------------------------------------------------------------------- joint carrying
 
     @staticmethod
     def _refused(seat: BodyState, motion: Place | Drop) -> str:
-        """What is held by its handles can only be put on the floor below it."""
+        """Why a thing held by its handles cannot be put there: it can only be put on the floor below it."""
         if isinstance(motion, Drop) or motion.on == FLOOR:
             return ""
         return f"{seat.holding} is held by its handles; drop it, or place it on '{FLOOR}': it is put down where it is"
@@ -210,8 +210,8 @@ class Manipulation:
     def _accessible(
         self, motion: Place, surfaces: tuple[support_surfaces.SupportSurface, ...]
     ) -> tuple[support_surfaces.SupportSurface, ...]:
-        """Those that are not behind a closed door; of a thing that one puts things *on*, and no position is given for,
-        those in the open before those in its drawers.
+        """The surfaces that are not behind a closed door. If no position is given, a thing's
+        open surfaces are preferred to its drawers where objects are put *on* it.
         """
         bare = tuple(place for place in surfaces if not place.inside)
         leaf = self._doors.get(motion.on)
@@ -223,10 +223,10 @@ class Manipulation:
     def _spot(
         self, seat: BodyState, item: MovableObject, motion: Place, surfaces: tuple[support_surfaces.SupportSurface, ...]
     ) -> tuple[str, QPose]:
-        """The place nearest to the wanted position, or to the hand, on any of the surfaces; or why there is none.
+        """The free place nearest to the wanted position, or to the hand, on any of the surfaces; or why there is none.
 
-        The object is laid along the thing, or across it where it does not fit along. A surface is in reach by its
-        nearest point, so the object's centre may lie its own half width farther.
+        The object lies along the thing, or across it if it does not fit along. A surface is in reach if its nearest
+        point is, so the object's centre may be farther away by half its width.
         """
         wanted = motion.position or held_pose(seat, item.size)[:3]
         nearest = min(surfaces, key=lambda place: place.distance(seat.pose.x, seat.pose.y))

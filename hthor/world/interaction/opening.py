@@ -1,7 +1,7 @@
 """Rules of opening and closing the doors and drawers of furniture, and doors in doorways.
 
-A hinged door passes through what is in its way; it only has to fit where it stops. A drawer carries what lies in it and
-needs its way free.
+A hinged door passes through obstacles and only needs free space where it stops. A drawer carries along the objects that
+lie in it and needs free space on its whole way.
 """
 
 import math
@@ -27,7 +27,7 @@ _DOOR_HANDLE_M = 1.0
 
 
 class DoorHandling:
-    """What bodies can open and close in one world."""
+    """Opens and closes the doors and drawers of one world."""
 
     def __init__(
         self,
@@ -42,7 +42,7 @@ class DoorHandling:
         self._doorways, self._seats = doorways, seats
 
     def refusal(self, seat: BodyState, motion: Open | Close) -> str:
-        """Why ``seat`` cannot do it now, empty when it can."""
+        """Why ``seat`` cannot carry out the motion now, empty when it can."""
         if "open" not in seat.spec.capabilities:
             return f"{seat.spec.title} cannot open or close things"
         leaf = self._doors.get(motion.thing) if isinstance(motion.thing, str) else None
@@ -56,7 +56,7 @@ class DoorHandling:
         return self._far(seat, leaf) or self._in_the_way(leaf, isinstance(motion, Open))
 
     def out_of_hand(self, seat: BodyState, id: str) -> str:
-        """Why ``seat`` could not get at a thing's door from where it stands; empty when it could, or there is none."""
+        """Why ``seat`` could not reach a thing's door from where it stands; empty when it could, or without a door."""
         leaf = self._doors.get(id)
         return "" if leaf is None else self._far(seat, leaf)
 
@@ -65,11 +65,11 @@ class DoorHandling:
         self._leaf(motion).user = seat.name
 
     def during(self, motion: Open | Close, share: float) -> None:
-        """``share`` of the motion's time has passed: doors swing along, drawers take along what lies in them."""
+        """Move doors, and drawers with the objects in them, to where they are after ``share`` of the motion's time."""
         self._move(self._leaf(motion), share if isinstance(motion, Open) else 1.0 - share)
 
     def finish(self, motion: Open | Close) -> str:
-        """Finish the motion; if something has got in the way, the door goes back and the reason is returned."""
+        """Finish the motion; if something is in the way by now, move the door back and return the reason."""
         leaf, wanted = self._leaf(motion), isinstance(motion, Open)
         leaf.user = ""
         reason = self._in_the_way(leaf, wanted)
@@ -87,7 +87,7 @@ class DoorHandling:
         self._rest(leaf, wanted)
 
     def release(self, seat: str) -> None:
-        """Return what a body was opening or closing to where it was."""
+        """Move the door that a body was opening or closing back to where it was."""
         for leaf in self._doors:
             if leaf.user == seat:
                 leaf.user = ""
@@ -123,7 +123,7 @@ class DoorHandling:
         return reason or ("" if self._sees(seat, leaf, point) else f"{name} is out of sight")
 
     def _sees(self, seat: BodyState, leaf: DoorState, point: Vec3) -> bool:
-        """Whether the eye sees the place to take hold of, or that of a pulled drawer, or the upper edge there."""
+        """Whether the eye sees the point to take hold of, that point on a pulled drawer, or the upper edge there."""
         eye, name = view_frustum.eye_position(seat.pose, seat.spec), leaf.thing.id
         x, y, _ = point
         top = leaf.thing.centre[2] + 0.45 * leaf.thing.size[2]
@@ -131,7 +131,7 @@ class DoorHandling:
         points = [point, (x, y, top), *((x + leaf.share * way[0], y + leaf.share * way[1], top) for way in ways)]
         return any(not self._geoms.hidden(eye, place, name) for place in points)
 
-    # ---------------------------------------------------------------------------------------------- what is in the way
+    # ------------------------------------------------------------------------------------------------------- obstacles
 
     def _in_the_way(self, leaf: DoorState, opening: bool) -> str:
         if leaf.opening is not None and not opening:
@@ -149,14 +149,14 @@ class DoorHandling:
                     return f"{tall[0]} is too tall for the drawer of {leaf.thing.id}"
         ways = tuple(_swept_slabs(leaf, opening))
         for item in self._objects:
-            carried = item.held_by and not item.bearers  # what several carry by its handles is in the way all the same
+            carried = item.held_by and not item.bearers  # a thing carried by its handles is in the way too
             if item.present and not carried and item.id not in riders and _is_hit(item, ways):
                 return f"{item.id} is in the way"
         return ""
 
 
 def _swept_slabs(leaf: DoorState, opening: bool) -> Iterator[Slab]:
-    """Where nothing may be: a hinged leaf's place when it shuts, a drawer's whole way."""
+    """The boxes that must be free: the place of a hinged door when it shuts, the whole way of a drawer."""
     joints = {joint.name: joint for joint in leaf.joints}
     for part in leaf.parts:
         joint = joints[part.moves]
@@ -165,7 +165,7 @@ def _swept_slabs(leaf: DoorState, opening: bool) -> Iterator[Slab]:
 
 
 def _swept_slab(thing: Thing, part: Part, joint: Joint) -> Slab:
-    """A part of a shut leaf, or all that a drawer's part covers on its way, as an upright box."""
+    """An upright box around a part of a shut door, or around the whole way of a drawer's part."""
     way = joint.travel if joint.kind == "slide" else 0.0
     along = (joint.axis[0] * way, joint.axis[1] * way)
     local = (part.centre[0] + along[0] / 2, part.centre[1] + along[1] / 2, part.centre[2])
@@ -187,13 +187,13 @@ def _is_hit(item: MovableObject, ways: Sequence[Slab]) -> bool:
 
 
 def _front_point(thing: Thing, local: Vec3) -> Vec3:
-    """The point of the thing's front, at half its height, that is nearest to a place in its local frame."""
+    """The point of the thing's front, at half its height, nearest to a point of its local frame."""
     x = max(-thing.size[0] / 2, min(thing.size[0] / 2, local[0]))
     return plane.to_house((x, thing.size[1] / 2, 0.0), thing.centre, thing.yaw)
 
 
 def _handle_point(opening: Opening, thing: Thing, local: Vec3) -> Vec3:
-    """The point of a doorway's line, at the height of a door handle, that is nearest to a place in its frame."""
+    """The point of a doorway's line, at the height of a door handle, nearest to a point of its frame."""
     x = max(-thing.size[0] / 2, min(thing.size[0] / 2, local[0]))
     place = plane.to_house((x, 0.0, 0.0), thing.centre, thing.yaw)
     return (place[0], place[1], opening.low + _DOOR_HANDLE_M)

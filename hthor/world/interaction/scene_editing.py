@@ -1,4 +1,4 @@
-"""Setting and removing objects directly, to prepare a scene."""
+"""Puts and removes objects directly, to prepare a scene."""
 
 import math
 from collections.abc import Sequence
@@ -65,7 +65,7 @@ class SceneEditor:
         return item
 
     def _on(self, item: MovableObject, on: str, near: Vec3 | None, yaw: float) -> QPose:
-        """A free place on the thing, nearest to ``near`` or to a surface's middle: inside only where it has no top."""
+        """The free place on the thing nearest to ``near`` or to a surface's middle; inside it only if it has no top."""
         surfaces = self._surfaces.of(on)
         if not surfaces:
             known = sorted({place.thing for place in self._surfaces.all()})
@@ -89,7 +89,7 @@ class SceneEditor:
         raise HthorError(f"no room on {on} for {item.id}, which needs {w:.2f} x {d:.2f} m; remove something first")
 
     def _at(self, item: MovableObject, pose: QPose, velocity: Vec3) -> None:
-        """Put it exactly there; raises, with the object back in its old place, if something is there already."""
+        """Put the object exactly at ``pose``; if that is not free, put it back and raise HthorError."""
         indoors = any(plane.inside(pose[:2], room.polygon) for room in self._house.rooms)
         if not indoors or pose[2] > self._house.height:
             at = ", ".join(numbers.format_number(value) for value in pose[:3])
