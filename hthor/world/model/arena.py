@@ -1,6 +1,6 @@
 """The static part of a house's model: floors, walls, openings and everything that never moves.
 
-All of it is geoms of the world body, so that the engine has no bodies to process for what stands still.
+All static geoms belong to the world body, so that the engine has no bodies to process for them.
 """
 
 import itertools
@@ -19,9 +19,9 @@ _GROUND: Rgba = (0.62, 0.68, 0.58, 1.0)
 _SLAB_M = 0.01
 """[m] Thickness of the drawn floors and ceilings."""
 _ROOF_M = 1.0
-"""[m] Thickness of an invisible roof: nothing thrown passes through it between two steps."""
+"""[m] Thickness of an invisible roof, so that a thrown object cannot pass through it between two steps."""
 _TILT = (1.0, 5e-6, 5e-6, 0.0)
-"""Quaternion of the ground, off level by 0.1 mm in 10 m: on an exactly level plane the contact points of an upright
+"""Quaternion of the ground, which falls by 0.1 mm in 10 m: on an exactly level plane the contact points of an upright
 cylinder would depend on rounding errors.
 """
 _LIGHT = {"ambient": (0.50, 0.50, 0.50), "diffuse": (0.34, 0.34, 0.33), "specular": (0.04, 0.04, 0.04)}
@@ -32,10 +32,10 @@ _SUNS = (((0.3, 0.5, -1.0), (0.20, 0.19, 0.17)), ((-0.6, -0.3, -0.5), (0.12, 0.1
 
 
 class HouseArena(Arena):
-    """A house without its movable things.
+    """The model of a house without its movable things.
 
     Attributes:
-        owners: name of each geom -> id of the thing, room, wall or opening it belongs to.
+        owners: name of each geom -> id of the thing, room, wall or opening that it belongs to.
     """
 
     def _build(self, house: HouseSpec, statics: Iterable[Thing]) -> None:  # type: ignore[override]
@@ -49,10 +49,10 @@ class HouseArena(Arena):
             self._thing(thing)
 
     def _settings(self) -> None:
-        """Options as measured: long steps, sleeping islands, a headlight that leaves no corner black."""
+        """Set the engine's options: long steps, sleeping islands, a headlight so that no corner is black."""
         root = self.mjcf_model
         root.compiler.fusestatic = True
-        root.compiler.boundinertia = 5e-6  # [kg m2] a pen that hits an edge would spin up without end
+        root.compiler.boundinertia = 5e-6  # [kg m2] with less, a pen that hits an edge would spin ever faster
         root.option.timestep = 0.02
         root.option.sleep_tolerance = 5e-3
         root.option.flag.sleep = "enable"

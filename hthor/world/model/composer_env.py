@@ -1,10 +1,10 @@
 """A composer environment that does no work while nothing moves.
 
-Bodies are puppets that meet nothing, so between the rare moments when an object falls or a door swings every tree of
-the engine sleeps and a tick costs nothing. Stepping lazily gives bit for bit the states that stepping always gives.
+Bodies are puppets that collide with nothing. So every tree of the engine sleeps, and a tick costs nothing, except while
+an object falls or a door swings. The states are bitwise those of an environment that makes every step.
 
-The long step at which resting things fall asleep is far too long for falling ones, which would be through a board
-between one step and the next. So a step in which anything moves farther than `STEP_TRAVEL_MAX_M` or turns farther than
+The long step at which resting things fall asleep is far too long for falling things, which would pass through a board
+between two steps. So a step in which anything moves farther than `STEP_TRAVEL_MAX_M` or turns farther than
 `STEP_TURN_MAX_RAD` is split.
 """
 
@@ -21,29 +21,29 @@ QPose = tuple[float, float, float, float, float, float, float]
 STEP_TRAVEL_MAX_M = 0.003
 """[m] The longest travel in one step of the engine: a fifth of the thinnest board."""
 STEP_TURN_MAX_RAD = 0.2
-"""[rad] The largest turn in one step: beyond it thin things would spin up without end."""
+"""[rad] The largest turn in one step: with larger turns, thin things would spin ever faster."""
 RESTLESS_TICKS, _RESTLESS_PARTS = 20, 4
-"""After this many ticks without rest every step is split into this many parts: some long things tremble otherwise."""
+"""[ticks] without rest after which steps are split, and into how many parts: some long things tremble otherwise."""
 DAMP_TICKS, DAMP_TOLERANCE = 50, 0.5
-"""After this many ticks without rest the engine's sleep tolerance is raised to this value, so that trembling ends."""
+"""[ticks] without rest after which the engine's sleep tolerance is raised, and its new value: it ends trembling."""
 _PARTS_MAX = 64
 """The most parts that a step is split into."""
 SPEED_MAX_M_S, SPIN_MAX_RAD_S = 20.0, 300.0
-"""[m/s, rad/s] Limits on speed along and spin about any axis: beyond them things would pass through boards, or spin up
-without end.
+"""[m/s, rad/s] Limits on speed along and spin about any axis: above them things would pass through boards or spin ever
+faster.
 """
 
 
 class LazyComposerEnv(Environment):
     """The environment of a `HouseTask`.
 
-    It is a composer environment like any other: `reset` and `step` do what they always do. `tick` is the short way
-    through one control step that `World` takes.
+    It is an ordinary composer environment with the usual `reset` and `step`. `tick` is a faster way to make one control
+    step, which `Simulation` uses.
     """
 
     def __init__(self, task: Any) -> None:
         super().__init__(task, random_state=0, legacy_step=False, recompile_mjcf_every_episode=False)
-        self._mjcf_never_compiled = False  # the constructor has just compiled it; composer would do it again
+        self._mjcf_never_compiled = False  # the constructor has just compiled it; composer would compile it again
 
     def _recompile_physics(self) -> None:
         super()._recompile_physics()
@@ -60,7 +60,7 @@ class LazyComposerEnv(Environment):
         self._most = np.tile((SPEED_MAX_M_S,) * 3 + (SPIN_MAX_RAD_S,) * 3, len(free))
 
     def reset(self) -> Any:
-        """Start an episode: nothing is carried, everything sleeps where the task puts it."""
+        """Start an episode: nothing is carried, and everything sleeps at the place that the task gives it."""
         self._held.clear()
         self._carried[:] = -(1 << 30)
         self._still, self._restless = False, 0
@@ -77,7 +77,7 @@ class LazyComposerEnv(Environment):
         self._carried[tree] = 0
 
     def release(self, tree: int, pose: QPose) -> None:
-        """Let go of the object at ``pose``; the engine takes it from there."""
+        """Let go of the object at ``pose``; from then on the engine moves it."""
         qpos, dof, _ = self._held.pop(tree)
         self._carried[tree] = -(1 << 30)
         self.data.qpos[qpos : qpos + 7] = pose
@@ -85,9 +85,9 @@ class LazyComposerEnv(Environment):
         self.touch()
 
     def touch(self) -> None:
-        """Say that the state was written to: shapes are there at once, and the next tick looks whether anything moves.
+        """Note that the state was changed: shapes are moved at once, and the next tick checks whether anything moves.
 
-        Without the first, two things put in one place in one tick would not know of each other.
+        If shapes were moved later, two things could be put in one place in one tick.
         """
         self._still, self._restless = False, 0
         mujoco.mj_kinematics(self.model, self.data)
@@ -99,11 +99,11 @@ class LazyComposerEnv(Environment):
             self.data.qvel[dof : dof + 6] = 0.0
 
     def tick(self) -> bool:
-        """One control step; says whether anything may have moved. What is carried moves only by `pin`."""
+        """Make one control step; returns whether anything may have moved. Carried objects are moved only by `pin`."""
         if self._still:
             return False
         self.pin()
-        mujoco.mj_kinematics(self.model, self.data)  # wakes the trees whose state was written to
+        mujoco.mj_kinematics(self.model, self.data)  # wakes the trees whose state was changed
         if not self._quiet():
             self._sound[:] = self.data.qpos
             for _ in range(self._n_sub_steps):
@@ -115,9 +115,9 @@ class LazyComposerEnv(Environment):
         return True
 
     def _advance(self) -> None:
-        """One step of the engine, in as many parts as the fastest object asks for."""
+        """Make one step of the engine, in as many parts as the fastest object needs."""
         haste = float((np.abs(self.data.qvel[self._free]) / self._limits).max(initial=0.0))
-        parts = math.ceil(haste) if haste < _PARTS_MAX else _PARTS_MAX  # what is no number too: the engine will say so
+        parts = math.ceil(haste) if haste < _PARTS_MAX else _PARTS_MAX  # also for NaN, which the engine then reports
         if parts <= 1 and self._restless < RESTLESS_TICKS:
             mujoco.mj_step(self.model, self.data)
             return
@@ -126,10 +126,10 @@ class LazyComposerEnv(Environment):
                 _RESTLESS_PARTS, DAMP_TOLERANCE if self._restless >= DAMP_TICKS else self.model.opt.sleep_tolerance
             )
         else:
-            self._steps(parts, 0.0)  # still for a millisecond is not at rest
+            self._steps(parts, 0.0)  # a thing that stands still for a millisecond is not at rest
 
     def _steps(self, parts: int, drowsy: float) -> None:
-        """One step of the engine in parts, what is slower than ``drowsy`` falling asleep."""
+        """Make one step of the engine in parts; things slower than ``drowsy`` fall asleep."""
         option, tolerance = self.model.opt, self.model.opt.sleep_tolerance
         option.timestep, option.sleep_tolerance = self._step_s / parts, drowsy
         for done in range(0, parts, _RESTLESS_PARTS):
@@ -138,7 +138,7 @@ class LazyComposerEnv(Environment):
         option.timestep, option.sleep_tolerance = self._step_s, tolerance
 
     def _brake(self) -> None:
-        """Let nothing go or spin faster than can be stepped through: a thin thing that hits an edge would."""
+        """Limit speeds and spins to values that can be simulated: a thin thing that hits an edge would exceed them."""
         speeds = self.data.qvel[self._free]
         if (np.abs(speeds) > self._most).any():
             self.data.qvel[self._free] = np.clip(speeds, -self._most, self._most)
@@ -147,14 +147,14 @@ class LazyComposerEnv(Environment):
         return bool(not len(self.asleep) or np.maximum(self.asleep, self._carried).min() >= 0)
 
     def warnings(self) -> dict[str, int]:
-        """What the engine complained about since the last reset or `recover`, such as a bad acceleration, and where:
-        for a bad state the number of a degree of freedom.
+        """The engine's warnings since the last reset or `recover`, such as a bad acceleration, and their places: for a
+        bad state, the number of a degree of freedom.
         """
         found = enumerate(self.data.warning)
         return {mujoco.mjtWarning(kind).name: int(one.lastinfo) for kind, one in found if one.number}
 
     def recover(self) -> None:
-        """Put everything back where it was before the last tick, at rest; the engine has lost what came of it."""
+        """Put everything back, at rest, to where it was before the last tick, whose result the engine has lost."""
         mujoco.mj_resetData(self.model, self.data)
         self.data.qpos[:] = self._sound
         self.touch()

@@ -16,35 +16,35 @@ from hthor.world.model.engine import Entity, composer, mjcf, mujoco
 from hthor.world.model.inventory import Contents, MovableSpec
 
 PHYSICS_STEP_S = 0.02
-"""The longest step at which everything on a table falls asleep (with a sleep tolerance of 5e-3)."""
+"""[s] The longest step at which everything on a table falls asleep (with a sleep tolerance of 5e-3)."""
 _CONTACT_TIME_CONSTANT_S = 0.001
-"""Time constant of contacts; the engine makes it two steps where that is more, so it counts for what moves fast."""
+"""[s] Time constant of contacts; the engine raises it to two steps, so it affects only fast things (short steps)."""
 _CONTACT_IMPEDANCE = (0.95, 0.99)
-"""How little a contact gives, lightly and firmly pressed: things rest a millimetre deep at most."""
+"""Impedance of contacts, lightly and firmly pressed: resting things overlap by a millimetre at most."""
 _ROTATION_DAMPING_NMS = 1e-5
-"""What the air takes from spinning."""
+"""[N m s] Damping of rotations by the air."""
 _PARK: Vec3 = (-500.0, 0.0, 1.0)
 _PARK_STEP_M = 2.0
 
 GRIP = {"friction": (0.8, 0.01, 0.001)}
 """Sliding, torsional [m] and rolling [m] friction of flat things, as MuJoCo counts them; our choice."""
 ROLLING = {"friction": (0.8, 0.01, 0.003), "condim": 6}
-"""The same for round things: rolling friction lets balls and cups come to rest."""
+"""Friction of round things: the rolling friction lets balls and cups come to rest."""
 THIN_M = 0.006
-"""[m] Thinner parts, such as a key or a screen, are only drawn: what fell on them would come to rest inside."""
+"""[m] Thinner parts, such as a key or a screen, are only drawn: objects that fall on them would rest inside them."""
 
 _MASS_KG = 4.0
-"""[kg] of all moving parts of one joint; our choice."""
+"""[kg] Mass of all moving parts of one joint; our choice."""
 _STIFF = {"damping": 50.0, "frictionloss": 500.0, "armature": 1000.0}
-"""So stiff that what falls or rolls against a door or drawer does not move it; only hands do."""
+"""So stiff that objects that hit a door or drawer do not move it; only hands do."""
 
 
 class Door(Entity):
     """The moving parts of a thing that opens; the rest of the thing is part of the arena.
 
     Its frame is the thing's local frame. ``joints`` are its `hthor.types.Joint` records in order, ``elements`` the
-    engine's joints for them: 0 is closed, ``travel`` open. A doorway's leaf is open in the model's own pose, so that
-    nothing needs to be done for it when an episode begins.
+    engine's joints for them: 0 is closed, ``travel`` is open. A doorway's door is open in the model's initial pose, so
+    that it needs no change when an episode begins.
     """
 
     def _build(self, opens: Openable) -> None:
@@ -71,13 +71,13 @@ class Door(Entity):
 
 
 def _leaf_frame(joint: Joint, start: float) -> dict[str, object]:
-    """A leaf's frame at ``start`` [rad] of an upright hinge, or closed."""
+    """The frame of a moving part: of a hinged door turned by ``start`` [rad], or closed."""
     turn = geoms.quaternion(start * joint.axis[2]) if joint.kind == "hinge" and start else (1.0, 0.0, 0.0, 0.0)
     return {"pos": joint.anchor, "quat": turn}
 
 
 class Prop(Entity):
-    """An object that can be carried; its frame's origin is the centre of its bounding box."""
+    """An object that can be carried; the origin of its frame is the centre of its bounding box."""
 
     def _build(self, item: MovableSpec) -> None:
         self.id, self.mass = item.id, item.mass
@@ -97,12 +97,12 @@ class Prop(Entity):
 
 
 class HouseTask(composer.Task):
-    """Everything in one model, compiled once; an episode only writes poses.
+    """The whole house in one model, compiled once; an episode only writes poses.
 
     Attributes:
-        props, doors, bodies: the entities, each with the attributes its class documents.
-        starts: object id -> (position [m], yaw [rad]) at the next reset; what is missing goes where the house has it,
-            or is parked out of the world.
+        props, doors, bodies: the entities, with the attributes that their classes document.
+        starts: object id -> (position [m], yaw [rad]) at the next reset; other objects start where the house has them,
+            or are parked outside the house.
     """
 
     def __init__(self, house: HouseSpec, contents: Contents, seats: Mapping[str, BodySpec]) -> None:
@@ -134,16 +134,16 @@ class HouseTask(composer.Task):
         return self._arena
 
     def get_reward(self, physics: Any) -> float:  # noqa: ARG002 - composer's signature
-        """Always zero: success is the umpire's to judge."""
+        """Always zero: success is judged by the goal of the task."""
         return 0.0
 
     @staticmethod
     def parking(index: int) -> QPose:
-        """Where the object with that number is kept while it is not in the world."""
+        """The pose at which the object with number ``index`` is kept while it is not in the episode."""
         return _pose((_PARK[0] - _PARK_STEP_M * index, _PARK[1], _PARK[2]), 0.0)
 
     def after_compile(self, physics: Any, random_state: Any) -> None:  # noqa: ARG002
-        """Let everything start asleep; composer's frames cannot say so in the model itself."""
+        """Let everything start asleep, which composer's frames cannot express in the model."""
         policy = physics.model.ptr.tree_sleep_policy
         allowed, start = mujoco.mjtSleepPolicy.mjSLEEP_AUTO_ALLOWED, mujoco.mjtSleepPolicy.mjSLEEP_INIT
         policy[policy == int(allowed)] = int(start)
@@ -157,7 +157,7 @@ class HouseTask(composer.Task):
         self._numbers = {prop.id: number for number, prop in enumerate(self.props)}
 
     def initialize_episode(self, physics: Any, random_state: Any) -> None:  # noqa: ARG002
-        """Write the starting poses as the model's own, so that a plain reset puts everything there, asleep."""
+        """Make the starting poses the model's initial poses, so that a plain reset puts everything there, asleep."""
         model, data = physics.model.ptr, physics.data.ptr
         model.qpos0[self._addresses] = self._homes
         for id, (position, yaw) in self.starts.items():

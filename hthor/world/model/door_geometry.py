@@ -12,9 +12,9 @@ from hthor.types import HouseSpec, Joint, Opening, Part, Rgba, Thing, Vec3
 LEAF_M = 0.04
 """[m] Thickness of a door."""
 GAP_M = 0.02
-"""[m] Gap between a door and the wall at its sides and top, for the frame."""
+"""[m] Gap for the frame between a door and the wall, at the sides and the top."""
 DOUBLE_M = 1.3
-"""[m] Wider doorways have two doors."""
+"""[m] Doorways wider than this have two doors."""
 TURN_RAD = math.pi / 2
 """[rad] by which doors open."""
 _LEAF: Rgba = (0.88, 0.87, 0.85, 1.0)
@@ -25,9 +25,9 @@ _HANDLE_M = 1.02
 
 
 class Openable(Struct, frozen=True, kw_only=True):
-    """A thing that opens: its moving ``parts`` and their ``joints`` in the frame of ``thing``, closed.
+    """A thing that opens: its moving ``parts`` and their ``joints``, closed, in the frame of ``thing``.
 
-    ``opening`` is the doorway that a leaf hangs in, None for a thing; leaves stand open when an episode begins.
+    ``opening`` is the doorway of a door in a doorway, else None; such doors stand open when an episode begins.
     """
 
     thing: Thing
@@ -37,15 +37,15 @@ class Openable(Struct, frozen=True, kw_only=True):
 
     @property
     def id(self) -> str:
-        """The thing's id; a leaf's is its doorway's."""
+        """The thing's id; for a door in a doorway, the doorway's id."""
         return self.thing.id
 
 
 def openable_thing(thing: Thing) -> Openable:
-    """What moves of a piece of furniture.
+    """The moving parts of a piece of furniture.
 
     Raises:
-        ValueError: when it does not open.
+        ValueError: when the furniture does not open.
     """
     kind = catalog.kind(thing.kind)
     joints = kind.joints(thing.size)
@@ -56,14 +56,14 @@ def openable_thing(thing: Thing) -> Openable:
 
 
 def doorway_leaves(house: HouseSpec) -> tuple[Openable, ...]:
-    """The leaves of the doorways that have any, in the order of the openings."""
+    """The doors of all doorways that have any, in the order of the openings."""
     return tuple(_hung(house, opening) for opening in house.openings if opening.openable and opening.passable)
 
 
 def _hung(house: HouseSpec, opening: Opening) -> Openable:
-    """One leaf hinged at the opening's end ``a``, or two; they turn into its first room.
+    """One door hinged at the opening's end ``a``, or two doors; they turn into its first room.
 
-    The local frame has x from ``a`` to ``b``, its origin in the middle of the hole.
+    The local frame has x from ``a`` to ``b`` and its origin in the middle of the hole.
     """
     (ax, ay), (bx, by) = opening.a, opening.b
     yaw, width = math.atan2(by - ay, bx - ax), math.dist(opening.a, opening.b)
@@ -87,7 +87,7 @@ def _hung(house: HouseSpec, opening: Opening) -> Openable:
 
 
 def _side(house: HouseSpec, opening: Opening, centre: Vec3, yaw: float) -> float:
-    """On which side of the wall the first room is: +1 left of the way from a to b, -1 right of it."""
+    """The side of the wall on which the first room is: +1 left of the line from a to b, -1 right of it."""
     polygon = next((room.polygon for room in house.rooms if room.id == opening.rooms[0]), ())
     x, y = plane.turn((0.0, 0.25), yaw)
     return 1.0 if polygon and plane.inside((centre[0] + x, centre[1] + y), polygon) else -1.0

@@ -1,8 +1,8 @@
-"""The one place that imports MuJoCo and dm_control, without waking OpenGL.
+"""The only module that imports MuJoCo and dm_control; it does so without loading OpenGL.
 
-Both packages look for a display when they are imported and complain when there is none. Here they are told not to
-look yet: a trial needs no picture, and `rendering` makes its own context when someone asks for one. A program that
-draws with either of them itself still can, see `late_opengl`.
+On import, both packages look for a display and warn if there is none. Here they are imported with OpenGL switched off:
+a trial needs no pictures, and `rendering` makes its own context for the first picture. A program can still draw with
+either package itself, see `late_opengl`.
 """
 
 import os

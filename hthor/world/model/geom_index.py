@@ -1,4 +1,4 @@
-"""The compiled model's geoms as plain arrays: who owns each, which of them hide what."""
+"""The compiled model's geoms as plain arrays: their owners, and which of them hide things."""
 
 from collections.abc import Iterable, Iterator
 from typing import Any
@@ -12,19 +12,19 @@ from hthor.world.model.composer_task import HouseTask
 from hthor.world.model.engine import mujoco
 
 _OPAQUE_ALPHA = 0.5
-"""[0..1] What is less opaque than this, such as glass, hides nothing."""
+"""[0..1] Geoms that are less opaque than this, such as glass, hide nothing."""
 
 
 class GeomIndex:
-    """Boxes around all solids, laid out as `hthor.geometry.ray_casting` wants them, and the list of those that hide.
+    """Boxes around all solids, in the layout of `hthor.geometry.ray_casting`, and the list of those that hide things.
 
     Attributes:
         half: (N, 3) half extents [m]. pos: (N, 3) centres. mat: (N, 9) rotations; both are live views of the engine.
         radius: (N,) bounding radii [m]. owner: id of each geom's thing, seat, room, wall or opening.
-        walls: indices of what hides and never moves, furniture too, largest first. loose: the rest of ``ids``.
-        ids: indices of what hides, largest first; carried objects are not among them.
-        names: the owners in alphabetic order. numbers: (N,) index of each geom's owner in them.
-        span: owner -> [first, last + 1) of its geoms; of a thing with a door, those that do not move.
+        walls: indices of the geoms in ``ids`` that never move, including furniture, largest first. loose: the others.
+        ids: indices of the geoms that hide things, largest first; carried objects are not among them.
+        names: the owners in alphabetic order. numbers: (N,) index of each geom's owner in ``names``.
+        span: owner -> [first, last + 1) of its geoms; for a thing with a door, only of those that never move.
     """
 
     def __init__(self, env: LazyComposerEnv, task: HouseTask) -> None:
@@ -47,7 +47,7 @@ class GeomIndex:
         self.hide_all_but(())
 
     def hide_all_but(self, ghosts: Iterable[str]) -> None:
-        """Say which objects hide nothing for now: those that someone carries."""
+        """Set which objects hide nothing from now on (``ghosts``), because someone carries them."""
         solid = self.solid.copy()
         for id in ghosts:
             solid[slice(*self.span[id])] = False
@@ -64,14 +64,14 @@ class GeomIndex:
         return bool(is_blocked(*ends, self.half, self.pos, self.mat, self.radius, self._without(ignore), 0, 0))
 
     def first(self, start: Vec3, end: Vec3, ignore: str = "") -> str:
-        """Owner of a solid other than ``ignore`` that stands between two points [m], empty for none."""
+        """Owner of a solid, other than ``ignore``, that stands between two points [m]; empty for none."""
         ends, ids = (np.array(start), np.array(end)), self._without(ignore)
         solids = self.half, self.pos, self.mat, self.radius
         met = (self.owner[geom] for geom in ids if is_blocked(*ends, *solids, np.array([geom]), 0, 0))
         return next(met, "") if is_blocked(*ends, *solids, ids, 0, 0) else ""
 
     def boxes_but(self, *without: str) -> tuple[Any, Any]:
-        """Centres (M, 3) and half extents (M, 3) [m] of upright boxes around all solids but those of these owners."""
+        """Centres (M, 3) and half extents (M, 3) [m] of upright boxes around all solids of all other owners."""
         keep = self.ids[~np.isin(self.numbers[self.ids], [self._number[owner] for owner in without])]
         rotation = np.abs(self.mat[keep].reshape(-1, 3, 3))
         return self.pos[keep], np.einsum("nij,nj->ni", rotation, self.half[keep])

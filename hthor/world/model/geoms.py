@@ -1,4 +1,4 @@
-"""Turning parts into geoms: shapes, colours, collision bits and draw groups."""
+"""Makes the engine's geoms from parts: shapes, colours, collision bits and draw groups."""
 
 import math
 from typing import Any
@@ -9,24 +9,24 @@ from hthor.types import Part, Vec3
 Bits = dict[str, Any]
 
 Quaternion = tuple[float, float, float, float]
-"""(w, x, y, z)."""
+"""A unit quaternion (w, x, y, z)."""
 _HALF = math.sqrt(0.5)
 _AXES: dict[str, Quaternion] = {
     "x": (_HALF, 0.0, _HALF, 0.0),
     "y": (_HALF, -_HALF, 0.0, 0.0),
     "z": (1.0, 0.0, 0.0, 0.0),
 }
-"""Turns of an upright cylinder onto an axis."""
+"""The turns that take an upright cylinder onto each axis."""
 
 FURNITURE, WALLS, OBJECTS, BODIES, CEILINGS = range(5)
-"""Draw groups. Ceilings, and lintels with them, are left out of the view from above."""
+"""Draw groups. Ceilings and lintels are left out of the view from above."""
 
 STATIC: Bits = {"contype": 1, "conaffinity": 0}
 MOVABLE: Bits = {"contype": 2, "conaffinity": 3}
 GHOST: Bits = {"contype": 0, "conaffinity": 0}
-"""Collision bits: movable things meet each other and what is static; ghosts (bodies, floors' looks) meet nothing."""
+"""Collision bits: movable things collide with each other and static things; ghosts, such as bodies, with nothing."""
 LEAF: Bits = {"contype": 5, "conaffinity": 0}
-"""A door's leaf. Closed it meets what static things meet; `SWUNG`, on its way or open, nothing, but it still hides."""
+"""A door. Closed, it collides as static things do; moving or open (`SWUNG`), with nothing, but it hides things."""
 SHUT, SWUNG = 1, 4
 
 
@@ -48,7 +48,7 @@ def multiply(a: Quaternion, b: Quaternion) -> Quaternion:
 
 
 def size(part: Part) -> tuple[float, ...]:
-    """A part's half extents as MuJoCo counts them for its shape."""
+    """A part's half extents in MuJoCo's convention for its shape."""
     if part.shape == "sphere":
         return (part.half[0],)
     if part.shape == "cylinder":
@@ -58,18 +58,18 @@ def size(part: Part) -> tuple[float, ...]:
 
 
 def volume(part: Part) -> float:
-    """Volume [m3]."""
+    """Volume of a part [m3]."""
     x, y, z = part.half
     return {"box": 8.0, "cylinder": 2.0 * math.pi, "sphere": 4.0 / 3.0 * math.pi}[part.shape] * x * y * z
 
 
 def orientation(part: Part, yaw: float) -> Quaternion:
-    """How a part of a thing turned by ``yaw`` [rad] is turned; MuJoCo's cylinders stand upright by themselves."""
+    """The turn of a part of a thing turned by ``yaw`` [rad]; without any turn, MuJoCo's cylinders stand upright."""
     return multiply(quaternion(yaw), _AXES[part.axis]) if part.shape == "cylinder" else quaternion(yaw)
 
 
 def add_part(body: Any, name: str, part: Part, centre: Vec3 = (0.0, 0.0, 0.0), yaw: float = 0.0, **more: Any) -> Any:
-    """Add a part of a thing that stands at ``centre`` [m] turned by ``yaw`` [rad], in the frame of ``body``."""
+    """Add to ``body`` a part of a thing that stands at ``centre`` [m], turned by ``yaw`` [rad], in the body's frame."""
     return body.add(
         "geom",
         name=name,

@@ -1,8 +1,8 @@
-"""What of a house moves and what stays: the split that decides which things the engine simulates.
+"""Splits the things of a house into those that can move, which the engine simulates, and those that never move.
 
-Free to move are the objects that a world is built with, and of the house's own things all that can be picked up and lie
-on a surface of something, where `hthor.houses.laying` lays it. What cannot lie there stays where the house puts it, as
-furniture does; so does what lies on the bare floor, where the free-space grid counts it as an obstacle.
+Movable are the objects that a world is built with, and those things of the house that can be picked up and lie on a
+surface, where `hthor.houses.laying` lays them. Things that cannot lie on a surface stay where the house puts them, as
+furniture does. So do things on the bare floor, which are obstacles on the free-space grid.
 """
 
 from collections.abc import Iterable
@@ -19,7 +19,7 @@ DEFAULT_OBJECTS = tuple((name, name) for name in catalog.TARGETS)
 
 
 class MovableSpec(Struct, frozen=True, kw_only=True):
-    """An object that can move: ``home`` is where the house puts it, None for one that a task must place."""
+    """An object that can move: ``home`` [m] is where the house puts it, None for an object that a task must place."""
 
     id: str
     kind: str
@@ -32,12 +32,12 @@ class MovableSpec(Struct, frozen=True, kw_only=True):
 
     @property
     def clutter(self) -> bool:
-        """Whether it is one of a house's many small things that no task asks for."""
+        """Whether it is one of the many small things of a house that are never the target of a task."""
         return self.home is not None and catalog.kind(self.kind).family != "target"
 
 
 class Contents(Struct, frozen=True, kw_only=True):
-    """A house's things, split. ``doors`` are the statics that open."""
+    """A house's things, split into movable and static ones; ``doors`` are the static things that open."""
 
     statics: tuple[Thing, ...]
     movables: tuple[MovableSpec, ...]
@@ -45,7 +45,7 @@ class Contents(Struct, frozen=True, kw_only=True):
 
 
 def split_things(house: HouseSpec, objects: Iterable[tuple[str, str]]) -> Contents:
-    """Sort the house's things and the world's ``objects``, given as (id, kind) pairs.
+    """Split the house's things and the world's ``objects``, given as (id, kind) pairs.
 
     Raises:
         HthorError: when two things share an id, or an object's kind cannot be picked up.

@@ -1,8 +1,8 @@
-"""MuJoCo and dm_control choose their OpenGL back end when a program first draws with it, not when they are imported.
+"""Lets MuJoCo and dm_control choose their OpenGL back end when a program first draws with it, not on import.
 
-Both choose at import, by MUJOCO_GL, and complain where there is no display. `engine` imports them with OpenGL switched
-off; what is here lets them choose after all, by the environment as it is then, for programs that use them
-together with hthor. Our own pictures do without, see `opengl`.
+Both normally choose on import, by MUJOCO_GL, and warn if there is no display. `engine` imports them with OpenGL
+switched off. This module lets them choose later, by the environment at that time, for programs that use them together
+with hthor. Our own pictures do not need this, see `hthor.world.rendering.opengl_context`.
 """
 
 import importlib
@@ -17,22 +17,22 @@ _DM_CONTROL = "dm_control._render"
 
 
 def choose_later(loaded: Sequence[str]) -> None:
-    """Undo that the packages were imported with OpenGL switched off.
+    """Let the packages that were imported with OpenGL switched off choose a back end when they are used.
 
     Args:
-        loaded: names of the modules that were there before; what they chose stays.
+        loaded: names of the modules that were imported before hthor; they keep the back end that they chose.
     """
     if _MUJOCO not in loaded:
         chooser = importlib.import_module(_MUJOCO)
         _reload_for(chooser, "GLContext")
-        for name in ("mujoco", "mujoco.gl_context"):  # which have it from there
+        for name in ("mujoco", "mujoco.gl_context"):  # they import it from that module
             _answer(importlib.import_module(name), ("GLContext",), lambda wanted: getattr(chooser, wanted))
     if _DM_CONTROL not in loaded:
         _reload_for(importlib.import_module(_DM_CONTROL), "Renderer", "BACKEND", "USING_GPU")
 
 
 def _reload_for(module: ModuleType, *names: str) -> None:
-    """Take ``names`` out of a module; it is run again when one of them is asked for."""
+    """Remove ``names`` from a module; the first access to one of them runs the module again."""
     for name in names:
         vars(module).pop(name, None)
 
@@ -44,7 +44,7 @@ def _reload_for(module: ModuleType, *names: str) -> None:
 
 
 def _answer(module: ModuleType, names: Sequence[str], answer: Callable[[str], Any]) -> None:
-    """Let ``answer`` say what a module's ``names`` are that are not in it."""
+    """Let ``answer`` supply those of ``names`` that are missing in the module."""
 
     def attribute(wanted: str) -> Any:
         return answer(wanted) if wanted in names else _missing(module, wanted)

@@ -1,4 +1,4 @@
-"""Walls as boxes: every face a slab of half a wall's thickness, cut at doors and windows."""
+"""Walls as boxes: every face is a slab of half a wall's thickness, cut at doors and windows."""
 
 import math
 from collections.abc import Iterator
@@ -10,16 +10,16 @@ from hthor.looks import finishes
 from hthor.types import HouseSpec, Opening, Rgba, Vec2, Vec3, Wall
 
 _LINE_M = 0.08
-"""How far an opening's ends may lie from a face's line and still cut it."""
+"""[m] An opening cuts a face if its ends lie no farther than this from the face's line."""
 _OVERLAP_M = WALL_M / 2 - 0.002
-"""How far a face reaches past its ends to close corners, a little less than what would show on the other side."""
+"""[m] How far a face reaches past its ends to close corners, a little less than would be visible behind them."""
 _CAP_M = 0.002
-"""Outdoor faces are this much taller, so that seen from above one colour wins."""
+"""[m] Outdoor faces are this much taller, so that only their colour is visible from above."""
 _PANE_M, _LEAF_M = 0.01, 0.04
-"""Thickness of a window pane and of a closed door."""
+"""[m] Thickness of a window pane and of a closed door."""
 _PANE: Rgba = (0.70, 0.84, 0.92, 0.25)
 _DOOR: Rgba = (0.42, 0.28, 0.20, 1.0)
-"""The way out."""
+"""Colour of the outside door."""
 
 
 class WallSlab(NamedTuple):
@@ -47,12 +47,12 @@ class FaceLine:
         self.along = ((face.b[0] - face.a[0]) / self.length, (face.b[1] - face.a[1]) / self.length)
 
     def at(self, along: float, left: float) -> Vec2:
-        """A point so far [m] along the line and to the left of it."""
+        """The point at ``along`` [m] on the line and ``left`` [m] to the left of it."""
         (x, y), (dx, dy) = self.face.a, self.along
         return (x + dx * along - dy * left, y + dy * along + dx * left)
 
     def cut(self, opening: Opening) -> Vec2:
-        """The stretch [m] along the face that an opening takes out, (0, 0) when it is in another wall."""
+        """The stretch [m] of the face that an opening cuts out, (0, 0) when the opening is in another wall."""
         dx, dy = self.along
         offsets = [(x - self.face.a[0], y - self.face.a[1]) for x, y in (opening.a, opening.b)]
         if any(abs(dx * oy - dy * ox) > _LINE_M for ox, oy in offsets):
@@ -61,7 +61,7 @@ class FaceLine:
         return max(ends[0], 0.0), min(ends[1], self.length)
 
     def slabs(self, house: HouseSpec, side: float, first: float, last: float, top: float) -> Iterator[WallSlab]:
-        """The face's pieces, from ``first`` to ``last`` [m] along it and up to ``top`` [m]: beside, below, above holes.
+        """The face's pieces around its holes, from ``first`` to ``last`` [m] along it and up to ``top`` [m].
 
         ``side`` is +1 for a face that stands left of its line, -1 for right.
         """
@@ -74,7 +74,7 @@ class FaceLine:
         yield from self._slab(side, (start, last), (0.0, top))
 
     def _cuts(self, house: HouseSpec, first: float, last: float) -> Iterator[tuple[float, float, float, float]]:
-        """Stretches (begin, end) [m] along the face and the heights (low, high) that its openings take out."""
+        """The (begin, end, low, high) [m] along and up the face that its openings cut out."""
         for opening in house.openings:
             begin, end = self.cut(opening)
             if end - begin > 1e-6:
@@ -90,7 +90,7 @@ class FaceLine:
 
 
 def face_lines(house: HouseSpec) -> Iterator[FaceLine]:
-    """The lines of all faces that have a length."""
+    """The lines of all faces whose length is not zero."""
     return (FaceLine(face) for face in house.walls if math.dist(face.a, face.b) > 1e-6)
 
 
@@ -118,20 +118,20 @@ def wall_panels(house: HouseSpec) -> Iterator[Panel]:
 
 
 def _side(house: HouseSpec, line: FaceLine) -> float:
-    """On which side of its line a face stands: +1 left of it, -1 right; a room's face on the room's side."""
+    """The side of its line on which a face stands: +1 left, -1 right; a room's face stands on the room's side."""
     left, owner = line.at(line.length / 2, WALL_M / 2), line.face.room
     within = any(plane.inside(left, room.polygon) for room in house.rooms if owner in (room.id, "exterior"))
     return 1.0 if within == (owner != "exterior") else -1.0
 
 
 def _colour(face: Wall) -> Rgba:
-    """A face's own colour when the house gives one, brick outdoors when it names nothing."""
+    """The colour that the house gives a face; without one, an outdoor face has the colour of brick."""
     name = face.material or ("brick" if face.room == "exterior" else "")
     return (*(finishes.wall(name)[1] if face.rgb is None else face.rgb), 1.0)
 
 
 def _filling(opening: Opening) -> Panel:
-    """What closes an opening: glass in a window, a leaf in a door that nobody opens."""
+    """The panel that closes an opening: glass in a window, a door in a doorway that is never opened."""
     (ax, ay), (bx, by) = opening.a, opening.b
     window = opening.kind == "window"
     half = (math.dist(opening.a, opening.b) / 2, (_PANE_M if window else _LEAF_M) / 2, (opening.high - opening.low) / 2)

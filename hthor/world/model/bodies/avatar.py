@@ -1,4 +1,4 @@
-"""The person's body: what it can do and what it looks like.
+"""The person's body: its abilities and its looks.
 
 Speed, turn rate and field of view are those of a person in a headset with a stick in either hand (see `rules`).
 """

@@ -1,8 +1,8 @@
-"""The bodies of robots and of the person: their poses are written directly, they have no degrees of freedom.
+"""The bodies of robots and of the person, whose poses are set directly: they have no degrees of freedom.
 
-A body collides with nothing in the engine. Walls, furniture and other bodies stop it on the free-space grid, the one
-that planners use (see `hthor.world.motion`). Its head turns with the camera: solids and meshes that move with "head"
-are given as they are while the camera looks straight ahead.
+A body collides with nothing in the engine. Walls, furniture and other bodies stop it on the free-space grid that
+planners use too (see `hthor.world.motion`). Its head turns with the camera: solids and meshes that move with "head" are
+given in their pose while the camera looks straight ahead.
 """
 
 import functools
@@ -25,11 +25,11 @@ from hthor.world.model.bodies.primitives import HEAD, box, post
 from hthor.world.model.engine import Entity, mjcf
 
 _HAND_HEIGHT = 0.60
-"""Height of the hand as a share of the body's height, where its file does not say."""
+"""Height of the hand as a share of the body's height, if its file does not give it."""
 _HAND_AHEAD_M = 0.14
-"""[m] from the body's rim to the hand, where its file does not say."""
+"""[m] from the body's rim to the hand, if its file does not give it."""
 _NECK_HEIGHT = 0.93
-"""Height of the neck as a share of the body's height, where its file does not say."""
+"""Height of the neck as a share of the body's height, if its file does not give it."""
 _SHELL: Rgba = (0.80, 0.82, 0.84, 1.0)
 _LENS: Rgba = (0.10, 0.11, 0.13, 1.0)
 
@@ -38,7 +38,7 @@ def load_robot(name: str) -> RobotSpec:
     """The body of the robot with this name, or of the robot in this file, such as ``my_robot.py``.
 
     Raises:
-        UnknownName: when there is none.
+        UnknownName: when no robot has this name.
         HthorError: when the file does not load or does not define a robot.
     """
     spec = plugins.load("robot", name)
@@ -50,34 +50,34 @@ def load_robot(name: str) -> RobotSpec:
 
 
 def look(spec: BodySpec) -> tuple[Part, ...]:
-    """The body's solids in its own frame: its file's own look, or a plain drum with a mast."""
+    """The body's solids in its own frame: those of its file, or a plain drum with a mast."""
     draw = getattr(_module(spec), "look", None)
     return _plain(spec) if draw is None else tuple(draw())
 
 
 @functools.lru_cache(maxsize=64)
 def pieces(spec: BodySpec) -> tuple[Piece, ...]:
-    """The body's meshes in its own frame, for pictures for people: its file's own, or its solids'."""
+    """The body's meshes in its own frame, for pictures for people: those of its file, or meshes of its solids."""
     draw = _human_pieces if _module(spec) is avatar else getattr(_module(spec), "pieces", None)
     return tuple(plain.plain_pieces(look(spec)) if draw is None else draw())
 
 
 def _human_pieces() -> tuple[Piece, ...]:
-    from hthor.world.model.bodies import human_mesh  # drawn only in the profile nice: not loaded for a trial
+    from hthor.world.model.bodies import human_mesh  # drawn only in the profile nice, so trials need not load it
 
     return human_mesh.pieces()
 
 
 def neck(spec: BodySpec) -> Vec3:
-    """Where the head turns [m], in the body's frame."""
+    """The point [m] about which the head turns, in the body's frame."""
     place: Vec3 = getattr(_module(spec), "NECK", (0.0, 0.0, round(_NECK_HEIGHT * spec.height, 3)))
     return place
 
 
 def head_transform(spec: BodySpec, pitch: float) -> tuple[Any, Any]:
-    """How the head's points move as the camera tilts by ``pitch`` [rad]: rotation (3, 3) and offset (3,) [m].
+    """The motion of the head when the camera tilts by ``pitch`` [rad]: rotation (3, 3) and offset (3,) [m].
 
-    A point p of the head, given while the camera looks straight ahead, is at ``rotation @ p + offset``, all in the
+    A point that is at p while the camera looks straight ahead moves to ``rotation @ p + offset``, all in the
     body's frame.
     """
     cos, sin = math.cos(pitch), math.sin(pitch)
@@ -87,25 +87,25 @@ def head_transform(spec: BodySpec, pitch: float) -> tuple[Any, Any]:
 
 
 def hand(spec: BodySpec) -> Vec3:
-    """Where the lowest point of what a body holds rests [m], in its own frame (x ahead, y left, z up)."""
+    """The point [m] on which an object in a body's hand rests, in the body's frame (x ahead, y left, z up)."""
     ahead = (spec.radius + _HAND_AHEAD_M, 0.0, round(_HAND_HEIGHT * spec.height, 3))
     place: Vec3 = getattr(_module(spec), "HAND", ahead)
     return place
 
 
 def grasp_point(spec: BodySpec, size: Vec3) -> Vec3:
-    """Where the centre of a held object of ``size`` [m] is, in the body's own frame: it lies on the hand."""
+    """The centre [m] of a held object of ``size`` [m], which lies on the hand, in the body's frame."""
     x, y, z = hand(spec)
     return (x, y, z + size[2] / 2)
 
 
 def seat_names(robots: int) -> tuple[str, ...]:
-    """The seats of a world with that many robots: "human", "robot", "robot2", ..."""
+    """The seats of a world with ``robots`` robots: "human", "robot", "robot2", ..."""
     return (HUMAN, *(f"robot{number if number > 1 else ''}" for number in range(1, robots + 1)))
 
 
 class Body(Entity):
-    """The figure in a seat; its frame stands on the floor, x ahead, the camera level."""
+    """The figure of a seat's body, its camera level; its frame has its origin on the floor and x ahead."""
 
     def _build(self, seat: str, spec: BodySpec) -> None:
         self.seat, self.spec = seat, spec
@@ -119,7 +119,7 @@ class Body(Entity):
 
 
 def _module(spec: BodySpec) -> ModuleType | None:
-    """The file that a body comes from, None for one that was made from a bare record."""
+    """The module that a body was loaded from, None for a body that was made from a record only."""
     if spec.name == avatar.HUMAN.name:
         return avatar
     if spec.name in plugins.names("robot"):

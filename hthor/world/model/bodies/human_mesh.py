@@ -1,4 +1,4 @@
-"""The person's meshes: a dressed figure with shoes, trousers, belt, jumper, hands, face and hair; cannot move them."""
+"""The person's meshes: a dressed figure with shoes, trousers, belt, jumper, hands, face and hair; it has no joints."""
 
 from typing import Any
 
@@ -20,7 +20,7 @@ _SIDES = (1.0, -1.0)
 
 
 def pieces() -> tuple[Piece, ...]:
-    """Everything, in the body frame (x ahead, y left), the right hand held out palm up."""
+    """All meshes, in the body frame (x ahead, y left), the right hand held out with the palm up."""
     legs = [piece for side in _SIDES for piece in _leg(side)]
     return (*legs, *_trunk(), *_hanging_arm(), *_holding_arm(), *_head(), *_face())
 
@@ -99,7 +99,7 @@ def _hanging_arm() -> tuple[Piece, ...]:
 
 
 def _holding_arm() -> tuple[Piece, ...]:
-    """The palm's upper side is at `avatar.HAND`."""
+    """The right arm; the palm's upper side is at `avatar.HAND`."""
     x, y, z = avatar.HAND
     line = sweeps.bend((0.0, -0.135, 1.375), (-0.012, -0.193, 1.23), (-0.01, -0.205, 1.10), (0.075, -0.185, 1.06))
     fore = sweeps.bend((-0.01, -0.205, 1.10), (0.05, -0.19, 1.065), (0.20, -0.152, z - 0.008))

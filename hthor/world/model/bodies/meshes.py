@@ -1,6 +1,6 @@
-"""Meshes that bodies are drawn with for people, in the body frame: `solid`'s words again, rounder.
+"""Builders of the meshes of bodies in pictures for people, in the body frame: rounder than `primitives`.
 
-``moves`` is "head" for what turns with the camera, empty for the rest.
+``moves`` is "head" for a mesh that turns with the camera, else empty.
 """
 
 import math
@@ -21,22 +21,22 @@ _SIDES = 28
 
 
 def matte(rgba: Rgba) -> Material:
-    """Cloth, rubber, skin."""
+    """The material of cloth, rubber and skin."""
     return Material(rgba=rgba, specular=0.06, shininess=0.1)
 
 
 def gloss(rgba: Rgba) -> Material:
-    """Painted or moulded shells."""
+    """The material of painted or moulded shells."""
     return Material(rgba=rgba, specular=0.35, shininess=0.5)
 
 
 def metal(rgba: Rgba) -> Material:
-    """Rods and pins."""
+    """The material of metal rods and pins."""
     return Material(rgba=rgba, specular=0.7, shininess=0.7)
 
 
 def glow(rgba: Rgba) -> Material:
-    """Lamps and screens."""
+    """The material of lamps and screens."""
     return Material(rgba=rgba, specular=0.2, shininess=0.5, emission=0.6)
 
 
@@ -58,7 +58,7 @@ def rod(centre: Vec3, radius: float, length: float, axis: str, material: Materia
 
 
 def turned(profile: Sequence[Vec2], material: Material, at: Vec3 = (0.0, 0.0, 0.0), moves: str = "") -> Piece:
-    """What a lathe makes of (radius, height) pairs [m], from the bottom up."""
+    """A solid of revolution about a vertical axis, from (radius, height) pairs [m] from the bottom up."""
     return Piece(shaping.moved(solids.lathe(profile, 40), *at), material, moves)
 
 
@@ -71,7 +71,7 @@ def tire(centre: Vec3, radius: float, half_width: float, material: Material) -> 
 
 
 def tube(path: Any, radius: float | Sequence[float], material: Material, moves: str = "") -> Piece:
-    """A round bar along points (N, 3) [m], closed by a half ball at either end."""
+    """A round bar along points (N, 3) [m], with a half ball at either end."""
     line = np.array(path, float)
     radii = np.broadcast_to(np.asarray(radius, float), (len(line),))
     bar = sweeps.tube(line, list(radii), 14)
@@ -80,7 +80,7 @@ def tube(path: Any, radius: float | Sequence[float], material: Material, moves: 
 
 
 def limb(rows: Sequence[Row], material: Material, moves: str = "", fullness: float = 2.0) -> Piece:
-    """A skin over cross-sections from the bottom up, closed at both ends; ``fullness`` above 2 squares them."""
+    """A surface through cross-sections from the bottom up, closed at both ends; a ``fullness`` above 2 squares them."""
     return Piece(_loft(np.array(rows, float), fullness), material, moves)
 
 
@@ -98,7 +98,7 @@ def _loft(rows: Any, fullness: float) -> Mesh:
 
 
 def _smooth(rows: Any, steps: int = 5) -> Any:
-    """More cross-sections in between, on a smooth line through the given ones."""
+    """The given cross-sections with more in between, on a smooth line through them."""
     padded = np.concatenate([2 * rows[:1] - rows[1:2], rows, 2 * rows[-1:] - rows[-2:-1]])
     t = np.linspace(0.0, 1.0, steps, endpoint=False)[:, None]
     parts = []

@@ -1,7 +1,7 @@
-"""Short words for the solids that bodies are drawn with, in the body frame.
+"""Builders of the solids of bodies, in the body frame.
 
-The body frame has x ahead, y left, z up, and its origin on the floor below the axis. ``moves`` is "head" for what
-turns with the camera, empty for the rest.
+The body frame has x ahead, y left, z up, and its origin on the floor below the axis. ``moves`` is "head" for a solid
+that turns with the camera, else empty.
 """
 
 from typing import Literal
@@ -9,7 +9,7 @@ from typing import Literal
 from hthor.types import Part, Rgba, Vec3
 
 HEAD = "head"
-"""What a solid that tilts with the camera moves with."""
+"""The value of ``moves`` of a solid that tilts with the camera."""
 
 
 def box(centre: Vec3, half: Vec3, rgba: Rgba, moves: str = "") -> Part:
