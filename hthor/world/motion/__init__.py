@@ -1,1 +1,1 @@
-"""How bodies move, reach, collide and where they start."""
+"""How bodies move, reach and collide, and where they start."""

@@ -1,8 +1,8 @@
 """Moving, turning and waiting, tick by tick.
 
-A body moves relative to the heading that it had at the start. Where the way ahead is blocked it slides along x or y;
+A body moves relative to its heading at the start of the motion. Where the way ahead is blocked it slides along x or y;
 where both are blocked it stops. Other bodies are discs: no body may come closer to another than the sum of their radii,
-but one that is too close already may always move away.
+but a body that is too close already may always move away.
 """
 
 import math
@@ -25,14 +25,14 @@ WAIT_MAX_S = 3600.0
 SLIDE_SHARE_MIN = 0.05
 """A body slides only if at least this share of the step lies along the axis; our choice."""
 _FREE, _BLOCKED = "", "*"
-"""What a step meets: nothing, the house, or else the seat in the way."""
+"""What blocks a step: nothing or the house; any other value is the seat in the way."""
 
 _MOVED, _ROTATED, _WAITED = (Outcome(motion=motion, ok=True) for motion in ("move", "rotate", "wait"))
 
 TickResult = tuple[Outcome | None, tuple[Event, ...]]
 WALL = "wall"
 _JAMB_M = 0.05
-"""[m] by which a wall next to a shut door may be nearer and the door still be named."""
+"""[m] A wall may be nearer than a shut door by this much, and the door is still named as the obstacle."""
 
 
 def refusal(seat: BodyState, motion: Move | Rotate | Wait) -> str:
@@ -107,7 +107,7 @@ class MoveMotion:
     """Moving along a straight line, as far as the house and the other bodies allow.
 
     Args:
-        others: all other bodies. culprit: names what blocks a place, for the outcome.
+        others: all other bodies. culprit: returns the name of the obstacle at a place, for the outcome.
     """
 
     def __init__(
@@ -130,7 +130,7 @@ class MoveMotion:
         return (None if self._left > EPS else _MOVED), events
 
     def _try(self, dx: float, dy: float) -> str:
-        """Go there if it is free; returns what was met otherwise."""
+        """Go by (dx, dy) [m] if that place is free; else returns what is in the way."""
         pose = self._seat.pose
         x, y = pose.x + dx, pose.y + dy
         for other in self._others:
@@ -142,13 +142,13 @@ class MoveMotion:
         return _FREE
 
     def _slide(self, dx: float, dy: float, step: float) -> str:
-        """Try one axis of a step, unless hardly anything of the step is along it."""
+        """Try one axis of a step, unless the step is nearly perpendicular to it."""
         return self._try(dx, dy) if abs(dx + dy) > SLIDE_SHARE_MIN * step else _BLOCKED
 
     def _in_way(self, tick: int, met: str) -> tuple[Event, ...]:
-        """The event of being hindered by another body, once in a move.
+        """The event that another body is in the way, at most once per move.
 
-        Its tick is that before the step: until then everything went as it would have without the other.
+        Its tick is the one before the step: up to that tick the other body had no effect on the move.
         """
         if met in (_FREE, _BLOCKED) or self._hindered:
             return ()
@@ -165,14 +165,14 @@ class MoveMotion:
 
 
 def length_and_direction(seat: BodyState, motion: Move) -> tuple[float, Vec2]:
-    """How far a move goes [m], and the unit vector along it in the house frame; zero for a move of no length."""
+    """Length [m] of a move, and its unit vector in the house frame; the zero vector for a move of length zero."""
     length = math.hypot(motion.forward, motion.left)
     x, y = turn((motion.forward, motion.left), seat.pose.yaw)
     return length, (x / length, y / length) if length > 0.0 else (0.0, 0.0)
 
 
 def duration_ticks(seconds: float) -> int:
-    """Whole ticks that ``seconds`` take, at least one."""
+    """``seconds`` in whole ticks, rounded up, at least one."""
     return max(1, math.ceil(max(0.0, seconds) / rules.TICK_S - 1e-6))
 
 
@@ -199,7 +199,7 @@ class ObstacleFootprints:
         """Id of the thing nearest to ``place`` [m] that stands in the way of a body ``height`` [m] tall, or "wall".
 
         Args:
-            shut: the doorways that are shut now; they count before what is not nearer.
+            shut: the doorways that are shut now; a shut door is named unless something else is clearly nearer.
         """
         gaps = (
             (plane.distance_to_rectangle(place, slab.centre, slab.size, slab.yaw), index)

@@ -1,4 +1,4 @@
-"""What a hand can reach, what an arm can lift, and where a held object is."""
+"""Which points a hand can reach, which objects an arm can lift, and where a held object is."""
 
 import math
 
@@ -14,7 +14,7 @@ from hthor.world.state.movable_object import MovableObject
 
 
 def out_of_reach(seat: BodyState, name: str, point: Vec3, lean: float = 1e-6) -> str:
-    """Why a hand cannot get to ``point`` [m], the reach of the arm stretched by ``lean`` [m]; empty when it can."""
+    """Why a hand cannot reach ``point`` [m] if its reach is extended by ``lean`` [m]; empty when it can."""
     pose, spec = seat.pose, seat.spec
     dx, dy = point[0] - pose.x, point[1] - pose.y
     if math.hypot(dx, dy) > spec.reach + lean:
@@ -27,7 +27,7 @@ def out_of_reach(seat: BodyState, name: str, point: Vec3, lean: float = 1e-6) ->
 
 
 def out_of_sight(seat: BodyState, item: MovableObject, scene: GeomIndex) -> str:
-    """Why the eye cannot see an object, wherever it looks; empty when it can."""
+    """Why the eye cannot see an object in any viewing direction; empty when it can."""
     eye = view_frustum.eye_position(seat.pose, seat.spec)
     if all(scene.hidden(eye, point, item.id) for point in view_frustum.look_points(item.position, item.size)):
         return f"{item.id} is out of sight"
@@ -43,7 +43,7 @@ def too_heavy(seat: BodyState, item: MovableObject) -> str:
 
 
 def held_pose(seat: BodyState, size: Vec3) -> QPose:
-    """Pose of what ``seat`` carries, an object of ``size`` [m]: it lies on the hand, turned with the body."""
+    """Pose of an object of ``size`` [m] in the hand of ``seat``: it lies on the hand and turns with the body."""
     ahead, left, up = bodies.grasp_point(seat.spec, size)
     cos, sin = math.cos(seat.pose.yaw), math.sin(seat.pose.yaw)
     x, y = seat.pose.x + cos * ahead - sin * left, seat.pose.y + sin * ahead + cos * left

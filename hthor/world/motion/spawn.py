@@ -1,4 +1,4 @@
-"""Placing bodies, at the start of an episode or by hand: on free floor and clear of each other."""
+"""Places bodies on free floor, clear of each other, at the start of an episode or by hand."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -16,7 +16,7 @@ from hthor.world.state.body_state import BodyState
 def place_bodies(seats: Sequence[BodyState], human: Pose, robots: Sequence[Pose]) -> None:
     """Put every seat at its start, or at the free place nearest to it.
 
-    A robot without a start of its own stands nearest to the first robot's, clear of the bodies before it.
+    A robot without a start of its own stands as near as possible to the first robot's start, clear of earlier bodies.
     """
     first = robots[0] if robots else human
     for number, seat in enumerate(seats):
@@ -41,7 +41,7 @@ def _clear_place(seat: BodyState, pose: Pose, others: Sequence[BodyState]) -> Ve
 
 
 def _cells_near(seat: BodyState, others: Sequence[BodyState]) -> NDArray[np.bool_]:
-    """(ny, nx) cells around the others, a little more than those from which the body would touch them."""
+    """(ny, nx) bool, the cells from which the body would touch one of the others, and a few cells more."""
     space, cells = seat.space, np.zeros_like(seat.space.free)
     for other in others:
         reach = math.ceil((seat.spec.radius + other.spec.radius) / space.cell) + 1
