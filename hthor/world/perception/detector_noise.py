@@ -1,15 +1,15 @@
 """The errors of a detector: objects overlooked, objects seen where they are not.
 
-The errors depend on the trial's seed, the seat, the second of time (a *glimpse*) and the object, never on how often the
-detector was read before. Within a glimpse:
+The errors depend on the trial's seed, the seat, the second of time (a *glimpse*) and the object, not on how often the
+detector is read. Within a glimpse:
 
-- an object in view is overlooked with the chance ``miss``, on its own, for the whole glimpse; looking again a second
-  later is a new chance. Furniture, doorways, people, robots and what the seat itself holds are never overlooked.
-- with the chance ``false_alarm`` one object that is not in view, of a kind that tasks ask for, is reported all the
-  same: as lying, in plain sight and within the detector's range, on a surface of a piece of furniture that is in view.
-  Where there is no such surface or object there is no false alarm. The report is like any other; only looking again
-  tells.
-- reported positions of objects are off by a normal error of ``position_sigma`` along each axis.
+- each object in view is independently overlooked with probability ``miss``, for the whole glimpse; a second later it is
+  drawn again. Furniture, doorways, people, robots and the object that the seat itself holds are never overlooked.
+- with probability ``false_alarm``, one object that is not in view and is of a kind that tasks ask for is reported at a
+  wrong place: on a surface of a piece of furniture in view, unhidden and within the detector's range. If there is no
+  such surface or object, there is no false alarm. The report looks like any other; only another glimpse can show that
+  it is false.
+- reported positions of objects have a normal error of ``position_sigma`` along each axis.
 """
 
 import math
@@ -28,7 +28,7 @@ from hthor.world.state.movable_object import MovableObject
 from hthor.world.state.support_surfaces import SupportSurface, SupportSurfaces
 
 GLIMPSE_TICKS = round(1.0 / rules.TICK_S)
-"""[ticks] for which an error persists: a detector that errs on one frame errs on the next one too. Our choice: 1 s."""
+"""[ticks] for which an error persists: a detector that errs in one frame also errs in the next. Our choice: 1 s."""
 _POSITION_TRIES = 4
 _SURFACE_SHARE = 0.8
 
@@ -39,11 +39,11 @@ def assign_detectors(
     """Each robot's detector.
 
     Args:
-        robots: their seats. bodies: what each seat's body can do, and declares.
-        given: what a trial says, in the order of the robots: records, or what `hthor.types.detector_specs.parse` reads.
+        robots: their seats. bodies: the body in each seat, which declares its own detector.
+        given: the trial's detectors, in the robots' order: records, or texts for `hthor.types.detector_specs.parse`.
 
     Raises:
-        HthorError: when there are more than robots, or one cannot be read.
+        HthorError: when there are more detectors than robots, or a detector's text cannot be read.
     """
     wanted = list(given)
     if len(wanted) > len(robots):
@@ -65,10 +65,10 @@ class NoisyDetector:
     def report(
         self, found: Sequence[Detection], items: Iterable[MovableObject], seed: int, tick: int
     ) -> tuple[Detection, ...]:
-        """What it reports instead of what there is to see, by id.
+        """The detections that the detector reports, with its errors, by id.
 
         Args:
-            found: what an ideal detector reports. items: all objects of the world. seed: the trial's. tick: now.
+            found: the detections of an ideal detector. items: all objects of the world. seed: of the trial. tick: now.
         """
         spec, root = self._spec, seeds.derive(seed, "detector", self._seat.name, tick // GLIMPSE_TICKS)
         kept = [self._seen(detection, root) for detection in found if not self._missed(detection, root)]
@@ -91,7 +91,7 @@ class NoisyDetector:
         return msgspec.structs.replace(detection, position=(x, y, z), distance=self._distance((x, y, z)))
 
     def _phantom(self, found: Sequence[Detection], items: Iterable[MovableObject], root: int) -> list[Detection]:
-        """At most one object where it is not."""
+        """The false alarm: at most one object, at a place where it is not."""
         seen = {detection.id for detection in found}
         absent = [item for item in items if _is_target(item) and item.id not in seen and item.id != self._seat.holding]
         if not absent:
@@ -115,7 +115,7 @@ class NoisyDetector:
         return []
 
     def _spots(self, furniture: Iterable[str], item: MovableObject, root: int) -> Iterator[tuple[SupportSurface, Vec3]]:
-        """Where the object might lie on what is in view, in an order that the glimpse decides."""
+        """Places for the object on furniture in view, in an order that is drawn for the glimpse."""
         places = [
             (seeds.draw(root, "where", thing, number), place)
             for thing in furniture

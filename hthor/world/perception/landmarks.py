@@ -1,4 +1,4 @@
-"""Furniture and doorways as targets of sight: what never moves, and the points at which it is looked for."""
+"""Furniture and doorways as targets that never move, with the points at which visibility is tested."""
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
@@ -13,16 +13,16 @@ from hthor.houses.space.solids import WALL_M
 from hthor.types import Opening, Thing, Vec3
 
 _DOORWAY_HEIGHT_M = 1.0
-"""[m] Height of the point at which a doorway is looked for."""
+"""[m] Height of the point at which the visibility of a doorway is tested."""
 _ROUNDING_M = 1e-6
 _CORNER_SHARE, _ABOVE_SURFACE_M = 0.85, 0.02
-"""Furniture is looked for at its upper corners, pulled in to this share, and this far [m] off its surfaces."""
+"""Furniture is tested at its upper corners, scaled by this share about its centre, and this far [m] above surfaces."""
 
 
 class Landmark(Struct, frozen=True):
     """The constant part of a detection of a thing that never moves: all fields except distance and state.
 
-    ``points`` [m], house frame, are where it is looked for.
+    ``points`` [m], house frame, are the points at which its visibility is tested.
     """
 
     id: str
@@ -54,13 +54,13 @@ def pack_targets(found: Sequence[Landmark], span: Mapping[str, tuple[int, int]])
 
 
 def _bounding_sphere(points: Sequence[Vec3]) -> tuple[float, float, float, float]:
-    """Middle and radius [m] of a ball around the points, a little larger than it need be."""
+    """Middle and radius [m] of a ball around the points, slightly enlarged against rounding."""
     x, y, z = (0.5 * (min(axis) + max(axis)) for axis in zip(*points, strict=True))
     return x, y, z, max(math.dist((x, y, z), point) for point in points) + _ROUNDING_M
 
 
 def _is_furniture(thing: Thing) -> bool:
-    """Whether a thing counts as furniture; small things that lie on others are scenery."""
+    """Whether a thing counts as furniture; small static things that lie on others are not detected."""
     return not thing.parent or catalog.kind(thing.kind).receptacle
 
 

@@ -1,4 +1,4 @@
-"""The solids that hide things, laid out for the visibility kernels: in groups that lie close together."""
+"""The solids that hide things, arranged for the visibility kernels in groups that lie close together."""
 
 from collections.abc import Iterator
 
@@ -9,9 +9,9 @@ from hthor.geometry.ray_casting import Floats, Ints
 from hthor.world.model.geom_index import GeomIndex
 
 _GROUP_MAX = 8
-"""A group with more solids than this is split."""
+"""A group of more solids than this is split."""
 _GROUPED_RADIUS_MAX_M = 0.8
-"""A larger solid [m] is a group of its own: it would make any other group large."""
+"""[m] A solid with a larger radius is a group of its own, because it would enlarge any other group."""
 
 OccluderArrays = tuple[Floats, Floats, Floats, int, int]
 """``groups, spheres, boxes, fixed, count`` of `Occluders`, in the order in which kernels take them."""
@@ -21,13 +21,13 @@ class Occluders:
     """The occluding solids of one world.
 
     Attributes:
-        arrays: what the kernels take:
+        arrays: the arguments of the kernels:
             ``groups`` (5, G + 1), bounding spheres (centres and radii [m]) of groups of solids that never move, and the
             index at which each group begins; the last column only marks the end;
             ``spheres`` (4, N), bounding spheres of the solids [m];
             ``boxes`` (N, 13), their half extents [m], row-major rotations, and numbers of geoms;
-            ``fixed``, how many of them, from the front, never move; ``count``, how many there are now.
-        version: of the world, at the last `follow`.
+            ``fixed``, how many solids, counted from the first, never move; ``count``, how many there are now.
+        version: the world's version at the last `follow`.
     """
 
     def __init__(self, index: GeomIndex) -> None:
@@ -46,7 +46,7 @@ class Occluders:
         self.version = -1
 
     def follow(self, version: int) -> None:
-        """Read the poses of the solids that may move; ``version`` is that of the world now."""
+        """Read the poses of the solids that may move; ``version`` is the world's version now."""
         self.version = version
         index, fixed = self._index, self._fixed
         solids = index.pos, index.radius, index.half, index.mat, index.loose

@@ -1,4 +1,4 @@
-"""Which solid hides a point from an eye, and how far the eye may move while it stays hidden: compiled."""
+"""Compiled: the solid that hides a point from an eye, and how far the eye can move while the point stays hidden."""
 
 import math
 from typing import Any
@@ -11,17 +11,17 @@ from hthor.types import Vec3
 from hthor.world.perception.view_frustum import ViewAxes, in_frame, mark_spheres_in_view, sphere_in_view, view_axes
 
 BESIDE_RAD = 0.15
-"""[rad] Objects whose directions from the eye differ by no more than this appear beside one another; our choice."""
+"""[rad] Objects whose directions from the eye differ by no more than this appear close together; our choice."""
 _CORNERS = tuple((x, y, z) for x in (-0.8, 0.8) for y in (-0.8, 0.8) for z in (-0.8, 0.8))
-"""Corners of a box in half extents, pulled in so that what it lies on does not hide them."""
+"""Corners of a box in half extents, moved inwards so that the support of the box does not hide them."""
 _MARGIN = 1.05
-"""Factor by which the cone that is searched for occluders is widened, against rounding."""
+"""Factor by which the cone in which occluders are searched is widened, against rounding."""
 
 
 @numba.njit(cache=True, error_model="numpy")
 def _box_blocks(box: Floats, px: float, py: float, pz: float, ux: float, uy: float, uz: float) -> bool:
-    """Whether a solid whose middle is at (px, py, pz) from the eye meets the line of sight; as
-    `hthor.geometry.ray_casting` has it.
+    """Whether a solid whose middle is at (px, py, pz) from the eye meets the line of sight; the test is that of
+    `hthor.geometry.ray_casting`.
     """
     near, far = 0.0, 1.0
     for axis in range(3):
@@ -41,12 +41,12 @@ def _box_blocks(box: Floats, px: float, py: float, pz: float, ux: float, uy: flo
 
 @numba.njit(cache=True, error_model="numpy")
 def occlusion_leeway(box: Floats, px: float, py: float, pz: float, ux: float, uy: float, uz: float) -> float:
-    """How far [m] the eye may go, at the same height, before the line of sight (ux, uy, uz) can miss a solid it meets.
+    """How far [m] the eye can move, at the same height, before its line of sight (ux, uy, uz) can miss a solid.
 
-    The line crosses the solid's middle plane, across its thinnest side with the normal n, at a point c. On an axis a of
-    that plane c is p - K u / v, p and K being the target's place along a and n, u and v the line's extents along them.
-    When the eye goes by d, u changes by d times the horizontal part of a and v by d times that of n, at most; so c
-    stays inside as long as d <= s / (K/v (a + u n / v) + s n / v), where s is how far inside it is.
+    The line crosses the solid's middle plane, whose normal n is along the thinnest side, at a point c. On an axis a of
+    that plane, c is p - K u / v: p and K are the target's coordinates along a and n, u and v the line's extents along
+    them. When the eye moves by d, u changes at most by d times the horizontal part of a, and v by d times that of n. So
+    c stays inside if d <= s / (K/v (a + u n / v) + s n / v), where s is the distance of c from the edge.
     """
     thin = 0
     for axis in range(1, 3):
@@ -75,11 +75,11 @@ def occlusion_leeway(box: Floats, px: float, py: float, pz: float, ux: float, uy
 def nearby_occluders(
     view: ViewAxes, farthest: float, groups: Floats, spheres: Floats, fixed: int, count: int
 ) -> tuple[Any, Any]:
-    """The solids that reach into the field of view, no farther away than ``farthest``.
+    """The solids that are partly in the field of view, no farther away than ``farthest``.
 
     Returns:
-        (N,) their indices, in order, and (N, 5) where their middles are from the eye, and the squares of the distances
-        and of the radii.
+        (N,) their indices, in order; and (N, 5) their middles relative to the eye, the squared distances and the
+        squared radii.
     """
     some, loose = np.empty(groups.shape[1] - 1, dtype=np.bool_), np.empty(count - fixed, dtype=np.bool_)
     mark_spheres_in_view(view, farthest, groups, some)
@@ -106,11 +106,11 @@ def nearby_occluders(
 def first_occluder(
     ux: float, uy: float, uz: float, first: float, end: float, last: int, ids: Ints, rel: Floats, boxes: Floats
 ) -> int:
-    """What hides the point at (ux, uy, uz) from the eye, -1 for nothing; the test is that of
+    """The solid that hides the point at (ux, uy, uz) from the eye, -1 for none; the test is that of
     `hthor.geometry.ray_casting`.
 
     Args:
-        first, end: the geoms of the target itself, which do not hide it. last: what to try first, -1 for nothing.
+        first, end: the target's own geoms, which do not hide it. last: the solid to try first, -1 for none.
     """
     if last >= 0:
         box = boxes[ids[last]]
@@ -121,9 +121,9 @@ def first_occluder(
         px, py, pz = rel[c, 0], rel[c, 1], rel[c, 2]
         along = px * ux + py * uy + pz * uz
         if rel[c, 3] * length2 - along * along > rel[c, 4] * length2:
-            continue  # far off the whole line
+            continue  # far from the whole line
         if along > length2 and rel[c, 3] - 2.0 * along + length2 > rel[c, 4]:
-            continue  # beyond the point
+            continue  # behind the point
         box = boxes[ids[c]]
         if not first <= box[12] < end and _box_blocks(box, px, py, pz, ux, uy, uz):
             return c
@@ -131,7 +131,7 @@ def first_occluder(
 
 
 def sample_points(position: Vec3, size: Vec3, yaw: float, looked_for: tuple[Vec3, ...]) -> Any:
-    """(N, 3) points [m] all over an upright box, with those that it is ``looked_for`` at in front."""
+    """(N, 3) points [m] all over an upright box, the points ``looked_for`` first."""
     (x, y, z), (w, d, h), cos, sin = position, (extent / 2.0 for extent in size), math.cos(yaw), math.sin(yaw)
     corners = [(x + w * a * cos - d * b * sin, y + w * a * sin + d * b * cos, z + h * c) for a, b, c in _CORNERS]
     return np.array([*looked_for, *corners])
@@ -143,17 +143,17 @@ def measure(
     points: Floats, index: int, others: Floats, wanted: Floats,
     groups: Floats, spheres: Floats, boxes: Floats, fixed: int, count: int,
 ) -> Any:  # fmt: skip
-    """Share of the points of one target that are in view, and how many others in view appear beside it.
+    """The share of one target's points that are in view, and how many other objects in view appear close to it.
 
     Args:
         x, y, z, yaw, pitch, wide, high: the eye, see `visibility_kernel.visible_targets`.
         points: (N, 3) [m], all over the target; the first is its middle. index: its row in ``wanted``.
-        others: (M, 3) middles [m] of what may be beside it. wanted: (M, 3) 0 or less for what does not count, and the
-            range of each one's own geoms, which do not hide it.
+        others: (M, 3) middles [m] of other objects. wanted: (M, 3) of each, 0 or less if it does not count, and the
+            range of its own geoms, which do not hide it.
         groups, spheres, boxes, fixed, count: `hthor.world.perception.occluders.Occluders.arrays`.
 
     Returns:
-        (2,) the share, 0 to 1, and the number.
+        (2,) the share, 0 to 1, and the number of other objects.
     """
     view = view_axes(x, y, z, yaw, pitch, wide, high)
     tx, ty, tz = points[0, 0] - x, points[0, 1] - y, points[0, 2] - z
@@ -173,7 +173,7 @@ def measure(
             chosen[chosen_count] = k
             chosen_count += 1
             farthest = max(farthest, far)
-    # only what stands in a narrow cone around the target can hide any of this
+    # only solids in a narrow cone around the target can hide any of these points
     half = math.tan(min(1.5, max(BESIDE_RAD, math.asin(min(1.0, size / max(apart, 1e-9)))) * _MARGIN))
     cone = view_axes(x, y, z, math.atan2(ty, tx), math.asin(max(-1.0, min(1.0, tz / max(apart, 1e-9)))), half, half)
     ids, rel = nearby_occluders(cone, farthest + size, groups, spheres, fixed, count)

@@ -1,4 +1,4 @@
-"""A range scan over the static obstacles of a house; moving bodies and carried objects are not in it."""
+"""Range scans of the static obstacles of a house; bodies and movable objects are not in them."""
 
 import math
 from typing import Any
@@ -21,10 +21,10 @@ class RangeScanner:
         self._bearings.setflags(write=False)
         self._limit = spec.scan_range
         self._tops = _tops(house, space, spec.height)
-        self._over = 0.0 if isinstance(spec, RobotSpec) else spec.eye  # a robot's range finder looks over nothing
+        self._over = 0.0 if isinstance(spec, RobotSpec) else spec.eye  # a robot's range finder cannot look over things
 
     def scan(self, pose: Pose, space: FreeSpace) -> Scan:
-        """What the sensor measures from ``pose`` now, exact on the obstacle raster of 5 cm cells."""
+        """The scan from ``pose``, exact on the obstacle grid ``space`` of 5 cm cells."""
         place = *space.origin, space.cell, pose.x, pose.y, pose.yaw
         ranges, tops, walls = _march(space.raw, self._tops, *place, self._bearings, self._limit, self._over)
         beyond = walls if self._over else None
@@ -32,7 +32,7 @@ class RangeScanner:
 
 
 def _tops(house: HouseSpec, space: FreeSpace, height: float) -> np.ndarray:
-    """(ny, nx) [m], the height of the tallest furniture that stops a body in each cell; infinite elsewhere."""
+    """(ny, nx) [m], the height of the tallest furniture that stops a body in each cell; infinite in other cells."""
     tops = np.full(space.raw.shape, np.inf)
     slabs = [slab for _, slab in solids.furniture_slabs(house) if slab.low < height]
     walls = np.array(
@@ -51,8 +51,8 @@ def _march(
     raw: Bools, tops: Floats, ox: float, oy: float, cell: float, x: float, y: float, yaw: float, bearings: Floats,
     limit: float, over: float,
 ) -> Any:  # fmt: skip
-    """Ranges, tops and what lies beyond (N,) [m]: each beam goes from cell edge to cell edge until it enters a cell
-    that is not clear, and then on over everything that is lower than ``over`` [m].
+    """Arrays (N,) [m] of a `Scan`: ranges, tops, beyond. Each beam goes from cell edge to cell edge until it enters a
+    cell that is not clear, and then on over obstacles lower than ``over`` [m].
     """
     ny, nx = raw.shape
     out, met, beyond = np.empty(len(bearings)), np.full(len(bearings), np.inf), np.full(len(bearings), limit)

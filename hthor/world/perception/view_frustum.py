@@ -1,4 +1,4 @@
-"""An eye's position, axes and field of view, and which points and balls are within it."""
+"""An eye's position, axes and field of view, and tests whether points and balls are in view."""
 
 import functools
 import math
@@ -28,12 +28,12 @@ def half_fov_tangents(spec: BodySpec) -> Vec2:
 
 
 def eye_position(pose: Pose, spec: BodySpec) -> Vec3:
-    """Where the eye is [m], house frame."""
+    """The position of the eye [m], house frame."""
     return (pose.x, pose.y, spec.eye)
 
 
 def look_points(position: Vec3, size: Vec3) -> tuple[Vec3, Vec3]:
-    """Where an object is looked for [m]: its centre and a point near its top."""
+    """The points [m] at which an object's visibility is tested: its centre and a point near its top."""
     x, y, z = position
     return position, (x, y, z + 0.4 * size[2])
 
@@ -66,7 +66,7 @@ def in_frame(view: ViewAxes, dx: float, dy: float, dz: float) -> bool:
 
 @numba.njit(cache=True, error_model="numpy")
 def sphere_in_view(view: ViewAxes, reach: float, balls: Floats, i: int) -> bool:
-    """Whether ball ``i`` of (4, N), middles and radii [m], is, in part, within reach and in the field of view."""
+    """Whether ball ``i`` of ``balls`` (4, N), middles and radii [m], is partly in reach and in the field of view."""
     ex, ey, ez, fx, fy, fz = view[0], view[1], view[2], view[3], view[4], view[5]
     lx, ly, lz, ux, uy, uz, w, h = view[6], view[7], view[8], view[9], view[10], view[11], view[12], view[13]
     dx, dy, dz, size = balls[0, i] - ex, balls[1, i] - ey, balls[2, i] - ez, balls[3, i]
@@ -81,6 +81,6 @@ def sphere_in_view(view: ViewAxes, reach: float, balls: Floats, i: int) -> bool:
 
 @numba.njit(cache=True, error_model="numpy")
 def mark_spheres_in_view(view: ViewAxes, reach: float, balls: Floats, out: Bools) -> None:
-    """Mark the balls of which this is so."""
+    """Set ``out`` to whether each ball is partly within reach and in the field of view."""
     for i in range(len(out)):
         out[i] = sphere_in_view(view, reach, balls, i)

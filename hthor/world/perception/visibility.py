@@ -1,4 +1,4 @@
-"""What each seat sees of a world now: objects, bodies, furniture and doorways in view."""
+"""The objects, bodies, furniture and doorways that each seat has in view now."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -21,17 +21,17 @@ from hthor.world.state.objects import Objects
 
 _copy: Any = Detection.__copy__  # type: ignore[attr-defined]
 BODY_RANGE_M = 3.0
-"""Every detector reports people and robots up to this distance [m], even where its own range is shorter."""
+"""[m] Every detector reports people and robots up to this distance, even if its own range is shorter."""
 CLUTTER_RANGE_M = 2.0
-"""Detection range [m] of small household objects that no task asks for; our choice, keeps detections few."""
+"""[m] Detection range of small household objects that no task asks for; our choice, which keeps detections few."""
 SMALL_M = 0.5
-"""Objects up to this length [m] count as clutter beside one another in `Visibility.sighting`; our choice."""
+"""[m] Objects up to this length count as small objects in `hthor.types.Sighting.beside`; our choice."""
 _ROUNDING_M = 1e-6
 _NOT_SEEN = Sighting()
 
 
 class _SeatView:
-    """A seat's eye and what it saw last; ``records`` are detections that stay valid while it is at ``place``."""
+    """A seat's eye and its last detections; ``records`` are detections that are valid while the eye is at ``place``."""
 
     __slots__ = (
         "body",
@@ -60,7 +60,7 @@ class _SeatView:
 class Visibility:
     """Finds the objects, furniture, doorways and bodies that a seat sees, in one compiled call.
 
-    Targets are numbered: the objects, then the bodies, then what never moves, furniture before doorways.
+    Targets are numbered: first the objects, then the bodies, then furniture, then doorways.
     """
 
     def __init__(
@@ -100,7 +100,7 @@ class Visibility:
         self._world_version = self._pose_version = 0
 
     def detections(self, seat: BodyState) -> tuple[Detection, ...]:
-        """What the seat's detector reports now, by id; the same records as long as neither eye nor world changes."""
+        """Detections of the seat's detector now, by id; the same records as long as neither eye nor world changes."""
         self._refresh()
         view, version = self._views[seat.name], (self._world_version, self._pose_version)
         if view.version != version:
@@ -113,7 +113,7 @@ class Visibility:
         return view.detections
 
     def sighting(self, seat: BodyState, id: str) -> Sighting:
-        """How well the seat sees an object now; a share of 0 for what it does not see or is no object."""
+        """How visible an object is to the seat now; a share of 0 if it is not in view or not an object."""
         self.detections(seat)
         item, view = self._objects.get(id), self._views[seat.name]
         if item is None or item.number not in view.seen:
@@ -133,7 +133,7 @@ class Visibility:
         return Sighting(share=share, beside=beside)
 
     def in_view(self, seat: BodyState) -> tuple[str, ...]:
-        """Ids of the objects that the seat has in view within `rules.FIND_RANGE_M` of its eye, or in its hand."""
+        """Ids of the objects in the seat's hand, or in its view within `rules.FIND_RANGE_M` of its eye."""
         self._refresh()
         view = self._views[seat.name]
         if not self._object_count or not self._any_near(view):
@@ -144,7 +144,7 @@ class Visibility:
         return tuple(item.id for item in self._items if item.number in seen or item.id == seat.holding)
 
     def _refresh(self) -> None:
-        """Copy what has moved, and count up the versions of the world (objects, doors) and of the poses."""
+        """Copy the poses that changed, and increase the versions of the world (objects, doors) and of the poses."""
         objects, doors = self._objects, self._doors
         if self._objects_version != objects.changes:
             self._objects_version = objects.changes
@@ -165,7 +165,7 @@ class Visibility:
                 self._pose_version += 1
 
     def _look(self, view: _SeatView, pose: Pose) -> None:
-        """Renew what an eye sees."""
+        """Update the detections of an eye."""
         spec = view.body.spec
         if view.roster != self._objects.roster:
             view.roster = self._objects.roster
@@ -176,7 +176,7 @@ class Visibility:
         view.detections = self._reported(view.seen, (pose.x, pose.y, spec.eye), view.records)
 
     def _reported(self, seen: list[int], eye: Vec3, known: dict[int, Detection]) -> tuple[Detection, ...]:
-        """A record of each target: the ``known`` one from the same place if any; bodies always get a new one."""
+        """A detection for each target: the ``known`` record from the same place if any; always a new one for a body."""
         found, moving, count, records = [], self._moving_count, self._object_count, self._landmark_records
         dist, from_new_place = math.dist, not known
         for index in seen:
@@ -204,7 +204,7 @@ class Visibility:
         return False
 
     def _seen_near(self, view: _SeatView) -> set[int]:
-        """Numbers of the objects in view within `rules.FIND_RANGE_M`; from the last full look if that is up to date."""
+        """Numbers of the objects in view within `rules.FIND_RANGE_M`, from the last detections if up to date."""
         spec, pose = view.body.spec, view.body.pose
         if (
             view.version == (self._world_version, self._pose_version)
@@ -217,7 +217,7 @@ class Visibility:
     def _see(
         self, view: _SeatView, points: Floats, wanted: Floats, reach: float, balls: Floats, spots: Floats, order: Ints
     ) -> list[int]:
-        """Which of these targets an eye sees; see `hthor.world.perception.visibility_kernel.visible_targets`."""
+        """The targets that an eye sees; see `hthor.world.perception.visibility_kernel.visible_targets`."""
         if self._occluders.version != self._world_version:
             self._occluders.follow(self._world_version)
         targets = self._object_count, points, wanted, reach, balls, spots
@@ -233,7 +233,7 @@ class Visibility:
         return (pose.x, pose.y, view.body.spec.eye, pose.yaw, pose.pitch, *view.tangents)
 
     def _is_near(self, index: int, pose: Pose, height: float) -> bool:
-        """The same sum as the kernel computes, so that both agree to the last bit."""
+        """Whether an object is within range of the eye; the sum is that of the kernel, so that both agree bitwise."""
         x, y, z = self._items[index].position
         dx, dy, dz = x - pose.x, y - pose.y, z - height
         return dx * dx + dy * dy + dz * dz <= rules.FIND_RANGE_M * rules.FIND_RANGE_M

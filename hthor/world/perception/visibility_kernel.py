@@ -1,4 +1,4 @@
-"""Which targets an eye sees, compiled: tests range first, then the field of view, then lines of sight.
+"""Compiled: finds the targets that an eye sees by testing range, then field of view, then lines of sight.
 
 One call handles all targets and takes a few microseconds. Loops over balls, points and solids avoid branches where they
 can, so that they compile to vector instructions.
@@ -19,9 +19,9 @@ from hthor.world.perception.view_frustum import ViewAxes, in_frame, mark_spheres
 def _mark_fixed_targets(
     view: ViewAxes, reach: float, balls: Floats, points: Floats, out: Bools, marked: Bools
 ) -> float:
-    """Of targets that never move, mark those in reach that have points to look at, and these; the farthest, squared.
+    """Mark targets in reach that never move, and their points to be tested; returns the largest squared distance.
 
-    A point is looked at when it is in the field of view and not sure to be hidden still.
+    A point must be tested if it is in the field of view and not known to be still hidden.
     """
     ex, ey, ez, fx, fy, fz = view[0], view[1], view[2], view[3], view[4], view[5]
     lx, ly, lz, ux, uy, uz, w, h = view[6], view[7], view[8], view[9], view[10], view[11], view[12], view[13]
@@ -50,9 +50,9 @@ def _mark_fixed_targets(
 
 @numba.njit(cache=True, error_model="numpy")
 def _mark_moving_target(view: ViewAxes, reach: float, small: bool, points: Floats, k: int, marked: Bools) -> float:
-    """Mark the points of a target in reach that are in the field of view; the squared distance of the farther, or 0.
+    """Mark the points in the field of view of a target in reach; returns the largest squared distance, or 0.
 
-    A target is in reach by either of its points, a small one only by its first.
+    A target is in reach if either of its points is; a small target, only if its first point is.
     """
     near, most = False, 0.0
     for p in range(2):
@@ -74,22 +74,22 @@ def visible_targets(
     small: int, points: Floats, wanted: Floats, reach: float, balls: Floats, spots: Floats,
     groups: Floats, spheres: Floats, boxes: Floats, fixed: int, count: int, order: Ints,
 ) -> Any:  # fmt: skip
-    """Which targets are in view: within reach by any of their points, and any point in the field of view and unhidden.
+    """The targets in view: any of their points is within reach, and any is in the field of view and not hidden.
 
-    There are targets that may move, with two points each, and others that never do.
+    There are targets that may move, with two points each, and targets that never move.
 
     Args:
-        x, y, z: the eye [m]. yaw, pitch: where it looks [rad]. wide, high: tangents of half the fields of view.
-        small: how many of those that may move, counted from the front, are in reach only by their first point.
-        points: (M, 2, 3) [m]. wanted: (M, 3) reach [m] from the eye, 0 or less for targets that are not there, and the
-            range of the target's own geoms, which do not hide it.
-        reach: [m] of those that never move. balls: (7, S + 1) middles and radii [m] of balls around the points of each,
-            the range of its own geoms, and where its ``spots`` begin; the last column only says where they end.
-        spots: (6, Q) their points [m]; and, in and out, zeros at first, where this eye was, x and y [m], when a point
-            turned out to be hidden, and how far [m] from there it is sure to be hidden still: the eye always has the
-            same height.
+        x, y, z: the eye [m]. yaw, pitch: its direction [rad]. wide, high: tangents of half the fields of view.
+        small: how many of the targets that may move, counted from the first, are in reach only by their first point.
+        points: (M, 2, 3) [m] of the targets that may move. wanted: (M, 3) for each, its reach [m] from the eye, 0 or
+            less if it is absent, and the range of its own geoms, which do not hide it.
+        reach: [m] of the targets that never move. balls: (7, S + 1) for each, middle and radius [m] of a ball around
+            its points, range of its own geoms, and index of its first spot; the last column only marks the end.
+        spots: (6, Q) points [m] of the targets that never move; and, updated by each call and initially zero, the place
+            x and y [m] of the eye when the point was found hidden, and the distance [m] from there within which it
+            stays hidden. The eye always has the same height.
         groups, spheres, boxes, fixed, count: `hthor.world.perception.occluders.Occluders.arrays`.
-        order: (M + S,) in which order to name the targets, those that may move counted first.
+        order: (M + S,) the order in which targets are returned; targets that may move have the lower numbers.
 
     Returns:
         (N,) the targets in view.
@@ -109,7 +109,7 @@ def visible_targets(
     if farthest == 0.0:
         return seen[:0]
     ids, rel = nearby_occluders(view, math.sqrt(farthest), groups, spheres, fixed, count)
-    last = -1  # what hid one point probably hides the next
+    last = -1  # the solid that hid one point probably hides the next
     for k in range(moving):
         if not out[k]:
             continue
