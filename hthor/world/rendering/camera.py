@@ -1,4 +1,4 @@
-"""Where a camera is and how it projects, as records and as the numbers a tracer wants; draws nothing."""
+"""Pose and projection of cameras, as records and as vectors for the rasterizer; this module draws nothing."""
 
 import math
 from collections.abc import Mapping
@@ -16,16 +16,16 @@ from hthor.world.perception import view_frustum
 OWN = CameraSpec()
 SIDE, _ROUND = 128, 8
 NEAR_M, FAR_M = 0.02, 80.0
-"""Nothing nearer or farther is in a picture."""
+"""[m] Nothing nearer or farther is in a picture."""
 _UP_M = 1.0e5
-"""A camera so far up that its rays are parallel: over a house they part by less than a hundredth of a millimetre."""
+"""[m] Height of a camera whose rays are nearly parallel: within a house they diverge by less than 0.01 mm."""
 
 FAR_AWAY = (0.0, 0.0, -100.0)
-"""[m] Where a viewer's own body is put while a picture is taken through its eyes."""
+"""[m] Where the viewer's own body is put while a picture is taken from its eye."""
 
 
 class Images(NamedTuple):
-    """What a camera takes at one moment, all (H, W): colours with 3 channels, depth [m], numbers of owners."""
+    """A camera's pictures at one moment, all (H, W): colours with 3 channels, depth [m], numbers of owners."""
 
     rgb: NDArray[np.uint8]
     depth: NDArray[np.float32]
@@ -33,10 +33,10 @@ class Images(NamedTuple):
 
 
 def image_size(spec: BodySpec, chosen: CameraSpec = OWN) -> tuple[int, int]:
-    """Width and height [pixels] of the pictures that a camera takes unless a call says otherwise.
+    """Width and height [pixels] of the pictures that a camera takes unless a call gives another size.
 
-    A body's own pictures have the shape of its field of view, about as many pixels as a square of `SIDE`, and sides
-    that are multiples of `_ROUND`.
+    By default, a body's pictures have the shape of its field of view, about as many pixels as a square of `SIDE`, and
+    sides that are multiples of `_ROUND`.
     """
     if chosen.size is not None:
         return chosen.size
@@ -48,8 +48,8 @@ def image_size(spec: BodySpec, chosen: CameraSpec = OWN) -> tuple[int, int]:
 def image_tangents(spec: BodySpec, size: tuple[int, int], chosen: CameraSpec = OWN) -> Vec2:
     """Tangents of half the fields of view, horizontal and vertical, of pictures of ``size`` (width, height) [pixels].
 
-    Pixels are square, whatever the size. A picture by the body's own field of view shows no more than that; one of
-    another shape shows the middle of it. A picture by another camera's shows that field of view from side to side.
+    Pixels are square for every size. With the body's own field of view, a picture of another shape shows the middle of
+    that field. With another camera's, a picture shows that camera's whole horizontal field of view.
     """
     wide, high = view_frustum.half_fov_tangents(spec)
     width, height = size
@@ -75,14 +75,14 @@ def camera_record(pose: Pose, spec: BodySpec, size: tuple[int, int], chosen: Cam
 
 
 def projection_vector(pose: Pose, spec: BodySpec, size: tuple[int, int], chosen: CameraSpec = OWN) -> Any:
-    """(16,) float64 for `hthor.world.rendering.rasterizer.fill`: a body's camera, for pictures of ``size``."""
+    """(16,) float64, a body's camera as `hthor.world.rendering.rasterizer.fill` takes it, for pictures of ``size``."""
     return np.concatenate(
         (view_frustum.view_vector(pose, spec)[:12], image_tangents(spec, size, chosen), (NEAR_M, FAR_M))
     )
 
 
 def top_view_vector(bounds: tuple[float, float, float, float]) -> Any:
-    """(16,) float64 for `hthor.world.rendering.rasterizer.fill`: straight down on x0, y0, x1, y1 [m], with north up."""
+    """(16,) float64 for `hthor.world.rendering.rasterizer.fill`: a camera straight above x0, y0, x1, y1 [m], north up."""
     x0, y0, x1, y1 = bounds
     eye = ((x0 + x1) / 2, (y0 + y1) / 2, _UP_M)
     tangents = ((x1 - x0) / 2 / _UP_M, (y1 - y0) / 2 / _UP_M)
@@ -106,18 +106,18 @@ def check_size(size: tuple[int, int]) -> None:
 
 
 def _stretch(shape: float) -> Vec2:
-    """Width and height of a rectangle of that shape and of area 1."""
+    """Width and height of a rectangle of area 1 whose width over height is ``shape``."""
     return math.sqrt(shape), math.sqrt(1.0 / shape)
 
 
 class PoseSnapshot(NamedTuple):
-    """``qpos``: the engine's positions. ``seats``: each seat's pose and body, in the order of the seats."""
+    """All poses at one moment: the engine's ``qpos``, and each seat's pose and body, in the order of the seats."""
 
     qpos: Any
     seats: Mapping[str, tuple[Pose, BodySpec]]
 
     def restore(self, model: Any, data: Any, without: str = "") -> None:
-        """Set ``data``, a copy that is never stepped, to these poses, with the body ``without`` far away."""
+        """Write these poses to ``data``, a copy that is never stepped, with the body ``without`` far away."""
         data.qpos[:] = self.qpos
         for index, (name, (pose, _)) in enumerate(self.seats.items()):
             data.mocap_pos[index] = FAR_AWAY if name == without else (pose.x, pose.y, 0.0)

@@ -1,8 +1,8 @@
 """Pictures of houses for people: four views and a plan on one sheet each, ``python -m
 hthor.world.rendering.contact_sheet HOUSE...``.
 
-The views are found by looking: of many places and directions in each room, the one that shows most of its things. The
-same house gives the same sheet.
+Each view is the best of many places and directions that are tried in a room: the one that shows most of its things.
+The same house gives the same sheet.
 """
 
 import argparse
@@ -36,11 +36,11 @@ VIEW = (480, 360)
 _LENS = msgspec.structs.replace(avatar.HUMAN, fov=(2.0 * math.atan(math.tan(0.56) * VIEW[0] / VIEW[1]), 1.12))
 _GLANCE = (64, 48)
 _PLACES, _TURNS, _TILT = 16, 10, -0.2
-"""About how many places are tried in a room, and how many directions at each."""
+"""About how many places are tried in a room, how many directions at each place, and the camera's pitch [rad]."""
 _CLEAR_M = 0.3
-"""Viewers stand this far from anything, a little more than a body needs."""
+"""[m] Viewers stand this far from all obstacles, a little more than a body needs."""
 _NEAR_M = 1.1
-"""What is nearer than this to the eye stands in the way of a view."""
+"""[m] Things nearer than this to the eye spoil a view."""
 _GAP, _BAR = 6, 24
 _PAPER, _INK = 250, (60, 55, 50)
 _ORDER = ("kitchen", "living_room", "bedroom", "bathroom")
@@ -74,7 +74,7 @@ class Photographer:
         self._rooms = {thing.id: thing.room for thing in house.things}
 
     def view(self, pose: Pose, size: tuple[int, int] = VIEW, mode: str = "rgb") -> Any:
-        """What a person at ``pose`` sees through a lens as wide as the picture, see `Studio.view`."""
+        """The view of a person at ``pose`` with the field of view of a sheet, see `OpenGLRenderer.view`."""
         return self._studio.view(PoseSnapshot(self._qpos, {HUMAN: (pose, _LENS)}), HUMAN, mode, size)
 
     def plan(self, pixels_per_metre: float) -> Any:
@@ -87,12 +87,12 @@ class Photographer:
         )
 
     def shots(self, room: Room) -> list[Shot]:
-        """Views of a room, the best first; of equal ones, the first found."""
+        """Views of a room, the best first; equally good views in the order in which they were found."""
         found = [Shot(self._worth(pose, room), room, pose) for pose in _poses(self.house, room)]
         return sorted(found, key=lambda shot: -shot.worth)
 
     def _worth(self, pose: Pose, room: Room) -> float:
-        """How many of the room's things are seen how well; less when something stands right before the eye."""
+        """A score of how many of the room's things are seen and how well; lower if something is close to the eye."""
         numbers, counts = np.unique(self.view(pose, _GLANCE, "segmentation"), return_counts=True)
         total = 0.0
         for number, count in zip(numbers.tolist(), counts.tolist(), strict=True):
@@ -115,7 +115,7 @@ def _poses(house: HouseSpec, room: Room) -> Iterator[Pose]:
 
 
 def choose(photographer: Photographer, count: int = 4) -> list[Shot]:
-    """The best view of one room of each sort, then of other rooms, then second views of these."""
+    """The best view of one room of each kind, then of the other rooms, then the rooms' second best views."""
     by_room = [(room, photographer.shots(room)) for room in photographer.house.rooms]
     ranked = sorted((shots for _, shots in by_room if shots), key=lambda shots: -shots[0].worth)
     chosen: list[Shot] = []
@@ -129,7 +129,7 @@ def choose(photographer: Photographer, count: int = 4) -> list[Shot]:
 
 
 def sheet(house: HouseSpec, pack: Pack | None = None) -> Any:
-    """Four views and the plan, each with its name, (H, W, 3) uint8; with the furniture of ``pack`` where it has any."""
+    """Four views and the plan, each with its name, (H, W, 3) uint8; furniture is from ``pack`` where it has any."""
     photographer = Photographer(house, pack)
     fine = (2 * VIEW[0], 2 * VIEW[1])
     views = [
@@ -147,7 +147,7 @@ def sheet(house: HouseSpec, pack: Pack | None = None) -> Any:
 
 
 def _plan(photographer: Photographer, height: int, title: str) -> Any:
-    """The plan, shrunk to ``height`` pixels, lying or standing, on paper of that height."""
+    """The plan, upright or turned, shrunk to fit ``height`` pixels, on paper of that height."""
     plan = photographer.plan(100.0)
     if plan.shape[1] > 1.3 * plan.shape[0]:
         plan = np.rot90(plan)
@@ -175,7 +175,7 @@ def _beside(images: Sequence[Any]) -> Any:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Make a sheet for each house named; 2 when one cannot be read or drawn."""
+    """Make a sheet for each named house; returns 2 if a house cannot be read or drawn."""
     parser = argparse.ArgumentParser(
         prog="python -m hthor.world.rendering.contact_sheet", description="Four views and a plan of houses."
     )

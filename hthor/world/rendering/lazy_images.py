@@ -1,7 +1,7 @@
 """Pictures of a world, drawn only when they are read.
 
-The profile ``fast`` traces the engine's own solids, in a millisecond and with nothing but the processor. ``nice`` draws
-what they stand for, with textures and shadows, through OpenGL; it is loaded when it is first asked for.
+The profile ``fast`` draws the engine's own solids in a millisecond, with the processor only. The profile ``nice`` draws
+detailed meshes with textures and shadows, through OpenGL; it is loaded at its first use.
 """
 
 from __future__ import annotations
@@ -30,15 +30,15 @@ MODES = ("rgb", "depth", "segmentation")
 Size = tuple[int, int] | None
 """Width and height [pixels], None for the camera's own."""
 _MARGIN_M = 0.3
-"""[m] shown around the rooms in the view from above."""
+"""[m] Margin shown around the rooms in the view from above."""
 
 
 class SegmentationLabels:
-    """The numbers of owners in a segmentation, shuffled for every episode so that a number alone says nothing.
+    """The numbers of owners in a segmentation, shuffled for every episode so that numbers reveal nothing.
 
     Numbers in alphabetic order would reveal names, and constant numbers would identify a thing from one trial to the
-    next. ``names`` are given in the order in which they are counted where pictures are drawn; the attribute of that
-    name has them in the order of the numbers that pictures show.
+    next. The argument ``names`` is in the order of the renderer's numbers; the attribute ``names`` is in the order of
+    the numbers that pictures show.
     """
 
     def __init__(self, names: Sequence[str]) -> None:
@@ -56,17 +56,17 @@ class SegmentationLabels:
         self._shown = np.array([*(number[name] for name in self._counted), -1], np.int32)
 
     def of(self, numbers: Any) -> Any:
-        """(H, W) int32, as pictures show what was counted so; -1 stays."""
+        """(H, W) int32, the numbers that pictures show, for the renderer's ``numbers``; -1 stays."""
         return self._shown[numbers]
 
 
 class LazyImages:
-    """Copies poses now and draws pictures of them when asked.
+    """Copies poses now and draws pictures of them on request.
 
     Args:
         opengl: makes the renderer of the profile ``nice``; called at most once, when first needed.
-        profile: the profile of every picture for which a call names none.
-        cameras: of the seats that do not have their bodies' own.
+        profile: the profile of pictures for which a call names none.
+        cameras: by seat, the cameras that replace their bodies' own.
     """
 
     def __init__(
@@ -94,7 +94,7 @@ class LazyImages:
         return self._labels.names
 
     def view(self, seat: str, mode: str, size: Size, profile: str | None, seed: int) -> NDArray[Any]:
-        """The seat's own view now: rgb (H, W, 3) uint8, depth (H, W) float32 [m] or segmentation (H, W) int32."""
+        """The camera's picture now: rgb (H, W, 3) uint8, depth (H, W) float32 [m] or segmentation (H, W) int32."""
         _check(MODES, mode=mode)
         size = self._size(seat, size)
         picture: NDArray[Any] = self._draw(profile).view(self._moment(), seat, mode, size, self._by(seat))
@@ -112,12 +112,12 @@ class LazyImages:
         )
 
     def camera(self, seat: str, size: Size) -> Camera:
-        """The seat's camera now, as it takes pictures of this size."""
+        """The seat's camera now, for pictures of ``size``."""
         body = self._seats[seat]
         return camera.camera_record(body.pose, body.spec, self._size(seat, size), self._by(seat))
 
     def frame(self, seat: str, size: Size, profile: str | None) -> Callable[[], NDArray[np.uint8]]:
-        """The seat's own view of this moment in colour, drawn when called."""
+        """A function that draws the colour picture of the seat's camera at this moment."""
         _check(PROFILES, profile=profile or self.profile)
         fixed, moment, by = self._size(seat, size), self._moment(), self._by(seat)
 
@@ -144,10 +144,10 @@ class LazyImages:
         return (min(xs) - _MARGIN_M, min(ys) - _MARGIN_M, max(xs) + _MARGIN_M, max(ys) + _MARGIN_M)
 
     def _by(self, seat: str) -> CameraSpec:
-        return self._cameras.get(self._seats[seat].name, camera.OWN)  # which complains of a seat that there is not
+        return self._cameras.get(self._seats[seat].name, camera.OWN)  # raises for an unknown seat
 
     def _size(self, seat: str, size: Size) -> tuple[int, int]:
-        """The size that is meant: the camera's own when None."""
+        """``size``, or the camera's own if None."""
         if size is None:
             return camera.image_size(self._seats[seat].spec, self._by(seat))
         camera.check_size(size)

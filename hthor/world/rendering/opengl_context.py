@@ -1,4 +1,4 @@
-"""Finding an OpenGL back end that works, with or without a display.
+"""Finds an OpenGL back end that works, with or without a display.
 
 Without a graphics card, Mesa starts a drawing thread for every core. With one process per core, set
 ``LP_NUM_THREADS=0`` so that these threads do not compete.
@@ -26,10 +26,10 @@ _CURE = (
 
 
 def context(width: int, height: int) -> Any:
-    """An off-screen context, made current: EGL, else OSMesa, else a hidden window; or what MUJOCO_GL names.
+    """An off-screen context, made current: EGL, else OSMesa, else a hidden window; or the one that MUJOCO_GL names.
 
     Raises:
-        RenderingUnavailable: when none works; says what was tried and what to install.
+        RenderingUnavailable: when no back end works; the message says which were tried and what to install.
     """
     wanted = os.environ.get(_VARIABLE, "").strip().lower()
     order = (wanted,) if wanted in _BACKENDS else _BACKENDS
@@ -38,7 +38,7 @@ def context(width: int, height: int) -> Any:
     for name in order:
         try:
             return _open(name, width, height)
-        except Exception as error:  # each back end fails in ways of its own
+        except Exception as error:  # every back end raises other errors
             failures.append(f"{name}: {str(error).splitlines()[0] if str(error) else type(error).__name__}")
             _forget(loaded)
     raise RenderingUnavailable(f"no OpenGL back end could draw ({'; '.join(failures)}). {_CURE}")
@@ -46,7 +46,7 @@ def context(width: int, height: int) -> Any:
 
 @contextlib.contextmanager
 def named(context: Any) -> Iterator[None]:
-    """While the engine loads its OpenGL functions: it must look for them in the library that ``context`` came from."""
+    """Make the engine load its OpenGL functions from the library that ``context`` comes from."""
     before = os.environ.get(_VARIABLE)
     os.environ[_VARIABLE] = type(context).__module__.rpartition(".")[2]
     try:
@@ -69,9 +69,9 @@ def _open(name: str, width: int, height: int) -> Any:
 
 
 def _forget(loaded: Container[str]) -> None:
-    """Undo a failed import: PyOpenGL settles on one platform the first time it is imported.
+    """Undo a failed import, because PyOpenGL chooses its platform once, at its first import.
 
-    Modules that were ``loaded`` before are someone else's and stay.
+    Modules that were ``loaded`` before belong to the user's program and stay.
     """
     if os.environ.get(_PLATFORM) in _BACKENDS and _PLATFORM not in _given:
         del os.environ[_PLATFORM]
@@ -82,4 +82,4 @@ def _forget(loaded: Container[str]) -> None:
 
 
 _given = frozenset({_PLATFORM} & set(os.environ))
-"""Whether the user chose PyOpenGL's platform; then it stays."""
+"""PyOpenGL's environment variable if the user has set it; it is then left unchanged."""

@@ -1,6 +1,6 @@
 """Pictures in the ``nice`` profile, through OpenGL: colour, depth, segmentation, and the house from above.
 
-It draws copied moments on a stage of its own (see `hthor.world.rendering.scene`), so a picture never touches the world.
+It draws copied poses with a model of its own (see `hthor.world.rendering.scene`), so a picture never changes the world.
 """
 
 import atexit
@@ -32,7 +32,7 @@ from hthor.world.rendering.scene.scene_mesh import ABOVE, ALWAYS, INSIDE
 CODE_PART = "pictures"
 
 _SUPERSAMPLING = 2
-"""Colour is drawn finer and averaged: the engine's own smoothing leaves dotted edges where shadows are."""
+"""Colour is drawn in this many times the resolution and averaged: the engine's smoothing leaves dotted shadow edges."""
 _FAR_AWAY = (0.0, 0.0, -200.0)
 _MODES = ("rgb", "depth", "segmentation")
 _NEAR_M, _FAR_M = 0.02, 120.0
@@ -40,11 +40,11 @@ _ABOVE_M = 20.0
 
 
 class OpenGLRenderer:
-    """Draws moments of one world.
+    """Draws snapshots of one world.
 
     Args:
-        house: the floor plan. contents: its things, split. seats: body of each seat, in the order of the seats.
-        model: the compiled physics. scene: who owns its geoms. pack: furniture to draw instead of our own.
+        house: the floor plan. contents: its things, movable and static. seats: the body in each seat, in order.
+        model: the compiled physics. scene: the owners of its geoms. pack: furniture to draw instead of our own.
 
     Raises:
         RenderingUnavailable: when no OpenGL back end works.
@@ -73,18 +73,18 @@ class OpenGLRenderer:
         self._option = mujoco.MjvOption()
 
         self.close = weakref.finalize(self, _free, self._gl, self._context)
-        """Gives the graphics memory back."""
+        """Releases the graphics memory."""
         self.close.atexit = False
-        atexit.register(self.close)  # registered after the back end's own farewell, so it runs before it
+        atexit.register(self.close)  # registered after the back end's own exit handler, so it runs before that
 
     def look(self, moment: PoseSnapshot, seat: str, size: tuple[int, int], by: CameraSpec = projection.OWN) -> Images:
-        """What ``seat`` sees in every way."""
+        """All three pictures of the camera of ``seat``."""
         return Images(*(self.view(moment, seat, mode, size, by) for mode in _MODES))
 
     def view(
         self, moment: PoseSnapshot, seat: str, mode: str, size: tuple[int, int], by: CameraSpec = projection.OWN
     ) -> Any:
-        """What ``seat`` sees: rgb (H, W, 3) uint8, depth (H, W) float32 [m] or segmentation (H, W) int32."""
+        """One picture of the seat's camera: rgb (H, W, 3) uint8, depth (H, W) float32 [m] or segmentation (H, W) int32."""
         if mode not in _MODES:
             raise ValueError(f"mode must be one of {', '.join(_MODES)}, got '{mode}'")
         pose, spec = moment.seats[seat]
@@ -106,7 +106,7 @@ class OpenGLRenderer:
         return self._shoot("rgb", (round((x1 - x0) * pixels_per_metre), round((y1 - y0) * pixels_per_metre)))
 
     def _pose(self, moment: PoseSnapshot, without: str = "") -> None:
-        """Everything where it was; the viewer's own body is out of the picture."""
+        """Put everything where it was at ``moment``, and the body ``without`` far away."""
         position, turn = self._puppets.at(moment.qpos)
         count = len(self._followers)
         self._data.mocap_pos[:count], self._data.mocap_quat[:count] = position[self._followers], turn[self._followers]
@@ -169,7 +169,7 @@ class OpenGLRenderer:
 
 
 def _downsampled(pixels: NDArray[np.uint8], times: int) -> NDArray[np.uint8]:
-    """Each block of pixels as one of their mean colour."""
+    """Each block of ``times`` x ``times`` pixels replaced by one pixel of their mean colour."""
     height, width, channels = pixels.shape
     blocks = pixels.reshape(height // times, times, width // times, times, channels).sum(axis=(1, 3), dtype=np.uint16)
     return np.asarray((blocks + times * times // 2) // (times * times), np.uint8)
@@ -193,7 +193,7 @@ def place_at_eye(camera: Any, pose: Pose, spec: BodySpec, lens: Vec2) -> None:
 
 
 def place_above(camera: Any, bounds: tuple[float, float, float, float]) -> None:
-    """Look straight down on the area x0, y0, x1, y1 [m], north up."""
+    """Let the camera look straight down on the area x0, y0, x1, y1 [m], north up."""
     x0, y0, x1, y1 = bounds
     camera.pos, camera.forward, camera.up = ((x0 + x1) / 2, (y0 + y1) / 2, _ABOVE_M), (0, 0, -1), (0, 1, 0)
     camera.orthographic = 1

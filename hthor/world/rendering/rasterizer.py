@@ -1,9 +1,9 @@
-"""Which solid each pixel of a picture shows, and how far away, compiled.
+"""Compiled: the solid that each pixel of a picture shows, and its depth.
 
-For each solid, largest first, its pose goes into the camera's frame; then only the pixels of a rectangle around it are
-looked at. What is kept for a pixel is ``w``, one over the depth along the optical axis: along a row of pixels the ``w``
-of a flat face is a straight line, so that a box needs no division at all within a row, and round solids one square root
-a pixel. Nothing is built beforehand, so things may move freely between pictures.
+Each solid, largest first, is transformed to the camera's frame; then only the pixels in a rectangle around it are
+visited. For each pixel ``w`` is stored, one over the depth along the optical axis. Along a row of pixels the ``w`` of a
+flat face is linear, so a box needs no division within a row, and a round solid one square root per pixel. There is no
+precomputed structure, so things may move freely between pictures.
 """
 
 import math
@@ -14,18 +14,18 @@ import numba
 CODE_PART = "pictures"
 
 PLANE, SPHERE, CAPSULE, ELLIPSOID, CYLINDER, BOX = 0, 2, 3, 4, 5, 6
-"""The engine's numbers of shapes."""
+"""The engine's numbers for shapes."""
 SIDE, ROUND = 6, 7
-"""Where a solid was hit, besides its faces 0 to 5 (-x, +x, -y, +y, -z, +z): on a round side, on a ball."""
+"""Numbers of the faces that a pixel shows, besides 0 to 5 (-x, +x, -y, +y, -z, +z): a round side, a ball."""
 _SKIN_M = 1e-9
-"""A face that the eye touches is not seen."""
+"""[m] A face that is no farther than this from the eye is not seen."""
 _TIE = 1.0 + 1e-9
-"""Of two faces at the same depth the larger solid's shows, whatever the rounding."""
+"""Of two faces at the same depth, that of the larger solid is shown, independent of rounding."""
 
 
 @numba.njit(cache=True, error_model="numpy")
 def fill(view: Any, order: Any, shape: Any, half: Any, radius: Any, pos: Any, mat: Any, w: Any, hit: Any) -> None:
-    """Draw solids into ``w`` (H, W) float64 [1/m] and ``hit`` (H, W) int32, 8 x solid + face, where they are nearer.
+    """Draw solids into ``w`` (H, W) float64 [1/m] and ``hit`` (H, W) int32, 8 x solid + face, where they are nearest.
 
     Args:
         view: (16,) eye [m], forward, left and up axes, tangents of half the fields of view, near and far [m].
@@ -43,7 +43,7 @@ def fill(view: Any, order: Any, shape: Any, half: Any, radius: Any, pos: Any, ma
     for g in order:
         px, py, pz = pos[g, 0] - ex, pos[g, 1] - ey, pos[g, 2] - ez
         ahead, reach = px * fx + py * fy + pz * fz, radius[g]
-        if not (ahead + reach >= near and ahead - reach <= far):  # also what has no place, NaN
+        if not (ahead + reach >= near and ahead - reach <= far):  # also skips NaN positions
             continue
         right, up = px * rx + py * ry + pz * rz, px * ux + py * uy + pz * uz
         if not (abs(right) - ahead * tx <= reach * sx and abs(up) - ahead * ty <= reach * sy):
@@ -72,7 +72,7 @@ def _rectangle(
     ahead: float, right: float, up: float, f: Any, r: Any, u: Any, h: Any, near: float, tx: float, ty: float,
     width: int, height: int,
 ) -> Any:  # fmt: skip
-    """Columns and rows [i0, i1] x [j0, j1] that may show what of the solid's bounding box is beyond ``near``."""
+    """Columns and rows [i0, i1] x [j0, j1] that may show the part of the solid's bounding box beyond ``near``."""
     x0, x1, y0, y1 = 1e9, -1e9, 1e9, -1e9
     for corner in range(8):
         a = h[0] if corner & 1 else -h[0]
@@ -84,7 +84,7 @@ def _rectangle(
             t = 1.0 / depth
             x0, x1, y0, y1 = min(x0, x * t), max(x1, x * t), min(y0, y * t), max(y1, y * t)
             continue
-        for k in range(3):  # the edges from here to corners beyond ``near`` begin where they cross it
+        for k in range(3):  # edges from this corner to corners beyond ``near`` are cut at ``near``
             length = -2.0 * (a if k == 0 else b if k == 1 else c)
             beyond = depth + length * f[k]
             if beyond > near:
@@ -115,7 +115,7 @@ def _box(
     g: int, shape: int, o: Any, f: Any, r: Any, u: Any, h: Any, tx: float, ty: float, w_near: float, w_far: float,
     i0: int, i1: int, j0: int, j1: int, w: Any, hit: Any,
 ) -> None:  # fmt: skip
-    """The faces that look at the eye, at most three, each row by row; from inside a box there are none."""
+    """Draw the faces that point to the eye, at most three, row by row; an eye inside the box sees none."""
     height, width = w.shape
     step, first = 2.0 * tx / width, tx / width - tx
     for k in range(3):
@@ -159,10 +159,10 @@ def _round(
     g: int, shape: int, o: Any, f: Any, r: Any, u: Any, h: Any, tx: float, ty: float, w_near: float, w_far: float,
     i0: int, i1: int, j0: int, j1: int, w: Any, hit: Any,
 ) -> None:  # fmt: skip
-    """Cylinders, capsules, spheres and ellipsoids, pixel by pixel; from inside they are not seen."""
+    """Draw a cylinder, capsule, sphere or ellipsoid pixel by pixel; an eye inside it sees nothing of it."""
     height, width = w.shape
     step, first = 2.0 * tx / width, tx / width - tx
-    if shape in (SPHERE, ELLIPSOID):  # the latter is a unit ball in a frame of its own
+    if shape in (SPHERE, ELLIPSOID):  # an ellipsoid is a unit ball in a scaled frame
         o = (o[0] / h[0], o[1] / h[1], o[2] / h[2])
         f = (f[0] / h[0], f[1] / h[1], f[2] / h[2])
         r = (r[0] / h[0], r[1] / h[1], r[2] / h[2])
@@ -204,7 +204,7 @@ def _round(
 
 @numba.njit(cache=True, error_model="numpy", inline="always")
 def _ball(ox: float, oy: float, oz: float, dx: float, dy: float, dz: float, radius: float) -> float:
-    """One over the depth at which a ray enters a ball around the origin, 0 when it does not."""
+    """One over the depth at which a ray enters a ball around the origin, 0 if it misses the ball."""
     c = ox * ox + oy * oy + oz * oz - radius * radius
     b = ox * dx + oy * dy + oz * dz
     inner = b * b - (dx * dx + dy * dy + dz * dz) * c

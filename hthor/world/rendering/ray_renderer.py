@@ -1,6 +1,6 @@
-"""Pictures for agents and machines without OpenGL: a ray a pixel through the engine's own solids.
+"""Pictures for agents, without OpenGL: one ray per pixel through the engine's own solids.
 
-It draws copied moments on a copy of the model, so a picture never touches the world.
+It draws copied poses with a copy of the model, so a picture never changes the world.
 """
 
 import copy
@@ -23,10 +23,10 @@ from hthor.world.rendering.camera import Images, PoseSnapshot
 CODE_PART = "pictures"
 
 _CLEAR = 0.5
-"""[0..1] What is less opaque is transparent: it tints the colours but is left out of depth and segmentation."""
+"""[0..1] Solids less opaque than this are transparent: they tint colours but are not in depth and segmentation."""
 _HIDDEN_GROUP = 5
 _UNSET = (0.5, 0.5, 0.5, 1.0)
-"""The engine's own colour, which says that a geom has that of its material."""
+"""The engine's default colour; a geom with it has the colour of its material."""
 
 _BOARDS = ("planks", "parquet", "herringbone", "wicker")
 _CLOTH = ("armchair", "bed", "cloth", "curtain", "dog_bed", "ottoman", "pillow", "rug", "sofa", "teddy_bear", "towel")
@@ -57,14 +57,14 @@ class RayRenderer:
         self._roofless = self._solid[model.geom_group[self._solid] != geoms.CEILINGS]
 
     def look(self, moment: PoseSnapshot, seat: str, size: tuple[int, int], by: CameraSpec = camera.OWN) -> Images:
-        """What ``seat`` sees in every way at once; its own body is not in it."""
+        """All three pictures of the camera of ``seat``, without its own body."""
         view, w, hit = self._fill(moment, seat, size, by)
         return Images(self._shade(view, w, hit), _depth(w), self._numbers(hit))
 
     def view(
         self, moment: PoseSnapshot, seat: str, mode: str, size: tuple[int, int], by: CameraSpec = camera.OWN
     ) -> Any:
-        """What ``seat`` sees in one way: rgb, depth or segmentation."""
+        """One picture of the camera of ``seat``: rgb, depth or segmentation."""
         view, w, hit = self._fill(moment, seat, size, by)
         if mode == "rgb":
             return self._shade(view, w, hit)
@@ -88,7 +88,7 @@ class RayRenderer:
         return view, w, hit
 
     def _pose(self, moment: PoseSnapshot, without: str) -> None:
-        """Everything where it was, heads tilted; the viewer's own body is far away."""
+        """Put everything where it was at ``moment``, heads tilted, and the body ``without`` far away."""
         moment.restore(self._model, self._data, without)
         for seat, (pose, spec) in moment.seats.items():
             if seat == without or pose.pitch == 0.0:
@@ -99,7 +99,7 @@ class RayRenderer:
             self._tilt(self._heads[seat], *bodies.head_transform(spec, pose.pitch), pose)
 
     def _tilt(self, ids: Any, turn: Any, offset: Any, pose: Any) -> None:
-        """Turn solids of a head, in the frame of a body that stands at ``pose``."""
+        """Turn the solids of a head, in the frame of a body that stands at ``pose``."""
         cos, sin = np.cos(pose.yaw), np.sin(pose.yaw)
         body, foot = np.array(((cos, -sin, 0.0), (sin, cos, 0.0), (0.0, 0.0, 1.0))), np.array((pose.x, pose.y, 0.0))
         whole = body @ turn @ body.T
@@ -110,7 +110,7 @@ class RayRenderer:
         rasterizer.fill(view, order, self._shape, self._half, self._radius, self._pos, self._mat, w, hit)
 
     def _shade(self, view: Any, w: Any, hit: Any) -> NDArray[np.uint8]:
-        """Colours; glass is drawn over what is behind it."""
+        """Colours of all pixels; glass is drawn over the solids behind it."""
         glass_w, glass_hit = w.copy(), np.full_like(hit, -1)
         self._draw(view, self._glass, glass_w, glass_hit)
         out = np.empty((*w.shape, 3), np.uint8)
@@ -145,7 +145,7 @@ def _halves(model: Any) -> Any:
 
 
 def _colours(model: Any) -> Any:
-    """(N, 4) float32: each geom's own colour, or its material's."""
+    """(N, 4) float32, each geom's own colour, or that of its material."""
     rgba = np.array(model.geom_rgba)
     plain = (model.geom_matid >= 0) & (np.abs(rgba - _UNSET) < 1e-6).all(axis=1)
     rgba[plain] = model.mat_rgba[model.geom_matid[plain]]
@@ -153,7 +153,7 @@ def _colours(model: Any) -> Any:
 
 
 def geom_patterns(model: Any, owners: Sequence[str], house: HouseSpec, rgba: Any) -> Any:
-    """(N,) int32: the pattern of each geom, a number of `hthor.world.rendering.shading`."""
+    """(N,) int32, the pattern of each geom by its number in `hthor.world.rendering.shading`."""
     floors = {f"floor of {room.id}": _floor(room.floor) for room in house.rooms}
     outside = {wall.id for wall in house.walls if wall.room == "exterior"}
     walls = {wall.id for wall in house.walls}
@@ -184,6 +184,6 @@ def _floor(material: str) -> int:
 
 
 def _wooden(rgba: Any) -> bool:
-    """Whether a colour is that of wood, from walnut to birch, and not of rust, mustard or cream."""
+    """Whether a colour is a wood colour, from walnut to birch, and not rust, mustard or cream."""
     red, green, blue, _ = (float(value) for value in rgba)
     return red < 0.88 and red - blue > 0.15 and 0.38 < (green - blue) / (red - blue) < 0.62

@@ -1,7 +1,7 @@
-"""Colours of the pixels of a traced picture, compiled: light, patterns, glass and sky.
+"""Compiled: the colours of the pixels of a rasterized picture, with light, patterns, glass and sky.
 
-The light is a lamp at the eye, two suns without shadows and a soft sky, so that no corner is black. Patterns fade
-where a pixel covers more of a surface than they repeat over, so that nothing flickers far away.
+The light comes from a lamp at the eye, two suns without shadows and a soft sky, so that no corner is black. Patterns
+fade where a pixel covers more than one repeat of them, so that distant surfaces do not flicker.
 """
 
 import math
@@ -19,7 +19,7 @@ PLAIN, PLANKS, TILES, CARPET, PLASTER, BRICK, LAWN, GRAIN, CLOTH, GLOWING = rang
 _AMBIENT, _LAMP, _SKY, _SUN, _SUN_2 = 0.42, 0.34, 0.10, 0.16, 0.10
 _SKIRTING_M = 0.08
 _LAST = 127
-"""Of a row of the mottle; a power of 2 less one."""
+"""Last index of a row of the noise; a power of 2 less one."""
 _HAZE = (0.90, 0.93, 0.94)
 _ZENITH = (0.56, 0.74, 0.90)
 
@@ -37,7 +37,7 @@ def mottle() -> Any:
 
 @numba.njit(cache=True, error_model="numpy", inline="always")
 def _chance(a: float, b: float) -> float:
-    """A number in [-1, 1) that two whole numbers decide."""
+    """A pseudo-random number in [-1, 1) that depends on two whole numbers."""
     n = int(a) * 374761393 + int(b) * 668265263
     n = (n ^ (n >> 13)) * 1274126177
     return float((n >> 8) & 0xFFFF) / 32768.0 - 1.0
@@ -50,9 +50,9 @@ def _at(noise: Any, a: float, b: float) -> Any:
 
 @numba.njit(cache=True, error_model="numpy", inline="always")
 def _pattern(skin: int, x: float, y: float, z: float, a: float, b: float, blur: float, noise: Any) -> Any:
-    """What the surface's colour is multiplied by at (x, y, z) [m], house frame.
+    """The factor of the surface's colour at (x, y, z) [m], house frame.
 
-    ``a`` and ``b`` [m] are along and across the surface; ``blur`` [m] is what one pixel covers.
+    ``a`` and ``b`` [m] are coordinates along and across the surface; ``blur`` [m] is the width that one pixel covers.
     """
     fine = max(0.0, 1.0 - 33.0 * blur)
     wide = max(0.0, 1.0 - 8.0 * blur)
@@ -90,7 +90,7 @@ def _pattern(skin: int, x: float, y: float, z: float, a: float, b: float, blur: 
 
 @numba.njit(cache=True, error_model="numpy", inline="always")
 def _normal(shape: int, face: int, h: Any, m: Any, x: float, y: float, z: float) -> Any:
-    """Unit vector out of the solid, house frame, at (x, y, z) [m] from its centre, house frame."""
+    """Outward unit normal of the solid at (x, y, z) [m] from its centre, all in the house frame."""
     if face < SIDE:
         k, sign = face >> 1, 1.0 if face & 1 else -1.0
         return sign * m[k], sign * m[3 + k], sign * m[6 + k]
@@ -118,10 +118,10 @@ def shade(
     view: Any, w: Any, hit: Any, glass: Any,
     shape: Any, half: Any, pos: Any, mat: Any, rgba: Any, skin: Any, grain: Any, noise: Any, out: Any,
 ) -> None:  # fmt: skip
-    """Write the colours (H, W, 3) uint8 of what `hthor.world.rendering.rasterizer.fill` found.
+    """Write the colours (H, W, 3) uint8 of the solids that `hthor.world.rendering.rasterizer.fill` drew.
 
     Args:
-        view: as for `fill`. w, hit: what it drew; glass: the hits of glass in front of that.
+        view, w, hit: as in `fill`. glass: the hits of glass in front of the solids.
         rgba: (N, 4) colours. skin: (N,) patterns. grain: (N,) the axis along which each solid is longest.
     """
     height, width = w.shape
@@ -147,7 +147,7 @@ def shade(
             else:
                 t = 1.0 / w[j, i]
                 px, py, pz = ex + t * dx, ey + t * dy, ez + t * dz
-                if code != last or smooth:  # most pixels show what the one to their left shows
+                if code != last or smooth:  # most pixels show the same face as the pixel to their left
                     last, g = code, code >> 3
                     smooth = code & 7 >= SIDE
                     m = mat[g]

@@ -1,6 +1,6 @@
-"""What fills the holes in walls: frames, thresholds, leaves, windows.
+"""Meshes that fill the holes in walls: frames, thresholds, doors, windows.
 
-Frames are boxes that reach into the wall and stand a little proud of it, so that no two faces lie in one plane.
+Frames are boxes that reach into the wall and project a little from it, so that no two faces lie in one plane.
 """
 
 import math
@@ -20,9 +20,9 @@ from hthor.world.rendering.scene.shell import wall_of
 
 _CASING_M, _LINING_M, _PROUD_M = 0.06, 0.02, 0.018
 _GAP_M, _STRIP_M = 0.003, 0.006
-"""Between leaf and frame, and the height of a threshold."""
+"""[m] The gap between door and frame, and the height of a threshold."""
 _SILL_M, _STEP_M = 0.06, 0.008
-"""How far a window's sill and a door's threshold stand out of the wall."""
+"""[m] How far a window's sill and a door's threshold project from the wall."""
 _SASH_M, _BAR_M = 0.045, 0.03
 _SASH_DEEP, _BAR_DEEP, _CROSS_DEEP = (-0.022, 0.022), (-0.016, 0.016), (-0.014, 0.014)
 ENTRANCE: Rgba = (0.42, 0.28, 0.19, 1.0)
@@ -38,25 +38,25 @@ class OpeningFrame:
         self.low, self.high = opening.low, opening.high
 
     def at(self, s: float, t: float) -> Vec2:
-        """A point of the opening's frame in the house."""
+        """The house-frame coordinates [m] of a point of the opening's frame."""
         cos, sin = math.cos(self.yaw), math.sin(self.yaw)
         return (self.x + cos * s - sin * t, self.y + sin * s + cos * t)
 
     def box(self, s: Vec2, t: Vec2, z: Vec2) -> Mesh:
-        """A box between these limits."""
+        """A box between these limits [m] of the opening's frame."""
         x, y = self.at((s[0] + s[1]) / 2, (t[0] + t[1]) / 2)
         half = ((s[1] - s[0]) / 2, (t[1] - t[0]) / 2, (z[1] - z[0]) / 2)
         return slab((x, y, (z[0] + z[1]) / 2), half, self.yaw)
 
 
 def apertures(house: HouseSpec) -> Iterator[SceneMesh]:
-    """Frames of all openings, windows whole, and the leaves of doors that nobody opens."""
+    """Frames of all openings, complete windows, and the doors that are never opened."""
     for opening in house.openings:
         hole = OpeningFrame(opening)
         if opening.kind == "window":
             yield from _window(opening.id, hole)
             continue
-        # The frame of a doorway in which nothing hangs is a part of the wall: the doorway itself is thin air.
+        # The frame of a doorway without a door belongs to the wall, because the doorway itself is empty.
         hung = opening.openable or not opening.passable
         yield from _frame(opening.id if hung else wall_of(house, opening) or opening.id, hole)
         if not opening.passable:
@@ -86,7 +86,7 @@ def _window(owner: str, hole: OpeningFrame) -> Iterator[SceneMesh]:
         ((inner, outer), across, (bottom, top)),
         ((-inner, inner), across, (bottom, low)),
         ((-inner, inner), across, (high, top)),
-        ((-inner, inner), (-jut, jut), (low - 0.03, low + 0.004)),  # no wider: curtains hang beside it
+        ((-inner, inner), (-jut, jut), (low - 0.03, low + 0.004)),  # no wider, because curtains hang next to it
     ):
         yield SceneMesh(owner, hole.box(s, t, z), materials.TRIM)
     yield from _sash(owner, hole, inner, low, high)
@@ -110,7 +110,7 @@ def _sash(owner: str, hole: OpeningFrame, inner: float, low: float, high: float)
 
 
 def _shut(opening: Opening, hole: OpeningFrame) -> Iterator[SceneMesh]:
-    """A door that nobody opens, in two leaves where it is wide."""
+    """A door that is never opened; a double door where the opening is wide."""
     inner, height = hole.half - _LINING_M - _GAP_M, opening.high - _LINING_M - 2 * _GAP_M - _STRIP_M
     z = _STRIP_M + _GAP_M
     if hole.half < door_geometry.DOUBLE_M / 2:
@@ -125,7 +125,7 @@ def _shut(opening: Opening, hole: OpeningFrame) -> Iterator[SceneMesh]:
 
 
 def leaf_meshes(opens: door_geometry.Openable, joint: Joint) -> Iterator[SceneMesh]:
-    """The leaf of a doorway that turns on ``joint``, closed, in the house."""
+    """The door of a doorway that turns on ``joint``, closed, in the house frame."""
     part = next(part for part in opens.parts if part.moves == joint.name)
     (x, y, z), (half, _, tall) = part.centre, part.half
     pieces = building.door_leaf(2 * (half - _GAP_M), 2 * tall - _GAP_M, building.TRIM)
@@ -134,7 +134,7 @@ def leaf_meshes(opens: door_geometry.Openable, joint: Joint) -> Iterator[SceneMe
 
 
 def placed_meshes(owner: str, pieces: Iterable[Piece], at: Vec3, yaw: float) -> Iterator[SceneMesh]:
-    """Pieces turned by ``yaw`` [rad] and moved to ``at`` [m] in the house."""
+    """Pieces turned by ``yaw`` [rad] and moved to ``at`` [m], house frame."""
     cos, sin = math.cos(yaw), math.sin(yaw)
     turn = np.array(((cos, sin, 0.0), (-sin, cos, 0.0), (0.0, 0.0, 1.0)))
     for mesh, material, _ in pieces:

@@ -1,4 +1,4 @@
-"""Meshes and materials as assets of the visual model, each stored once; an optional pack comes first."""
+"""Meshes and materials as assets of the visual model, each stored once; those of an optional pack come first."""
 
 from collections.abc import Hashable
 from typing import Any
@@ -17,9 +17,9 @@ _THIN = 1e-12
 
 
 class AssetSource:
-    """Looks of things, with the pack's before ours.
+    """The looks of things: the pack's if it has any for a thing, else our own.
 
-    Names of a pack's textures are its own: they are called ``pack:NAME`` from here on, so that the two can share names.
+    Textures of a pack are called ``pack:NAME`` in the visual model, so that their names may equal those of ours.
     """
 
     def __init__(self, pack: Pack | None = None) -> None:
@@ -50,7 +50,7 @@ class AssetRegistry:
     """Adds geoms to a `mujoco.MjSpec`.
 
     Args:
-        spec: the model in the making. fabric: where textures come from.
+        spec: the model that is being built. fabric: the source of textures.
     """
 
     def __init__(self, spec: Any, fabric: AssetSource) -> None:
@@ -104,7 +104,7 @@ class AssetRegistry:
         return name
 
     def material(self, material: Material) -> str:
-        """Name of the engine's material."""
+        """The name of the engine's material for ``material``, which is made at its first use."""
         if material in self._materials:
             return self._materials[material]
         name = f"material {len(self._materials)}"

@@ -21,15 +21,15 @@ from hthor.world.rendering.scene.shell import shell
 
 _SHADOW_TEXELS, _SAMPLES = 2048, 0
 _EXTENT_M = 30.0
-"""Half the side of what the sun's shadows cover."""
+"""[m] Half the side of the square that the sun's shadows cover."""
 _STILL = ((0.0, 0.0, 0.0), (1.0, 0.0, 0.0, 0.0))
 
 
 class CompiledScene(NamedTuple):
     """The compiled visual model.
 
-    ``owner``: who owns each geom. ``followers``: for each of the first puppets (mocap bodies), the body of the physics
-    model that it follows. ``seats``: seat -> its puppets, the body's and the head's; the last ones of all.
+    ``owner``: the owner of each geom. ``followers``: for each of the first puppets (mocap bodies), the body of the
+    physics model that it follows. ``seats``: seat -> the puppets of its body and head, which are the last puppets.
     """
 
     model: Any
@@ -39,7 +39,7 @@ class CompiledScene(NamedTuple):
 
 
 class SceneBuilder:
-    """Dresses one house."""
+    """Builds the visual model of one house."""
 
     def __init__(self, house: HouseSpec, contents: Contents, puppets: PoseSync, fabric: AssetSource) -> None:
         self._house, self._contents, self._puppets, self._fabric = house, contents, puppets, fabric
@@ -48,7 +48,7 @@ class SceneBuilder:
         self._followers: list[int] = []
 
     def build(self, seats: Mapping[str, BodySpec], lamps: RoomLights) -> CompiledScene:
-        """Everything, compiled."""
+        """The whole house, compiled."""
         self._settings()
         self._merged((*shell(self._house), *apertures(self._house), *lamps.items()))
         for thing in self._contents.statics:
@@ -82,7 +82,7 @@ class SceneBuilder:
         lawn.material, lawn.rgba = self._wardrobe.material(material), material.rgba
 
     def _merged(self, items: Iterable[SceneMesh]) -> None:
-        """What stays where it is, one geom for each owner, material and group."""
+        """Add the parts that never move, merged to one geom for each owner, material and group."""
         heaps: dict[tuple[Any, ...], list[Mesh]] = {}
         for item in items:
             heaps.setdefault((item.owner, item.material, item.group), []).append(item.mesh)
@@ -90,7 +90,7 @@ class SceneBuilder:
             self._wardrobe.geom(self._spec.worldbody, owner, join(meshes), material, group)
 
     def _thing(self, thing: Thing) -> None:
-        """A thing that stays: its still pieces on the stage, those on its joints on puppets."""
+        """Add a static thing: its fixed pieces to the world body, pieces on its joints to puppets."""
         frame = (thing.centre, geoms.quaternion(thing.yaw))
         key = (thing.kind, thing.size, thing.variant)
         for joint, pieces in _by_joint(self._fabric.look(*key)).items():
@@ -106,7 +106,7 @@ class SceneBuilder:
             self._pieces(body, item.id, pieces, (key, joint), _STILL)
 
     def _doors(self) -> None:
-        """The leaves that hang in doorways."""
+        """Add the doors in doorways."""
         for opens in door_geometry.doorway_leaves(self._house):
             for joint in opens.joints:
                 body, frame = self._follower(self._puppets.hung[opens.id, joint.name], _STILL)
@@ -114,7 +114,7 @@ class SceneBuilder:
                     self._wardrobe.geom(body, item.owner, item.mesh, item.material, item.group, None, *frame)
 
     def _body(self, seat: str, spec: BodySpec) -> None:
-        """A seat's figure on two puppets, the second for its head."""
+        """Add a seat's figure on two puppets, the second for its head."""
         puppets = {"": self._puppet(), "head": self._puppet()}
         for moves, pieces in _by_joint(bodies.pieces(spec)).items():
             self._pieces(puppets[moves], seat, pieces, (spec, moves), _STILL)
@@ -128,7 +128,7 @@ class SceneBuilder:
             self._wardrobe.geom(body, owner, mesh, material, 0, (key, material), *frame)
 
     def _follower(self, physical: int, frame: Any) -> tuple[Any, Any]:
-        """A puppet for a body of the physics, and ``frame`` of the house as seen from that body at rest."""
+        """A puppet for a body of the physics, and the house frame ``frame`` relative to that body at rest."""
         return self._puppet(physical), self._puppets.relative(physical, frame)
 
     def _puppet(self, physical: int | None = None) -> Any:

@@ -1,6 +1,6 @@
 """Lights for a viewer: the lamp of the viewer's room, those of rooms seen through doors, a soft fill, and the sky.
 
-The lamps throw shadows, so their light stays in their rooms.
+The lamps cast shadows, so their light stays in their rooms.
 """
 
 import itertools
@@ -20,22 +20,22 @@ from hthor.world.rendering.scene.apertures import placed_meshes
 from hthor.world.rendering.scene.scene_mesh import INSIDE, SceneMesh
 
 _LAMPS = 3
-"""OpenGL knows eight lights: headlight, fill, two for each of these lamps. Each that throws shadows costs a pass."""
+"""OpenGL has eight lights: headlight, fill, and two for each of these lamps. Each light with shadows costs a pass."""
 _SPAN_M2, _MOST = 24.0, 3
-"""A lamp for each so many square metres of a room, up to three."""
+"""[m2] One lamp for this much floor of a room, and the most lamps per room."""
 _DROP_M = 0.14
-"""A lamp shines from this far under the ceiling."""
+"""[m] Distance of a lamp's light below the ceiling."""
 _AMBIENT, _HEAD = (0.30, 0.30, 0.31), (0.12, 0.12, 0.12)
 _LAMP, _LAMP_FADE, _CUTOFF, _EXPONENT = (0.50, 0.48, 0.44), (1.0, 0.02, 0.012), 86.0, 2.0
-"""A lamp: colour, how it fades with distance, half its cone's angle, and how it gathers downwards."""
+"""Of a lamp: colour, attenuation with distance, half its cone's angle [degrees], and concentration downwards."""
 _BOUNCE, _BOUNCE_FADE, _BOUNCE_DROP_M = (0.28, 0.27, 0.25), (1.0, 0.05, 0.06), 0.8
-"""What the room itself throws back, a point without shadows below the lamp."""
+"""Light reflected by the room: a point light without shadows below the lamp."""
 _FILL: tuple[Vec3, Vec3] = ((0.35, 0.55, -0.6), (0.10, 0.10, 0.10))
 _SUN, _SUNNY = ((0.10, 0.15, -1.0), (0.32, 0.31, 0.28)), (0.42, 0.42, 0.44)
-"""Where the sun shines to in the view from above, its colour, and what the sky adds to it."""
+"""In the view from above: the direction and colour of the sunlight, and the light that the sky adds."""
 _SHINE: Vec3 = (0.25, 0.25, 0.25)
 _STEP_M, _TOUCH_M, _WALL_M, _ROUNDS = 0.25, 0.12, 0.6, 8
-"""Grid of places for lamps; what counts as touching; a lamp's least distance from walls; rounds of spreading."""
+"""Grid of places for lamps, largest gap that counts as touching, least distance from walls [m]; rounds of spreading."""
 _KINDS = {
     "directional": mujoco.mjtLightType.mjLIGHT_DIRECTIONAL,
     "spot": mujoco.mjtLightType.mjLIGHT_SPOT,
@@ -56,7 +56,7 @@ class RoomLights:
         self._next = {room.id: frozenset(_neighbours(house, room)) for room in house.rooms}
 
     def items(self) -> Iterator[SceneMesh]:
-        """The lamps themselves."""
+        """The meshes of the lamps."""
         for room, places in self.places.items():
             for x, y in places:
                 at = (x, y, self._house.height - 0.001)
@@ -64,7 +64,7 @@ class RoomLights:
                     yield item._replace(group=INSIDE)
 
     def light(self, scene: Any, pose: Pose) -> None:
-        """Light ``scene``, its cameras set, for a viewer at ``pose``."""
+        """Light ``scene``, whose cameras are set, for a viewer at ``pose``."""
         self._common(scene, _AMBIENT)
         height = self._house.height
         for (x, y), share in self._active((pose.x, pose.y)):
@@ -76,7 +76,7 @@ class RoomLights:
             _add(scene, "spot", pos=place, diffuse=_LAMP, castshadow=1, specular=_SHINE, **fade)
 
     def daylight(self, scene: Any, middle: Vec2, height: float) -> None:
-        """Light ``scene``, its cameras set, for the view from above ``middle`` [m]: a sun ``height`` [m] up."""
+        """Light ``scene``, whose cameras are set, for the view from above ``middle`` [m], a sun ``height`` [m] up."""
         self._common(scene, _SUNNY)
         direction, colour = _SUN
         aim = _unit(direction)
@@ -91,7 +91,7 @@ class RoomLights:
         _add(scene, "directional", dir=_unit(_FILL[0]), diffuse=_FILL[1])
 
     def _active(self, place: Vec2) -> list[tuple[Vec2, float]]:
-        """The lamps of the viewer's room, then those of rooms next to it that are nearest; and each one's bounce."""
+        """The lamps of the viewer's room, then the nearest lamps of rooms next to it, each with its share of bounce."""
         rooms = self._house.rooms
         own = next((room.id for room in rooms if plane.inside(place, room.polygon)), None)
         if own is None:
@@ -122,7 +122,7 @@ def _unit(direction: Vec3) -> Vec3:
 
 
 def _neighbours(house: HouseSpec, room: Room) -> Iterator[str]:
-    """Rooms that can be seen into from this one: through an open doorway, or where no wall is between."""
+    """Rooms that can be seen from this room, through an open doorway or where there is no wall in between."""
     for opening in house.openings:
         if opening.passable and room.id in opening.rooms:
             yield from (other.id for other in house.rooms if other is not room and other.id in opening.rooms)
@@ -141,7 +141,7 @@ def _neighbours(house: HouseSpec, room: Room) -> Iterator[str]:
 
 
 def _spread(room: Room) -> list[Vec2]:
-    """Where a room's lamps hang: one in its middle, or several that share its floor."""
+    """The places of a room's lamps: one in its middle, or several spread over its floor."""
     points = [(x, y) for x, y in itertools.product(*(_steps(list(axis)) for axis in zip(*room.polygon, strict=True)))]
     points = [point for point in points if plane.inside(point, room.polygon)]
     count = min(_MOST, max(1, round(abs(plane.signed_area(room.polygon)) / _SPAN_M2)))
@@ -160,7 +160,7 @@ def _spread(room: Room) -> list[Vec2]:
 
 
 def _middle(room: Room, points: list[Vec2]) -> Vec2:
-    """The point farthest from all walls of the room; of equal ones, the nearest to the middle of its extent."""
+    """The point farthest from all walls of the room; of equally far points, the nearest to the middle of its extent."""
     xs, ys = zip(*room.polygon, strict=True)
     centre = ((min(xs) + max(xs)) / 2, (min(ys) + max(ys)) / 2)
     return max(points, key=lambda point: (round(distance_to_edge(point, room.polygon), 1), -math.dist(point, centre)))
@@ -183,7 +183,7 @@ def sky() -> Any:
 
 
 def _colour(x: Any, y: Any, z: Any) -> Any:
-    """Colour by direction; y is up."""
+    """The sky's colour in direction (x, y, z); y is up."""
     length = np.sqrt(x * x + y * y + z * z)
     rise, angle = y / length, np.arctan2(z, x)
     share = np.clip(rise / 0.7, 0.0, 1.0)[..., None] ** 0.6
@@ -200,7 +200,7 @@ def _colour(x: Any, y: Any, z: Any) -> Any:
 
 
 def _waves(u: Any, v: Any) -> Any:
-    """Smooth humps without a grid, from a few sines of seeded directions."""
+    """A smooth, irregular pattern of waves: a sum of a few sines in seeded directions."""
     total = np.zeros_like(u)
     for octave in range(5):
         turn, shift = (2.0 * np.pi * seeds.draw(0, "sky", name, octave) for name in ("turn", "shift"))

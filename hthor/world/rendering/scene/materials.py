@@ -1,4 +1,4 @@
-"""What floors, walls and trim of a house are made of."""
+"""The materials of floors, walls and trim of a house."""
 
 from msgspec import structs
 
@@ -11,23 +11,23 @@ THRESHOLD = Material(rgba=(0.46, 0.36, 0.27, 1.0), specular=0.15)
 GLASS = materials.glass((0.80, 0.90, 0.95, 0.14))
 LAWN = Material(rgba=(0.52, 0.64, 0.36, 1.0), emission=0.60, specular=0.0)
 LAWN_ABOVE = Material(rgba=(0.47, 0.58, 0.33, 1.0), emission=0.20, specular=0.0)
-"""The lawn as bright as the sky's foot seen through windows, and as it suits a plan."""
+"""The lawn as bright as the horizon, for views through windows, and darker, for the view from above."""
 _WALL_GLOW, _FLOOR_GLOW = 0.10, 0.04
-"""What light from all sides adds, beyond what the lamps give."""
+"""Light from all sides in addition to that of the lamps."""
 
 
 def floor(name: str) -> Material:
-    """A floor's material by the name that its house gives it."""
+    """The material of a floor by the name that the house gives it."""
     return structs.replace(materials.floor(name), emission=_FLOOR_GLOW)
 
 
 def is_exterior(face: Wall) -> bool:
-    """Whether a face looks outdoors; ProcTHOR's own files say so in its id only."""
+    """Whether a face is outdoors; ProcTHOR's own files mark that only in the id."""
     return face.room == "exterior" or face.id.startswith("wall|exterior|")
 
 
 def wall(face: Wall) -> Material:
-    """A wall face's material: its own colour when the house gives one, brick outdoors when it names nothing."""
+    """A wall face's material, in the colour that the house gives it; without any, an outdoor face is of brick."""
     name = face.material or ("brick" if is_exterior(face) else "")
     return structs.replace(materials.wall(name, face.rgb), emission=_WALL_GLOW)
 

@@ -1,6 +1,6 @@
 """Poses of everything that moves, computed on a private copy of the physics model.
 
-A mover's *rest* is its pose with every door and drawer closed; what is drawn there follows it from then on.
+The *rest* pose of a moving body is its pose with every door and drawer closed; meshes are attached in that pose.
 """
 
 import copy
@@ -15,7 +15,7 @@ from hthor.world.model.geoms import Quaternion
 
 
 class PoseSync:
-    """The physics model's moving bodies by owner.
+    """Poses of the physics model's moving bodies, by owner.
 
     Attributes:
         free: id of each movable object -> its body.
@@ -51,13 +51,13 @@ class PoseSync:
                 return
 
     def at(self, qpos: Any) -> tuple[Any, Any]:
-        """Positions (B, 3) and quaternions (B, 4) of all bodies at these positions of the engine."""
+        """Positions (B, 3) and quaternions (B, 4) of all bodies for the engine's ``qpos``."""
         self._data.qpos[:] = qpos
         mujoco.mj_kinematics(self._model, self._data)
         return self._data.xpos, self._data.xquat
 
     def relative(self, body: int, frame: tuple[Vec3, Quaternion]) -> tuple[Vec3, Quaternion]:
-        """A frame of the house as seen from ``body`` at rest."""
+        """A frame given in the house frame, relative to ``body`` at rest."""
         position, turn = self._rest[0][body], self._rest[1][body]
         back, quat, pos = np.empty(4), np.empty(4), np.empty(3)
         mujoco.mju_negQuat(back, turn)

@@ -1,4 +1,4 @@
-"""Meshes of the visual model: flat, and cut into small cells, so that light computed at corners looks smooth."""
+"""Meshes of the visual model, cut into small cells so that light, which is computed at corners, looks smooth."""
 
 import math
 from collections.abc import Iterable
@@ -10,13 +10,13 @@ from hthor.looks import Material, Mesh
 from hthor.types import Vec2, Vec3
 
 CELL_M = 0.40
-"""Light is worked out at corners and blended between them: a wall of two triangles would stay dark in the middle."""
+"""[m] Size of cells: light is computed at corners, so a wall of only two triangles would be dark in the middle."""
 ALWAYS, INSIDE, ABOVE = 0, 4, 5
-"""Draw groups: always drawn; left out of the view from above, like ceilings; drawn only there, like cut walls."""
+"""Draw groups: always drawn; not drawn in the view from above, like ceilings; drawn only there, like cut walls."""
 
 
 class SceneMesh(NamedTuple):
-    """A mesh in the house frame. ``owner`` is what it counts as in a segmentation."""
+    """A mesh in the house frame. ``owner`` is its owner in a segmentation."""
 
     owner: str
     mesh: Mesh
@@ -25,7 +25,7 @@ class SceneMesh(NamedTuple):
 
 
 def facet(origin: Vec3, u: Vec3, v: Vec3, start: Vec2 = (0.0, 0.0), cell: float = CELL_M) -> Mesh:
-    """A rectangle from ``origin`` [m] along ``u`` and ``v`` [m], seen from the side that u x v points to.
+    """A rectangle from ``origin`` [m] along ``u`` and ``v`` [m], visible from the side that u x v points to.
 
     Texture coordinates are metres along u and v, counted from ``start``.
     """
@@ -44,7 +44,7 @@ def facet(origin: Vec3, u: Vec3, v: Vec3, start: Vec2 = (0.0, 0.0), cell: float 
 
 
 def slab(centre: Vec3, half: Vec3, yaw: float = 0.0, along: float = 0.0, cell: float = CELL_M) -> Mesh:
-    """A box turned by ``yaw`` [rad]; the texture of its long sides runs on from ``along`` [m] at its middle."""
+    """A box turned by ``yaw`` [rad]; the texture of its long sides has coordinate ``along`` [m] at its middle."""
     (cx, cy, cz), (a, b, h) = centre, half
     x, y = (math.cos(yaw), math.sin(yaw)), (-math.sin(yaw), math.cos(yaw))
 

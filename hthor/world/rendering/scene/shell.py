@@ -1,7 +1,7 @@
 """Floors, ceilings, walls and baseboards of a house as meshes.
 
-The boxes of `hthor.world.model.walls`, which bodies run into, overlap at their ends, where materials would flicker:
-here corners close and no two faces lie in one plane.
+The physical boxes of `hthor.world.model.walls` overlap at their ends, where materials would flicker. Here corners are
+closed, and no two faces lie in one plane.
 """
 
 import math
@@ -19,16 +19,16 @@ from hthor.world.rendering.scene import materials
 from hthor.world.rendering.scene.scene_mesh import ABOVE, ALWAYS, INSIDE, SceneMesh, facet, join, slab
 
 _BOARD_M, _BOARD_OUT_M = 0.09, 0.012
-"""Height of a baseboard and how far it stands off the wall."""
+"""[m] Height of a baseboard and its thickness."""
 _BIT_M = 0.02
-"""How far past the end of a wall its corner is looked for."""
+"""[m] How far beyond the end of a wall its corner is searched for."""
 _CAP_M = 0.006
-"""How far above the walls their cut faces are drawn in the view from above."""
+"""[m] How far above the walls their cut faces are drawn in the view from above."""
 CUT = Material(rgba=(0.30, 0.31, 0.33, 1.0), emission=0.4, specular=0.0)
 
 
 def shell(house: HouseSpec) -> Iterator[SceneMesh]:
-    """Everything of the building itself."""
+    """Meshes of the building itself: floors, ceilings, walls, baseboards."""
     for room in house.rooms:
         yield SceneMesh(f"floor of {room.id}", _floor(room), materials.floor(room.floor))
         yield SceneMesh(f"ceiling of {room.id}", _ceiling(room, house.height), materials.CEILING, INSIDE)
@@ -76,7 +76,7 @@ def wall_slabs(house: HouseSpec) -> Iterator[WallSlab]:
 
 
 def _reach(house: HouseSpec, line: FaceLine, side: float, end: float, way: float) -> float:
-    """How far a slab goes on past an end: round an outward corner if it runs along x, else not at all."""
+    """How far [m] a slab continues beyond an end: round an outward corner if it runs along x, else not at all."""
     beyond = end + way * _BIT_M
     outward = all(_within(house, line.face, line.at(beyond, side * off)) for off in (_BIT_M, -_BIT_M))
     return WALL_M / 2 if outward and abs(line.along[0]) > 0.5 else 0.0
@@ -95,13 +95,13 @@ def wall_of(house: HouseSpec, opening: Opening) -> str:
 
 
 def _slab(piece: WallSlab) -> Mesh:
-    """Its texture counts from the house's origin, so that it runs on from piece to piece."""
+    """A piece of wall; its texture is relative to the house's origin, so that it continues from piece to piece."""
     x, y, _ = piece.centre
     return slab(piece.centre, piece.half, piece.yaw, x * math.cos(piece.yaw) + y * math.sin(piece.yaw))
 
 
 def _baseboard(piece: WallSlab) -> Mesh:
-    """A board on both faces of the slab; the one inside the wall is never seen."""
+    """A board on both faces of the slab; the board inside the wall is never visible."""
     (x, y, _), (a, b, h) = piece.centre, piece.half
     height = min(_BOARD_M, 2 * h)
     return slab((x, y, height / 2), (a + _BOARD_OUT_M, b + _BOARD_OUT_M, height / 2), piece.yaw)
