@@ -1,4 +1,4 @@
-"""A broad service robot with two arms and a tray, in the manner of a Fetch or a TIAGo: strong, wide and unhurried."""
+"""A broad service robot with two arms and a tray, similar to a Fetch or a TIAGo: strong, wide and slow."""
 
 from typing import Any
 
@@ -75,7 +75,7 @@ def _arm(side: float) -> tuple[Part, ...]:
 
 
 def pieces() -> tuple[Piece, ...]:
-    """The same in meshes."""
+    """The robot's meshes, for pictures for people."""
     white, navy, dark = meshes.gloss(_WHITE), meshes.gloss(_NAVY), meshes.gloss(_DARK)
     coral, rubber, light = meshes.gloss(_CORAL), meshes.matte(_RUBBER), meshes.glow(_GLOW)
     skirt = [(0.0, 0.035), (0.26, 0.035), (0.275, 0.05), (0.275, 0.075), (0.0, 0.075)]

@@ -1,4 +1,4 @@
-"""A flat disc on the floor, in the manner of a robot vacuum: it can only move, look up from below, and report."""
+"""A flat disc on the floor, similar to a robot vacuum: it can only move, look up from below, and report."""
 
 from hthor import rules
 from hthor.looks.meshes import sweeps
@@ -49,7 +49,7 @@ def look() -> tuple[Part, ...]:
 
 
 def pieces() -> tuple[Piece, ...]:
-    """The same in meshes."""
+    """The robot's meshes, for pictures for people."""
     silver, graphite, rubber = meshes.gloss(_SILVER), meshes.gloss(_GRAPHITE), meshes.matte(_RUBBER)
     bumper = [(0.0, 0.016), (0.15, 0.016), (0.166, 0.026), (0.17, 0.045), (0.168, 0.066), (0.160, 0.072), (0.0, 0.072)]
     lid = [(0.162, 0.071), (0.163, 0.078), (0.156, 0.086), (0.13, 0.0895), (0.0, 0.0895)]

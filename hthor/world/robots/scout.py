@@ -1,4 +1,4 @@
-"""A low two-wheeled base with a camera on a mast, in the manner of a LoCoBot: it looks and reports, it cannot grasp."""
+"""A low two-wheeled base with a camera on a mast, similar to a LoCoBot: it looks and reports but cannot grasp."""
 
 import math
 
@@ -15,8 +15,8 @@ SPEC = RobotSpec(
     height=0.95,
     eye=0.90,
     fov=(2.0, math.pi / 2),  # a wide-angle camera, 115 by 90 degrees
-    speed=2.5,  # the one setting of the system that calibration rests on, see docs/humans.md
-    turn_rate=2.0 * math.pi,  # the paper's robots turn at once
+    speed=2.5,  # the only system setting that the calibration depends on, see docs/humans.md
+    turn_rate=2.0 * math.pi,  # the robots of the paper turn instantly
     sight_range=rules.DETECTOR_RANGE_M,
     scan_range=5.0,
     scan_beams=61,
@@ -52,7 +52,7 @@ def look() -> tuple[Part, ...]:
 
 
 def pieces() -> tuple[Piece, ...]:
-    """The same in meshes."""
+    """The robot's meshes, for pictures for people."""
     white, dark, mint = meshes.gloss(_WHITE), meshes.matte(_DARK), meshes.gloss(_MINT)
     steel, rubber = meshes.metal(_STEEL), meshes.matte(_RUBBER)
     drum = [(0.0, 0.028), (0.15, 0.028), (0.168, 0.045), (0.172, 0.075), (0.168, 0.105), (0.155, 0.12), (0.0, 0.12)]

@@ -1,4 +1,4 @@
-"""A slender column with a lift, an arm and a gripper, in the manner of a Stretch: it fetches, carries and opens."""
+"""A slender column with a lift, an arm and a gripper, similar to a Stretch: it fetches, carries and opens."""
 
 from typing import Any
 
@@ -9,7 +9,7 @@ from hthor.types import Part, Rgba, RobotSpec, Vec3
 from hthor.world.model.bodies import meshes
 from hthor.world.model.bodies.primitives import HEAD, ball, box, post, rod, wheel
 
-# Published of Hello Robot's Stretch: 0.33 by 0.34 m on the floor, 1.41 m tall; the arm goes out by 0.52 m and up by
+# Data sheet of Hello Robot's Stretch: 0.33 by 0.34 m on the floor, 1.41 m tall; the arm goes out by 0.52 m and up by
 # 1.10 m, and holds 2 kg. Speed, turn rate, field of view and handling time are our choice.
 SPEC = RobotSpec(
     name="tender",
@@ -64,7 +64,7 @@ def look() -> tuple[Part, ...]:
 
 
 def pieces() -> tuple[Piece, ...]:
-    """The same in meshes."""
+    """The robot's meshes, for pictures for people."""
     white, dark, grey = meshes.gloss(_WHITE), meshes.gloss(_DARK), meshes.metal(_GREY)
     rubber, amber = meshes.matte(_RUBBER), meshes.gloss(_AMBER)
     arm = (
