@@ -1,1 +1,1 @@
-"""What changes during a trial: bodies, objects, doors, rooms."""
+"""The state that changes during a trial: bodies, objects, doors, rooms."""

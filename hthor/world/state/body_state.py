@@ -1,4 +1,4 @@
-"""The state of each body in an episode: where it is, what it is doing, what it holds, and in which room it is."""
+"""The state of each body in an episode: its pose, motion, held object and room."""
 
 import math
 from collections.abc import Iterable
@@ -10,23 +10,23 @@ from hthor.houses.space.free_space import FreeSpace
 from hthor.types import BodySpec, Event, HouseSpec, Outcome, Pose
 
 _ROUNDING_M = 1e-9
-"""[m] Margin against rounding on the distance for which a body is surely still in its room."""
+"""[m] Safety margin against rounding on the distance within which a body cannot have left its room."""
 
 
 class Activity(Protocol):
     """A motion under way."""
 
     def advance(self, tick: int) -> tuple[Outcome | None, tuple[Event, ...]]:
-        """Carry it on by one tick; the outcome is None while it goes on."""
+        """Carry the motion on by one tick; the outcome is None until the motion has ended."""
 
 
 class BodyState:
     """One body in an episode.
 
     Attributes:
-        name: its seat. spec: what it can do. space: the free floor for it now, with shut doorways taken out.
+        name: its seat. spec: what it can do. space: its free floor now, without shut doorways.
         pose: where it is; replaced by a new record whenever the body moves, never changed in place.
-        activity: the motion under way, None while idle. outcome: how the last one ended.
+        activity: the motion under way, None while idle. outcome: how the last motion ended.
         holding: id of the object in hand or held by a handle, empty for none.
     """
 
@@ -52,7 +52,7 @@ class BodyStates(dict[str, BodyState]):
 
 
 class RoomTracker:
-    """The room of each seat: the last one while it is between rooms; before it is in any, the house's first."""
+    """The room of each seat: between rooms, the one it was in last; before it was in any, the house's first room."""
 
     def __init__(self, house: HouseSpec, seats: Iterable[str]) -> None:
         self._rooms, self._seats = house.rooms, tuple(seats)
@@ -71,7 +71,7 @@ class RoomTracker:
         return self._rooms[self._last[seat]].id
 
     def _look(self, here: tuple[float, float], seat: str) -> None:
-        """Find the room, and how far the body can go from here and surely still be in it."""
+        """Find the room, and how far [m] the body can go from here without leaving it."""
         margin = 0.0
         for number in (self._last[seat], *range(len(self._rooms))):
             polygon = self._rooms[number].polygon

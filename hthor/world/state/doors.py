@@ -1,7 +1,7 @@
 """The doors and drawers of one episode: which are open and how they move.
 
-A shut doorway stops bodies and range scans: each body's free-space grid has it taken out. Grids are computed when a
-door is first shut, and kept. While all doorways are open they are those of the house.
+A shut doorway stops bodies and range scans: it is an obstacle on each body's free-space grid. These grids are computed
+when a door is first shut, and kept. While all doorways are open, the grids are those of the house.
 """
 
 import copy
@@ -23,9 +23,9 @@ from hthor.world.state.support_surfaces import SupportSurfaces
 
 
 class DoorState:
-    """All doors and drawers of one thing, which move together, or those of a doorway.
+    """All doors and drawers of one thing, which move together, or all doors of a doorway.
 
-    ``user`` is the seat that is opening or closing it, empty otherwise.
+    ``user`` is the seat that is opening or closing the doors, empty otherwise.
     """
 
     def __init__(self, door: Door, env: LazyComposerEnv) -> None:
@@ -46,12 +46,12 @@ class DoorState:
 
     @property
     def slides(self) -> bool:
-        """Whether it has drawers."""
+        """Whether drawers are among them."""
         return any(joint.kind == "slide" for joint in self.joints)
 
 
 class Doors:
-    """All things that open, and the doorways with leaves.
+    """All things that open, and the doorways with doors.
 
     Attributes:
         changes: grows whenever a door moves.
@@ -67,7 +67,7 @@ class Doors:
         return iter(self._leaves.values())
 
     def get(self, thing: str) -> DoorState | None:
-        """The door of that thing, None for what has none."""
+        """The doors of the thing or doorway with this id, None if it has none."""
         return self._leaves.get(thing)
 
     def reset(self) -> None:
@@ -94,20 +94,20 @@ class Doors:
         self.changes += 1
 
     def _firm(self, leaf: DoorState) -> None:
-        """A hinged door stops objects only while it is closed; a drawer always does."""
+        """Set what the doors stop: a hinged door stops objects only while it is closed, a drawer always."""
         self._env.model.geom_contype[leaf.geoms] = geoms.SWUNG if leaf.share > 0.0 else geoms.SHUT
 
     def states(self) -> Iterator[ThingState]:
-        """True states of all things that open, and of doorways with leaves, whose kind is "door"."""
+        """True states of all things that open, and of doorways with doors, whose kind is "door"."""
         for leaf in self:
             yield ThingState(id=leaf.thing.id, kind=leaf.thing.kind, position=leaf.thing.centre, open=leaf.open)
 
 
 class Doorways:
-    """The free-space grids of a world's seats, with what is shut taken out.
+    """The free-space grids of a world's seats, on which shut doorways are obstacles.
 
     Args:
-        seats: whose ``space`` is kept up to date. spaces: the same grids by seat, kept up to date as well.
+        seats: the bodies whose ``space`` is updated. spaces: the same grids by seat, updated as well.
     """
 
     def __init__(self, seats: Iterable[BodyState], spaces: dict[str, FreeSpace]) -> None:
@@ -117,7 +117,7 @@ class Doorways:
         self._known: dict[tuple[str, frozenset[str]], FreeSpace] = {}
 
     def update(self, shut: Mapping[str, Opening]) -> None:
-        """Take over which doorways are shut; all others are open."""
+        """Set which doorways are shut; all others are open."""
         names = frozenset(shut)
         if names == self._shut:
             return
@@ -133,21 +133,21 @@ class Doorways:
 
 
 def leaf_rectangle(opening: Opening) -> tuple[float, float, float, float, float]:
-    """A shut door on the floor plan: centre x, y, half width, half depth [m], yaw [rad]."""
+    """The rectangle of a shut door on the floor plan: centre x, y, half width, half depth [m], yaw [rad]."""
     (ax, ay), (bx, by) = opening.a, opening.b
     yaw, half = np.arctan2(by - ay, bx - ax), np.hypot(bx - ax, by - ay) / 2
     return ((ax + bx) / 2, (ay + by) / 2, float(half), LEAF_M / 2, float(yaw))
 
 
 def in_doorway(seat: BodyState, opening: Opening) -> bool:
-    """Whether a body stands where the shut leaf would be, or so near that its cell would be blocked."""
+    """Whether a body stands where the shut door would be, or so near that the door would block its cell."""
     x, y, half, deep, yaw = leaf_rectangle(opening)
     gap = plane.distance_to_rectangle((seat.pose.x, seat.pose.y), (x, y), (2 * half, 2 * deep), yaw)
     return gap < seat.spec.radius + seat.space.cell
 
 
 def with_obstacles(space: FreeSpace, rectangles: list[tuple[float, float, float, float, float]]) -> FreeSpace:
-    """A copy of a grid with these rectangles as further obstacles."""
+    """A copy of a grid with these rectangles as additional obstacles."""
     rows = np.array(rectangles, dtype=float).reshape(-1, 5)
     cut: Any = copy.copy(space)
     cut.__dict__.pop("components", None)

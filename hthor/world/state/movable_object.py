@@ -13,7 +13,7 @@ ABSENT_POSITION: Vec3 = (-500.0, 0.0, 0.0)
 
 
 class MovableObject:
-    """One object. ``present`` is false if this episode does not use it.
+    """One object. ``present`` is false if the object is not in this episode.
 
     ``held_by`` is the seat that has it in hand, ``bearers`` all seats that hold it by a handle, lifted or not.
     ``number`` is its row in `Objects.positions`.
@@ -30,20 +30,20 @@ class MovableObject:
         self.clear()
 
     def clear(self) -> None:
-        """Take it out of the episode."""
+        """Take the object out of the episode."""
         self.present, self.held_by, self.support = False, "", ""
         self.bearers: tuple[str, ...] = ()
         self.position, self.yaw = ABSENT_POSITION, 0.0
         self._state: ThingState | None = None
 
     def at(self, qpos: Sequence[float]) -> None:
-        """Take over position and heading from a pose (x, y, z, quaternion)."""
+        """Set position and heading from a pose (x, y, z, quaternion)."""
         x, y, z, w, _, _, k = qpos
         self.position, self.yaw = (x, y, z), wrap(2.0 * math.atan2(k, w))
         self._state = None
 
     def state(self) -> ThingState:
-        """Its true state now; the same record until something about it changes."""
+        """The object's true state now; the same record until it changes."""
         known = self._state
         if known is None or known.support != self.support or known.held_by != self.held_by:
             self._state = known = ThingState(

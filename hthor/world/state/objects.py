@@ -1,4 +1,4 @@
-"""The movable objects of one episode: where each is, what it lies on, who holds it."""
+"""The movable objects of one episode: the position, support and holder of each."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
@@ -18,9 +18,9 @@ class Objects:
     """All movable objects of a world.
 
     Attributes:
-        changes: grows whenever any object's position, holder or support changes. roster: grows whenever one may have
-            come into the episode or left it.
-        positions: (N, 3) float64 [m], the objects' centres. present: (N,) bool, which are in the episode.
+        changes: grows whenever any object's position, holder or support changes. roster: grows whenever an object may
+            have entered or left the episode.
+        positions: (N, 3) float64 [m], the objects' centres. present: (N,) bool, which objects are in the episode.
     """
 
     def __init__(
@@ -50,21 +50,21 @@ class Objects:
         return iter(self._list)
 
     def get(self, id: str) -> MovableObject | None:
-        """The object of that id if it is in this episode."""
+        """The object with this id if it is in the episode, else None."""
         item = self._items.get(id)
         return item if item is not None and item.present else None
 
     def known(self, id: str) -> MovableObject | None:
-        """The object of that id, in this episode or not."""
+        """The object with this id, whether it is in the episode or not; None if there is none."""
         return self._items.get(id)
 
     def news(self) -> list[MovableObject]:
-        """The objects that may have changed since this was last asked, by id; all of them after a reset."""
+        """The objects that may have changed since the last call, by id; all objects after a reset."""
         news, self._news = self._news, set()
         return [self._list[number] for number in sorted(news)]
 
     def reset(self, starts: Mapping[str, tuple[Vec3, float, str]]) -> None:
-        """Begin an episode, the engine having been reset: id -> (position, yaw, what the task says it lies on)."""
+        """Begin an episode after a reset of the engine; ``starts`` maps id -> (position [m], yaw [rad], support)."""
         for id in sorted(self._ghosts):
             self._collide(self._items[id], True)
         self._loose.clear()
@@ -84,7 +84,7 @@ class Objects:
         self.roster += 1
 
     def take(self, id: str, seat: str, hand: Callable[[], QPose]) -> None:
-        """From now on the object is in the hand of ``seat``, which ``hand()`` says where it is."""
+        """From now on the object is in the hand of ``seat``; ``hand()`` returns the hand's pose."""
         item = self._items[id]
         item.held_by, item.support = seat, ""
         self._news.add(item.number)
@@ -95,7 +95,7 @@ class Objects:
         self.follow(id)
 
     def grip(self, id: str, bearers: tuple[str, ...]) -> None:
-        """These seats hold the object by its handles, and no others."""
+        """From now on exactly these seats hold the object by its handles."""
         item = self._items[id]
         item.bearers, item._state = bearers, None
         self._news.add(item.number)
@@ -112,7 +112,7 @@ class Objects:
         self._after_handling()
 
     def move(self, id: str, pose: QPose, velocity: Vec3 = (0.0, 0.0, 0.0)) -> None:
-        """Set an object that nobody holds at ``pose``, at ``velocity`` [m/s]; the engine takes it from there."""
+        """Put an object that nobody holds at ``pose`` with ``velocity`` [m/s]; from then on the engine moves it."""
         item, data = self._items[id], self._env.data
         item.present, item.support = True, ""
         self.present[item.number] = True
@@ -126,7 +126,7 @@ class Objects:
         self.roster += 1
 
     def remove(self, id: str, parking: QPose) -> None:
-        """Take an object that nobody holds out of the world."""
+        """Take an object that nobody holds out of the episode, to the pose ``parking``."""
         item, data = self._items[id], self._env.data
         data.qpos[item.qpos : item.qpos + 7] = parking
         data.qvel[item.dof : item.dof + 6] = 0.0
@@ -139,7 +139,7 @@ class Objects:
         self.roster += 1
 
     def ride(self, ids: Iterable[str], way: Vec3) -> None:
-        """Carry objects along by ``way`` [m], as a drawer does that they lie in."""
+        """Move objects by ``way`` [m] together with the drawer that they lie in."""
         data = self._env.data
         for id in ids:
             item = self._items[id]
@@ -151,7 +151,7 @@ class Objects:
         self.changes += 1
 
     def lying(self, place: SupportSurface) -> tuple[MovableObject, ...]:
-        """The objects that lie on a surface or on what lies on it."""
+        """The objects that lie on a surface, directly or on top of others."""
         return tuple(
             item
             for item in self._list
@@ -159,18 +159,18 @@ class Objects:
         )
 
     def follow(self, id: str) -> None:
-        """A carried object's holder has moved."""
+        """Update a carried object after its holder has moved."""
         item = self._items[id]
         self._env.pin()
         self._read(item, self._env.data.qpos[item.qpos : item.qpos + 7].tolist())
         self.changes += 1
 
     def at(self, dof: int) -> str:
-        """Id of the object with that degree of freedom, empty for none."""
+        """Id of the object that a degree of freedom of the engine belongs to, empty for none."""
         return next((item.id for item in self._list if item.dof <= dof < item.dof + 6), "")
 
     def reread(self) -> None:
-        """The engine has put everything where it was a while ago."""
+        """Read all objects again after the engine has gone back to an earlier state."""
         for item in self._list:
             if item.present and not item.held_by:
                 self._read(item, self._env.data.qpos[item.qpos : item.qpos + 7].tolist())
@@ -178,7 +178,7 @@ class Objects:
         self.changes += 1
 
     def settle(self) -> None:
-        """Read from the engine what moved in the last tick; what came to rest lies on what is below it."""
+        """Read from the engine the objects that moved in the last tick, and find the support of those now at rest."""
         awake = np.flatnonzero(self._env.asleep[self._trees] < 0).tolist() if len(self._trees) else []
         for number in sorted({*awake, *self._loose}):
             item = self._list[number]
@@ -200,9 +200,9 @@ class Objects:
         return self._surfaces.support(item.position, item.size[2])
 
     def _bearer(self, item: MovableObject, above: tuple[str, ...] = ()) -> str:
-        """What bears an object at rest whose middle is over no surface, as it lies across an edge or leans.
+        """The support of an object at rest whose middle is over no surface because it leans or lies across an edge.
 
-        ``above`` are the objects on it whose bearer is sought.
+        ``above`` are the objects on top of it whose support is being searched for.
         """
         for owner in self._overlap.touched(item):
             other = self.get(owner)

@@ -1,4 +1,4 @@
-"""Which solids an object touches or overlaps, by the engine's exact shapes."""
+"""Which solids an object touches or overlaps, computed from the engine's exact shapes."""
 
 import math
 from typing import Any
@@ -12,9 +12,9 @@ from hthor.world.model.geom_index import GeomIndex
 from hthor.world.state.movable_object import MovableObject
 
 OVERLAP_M = 0.005
-"""[m] Solids that overlap by more than this cannot both be there."""
+"""[m] Solids may not overlap by more than this."""
 CONTACT_M = 0.003
-"""[m] Solids that are no farther apart than this touch."""
+"""[m] Solids count as touching up to this distance."""
 FLOOR = "floor"
 _MEETS = geoms.MOVABLE["conaffinity"]
 
@@ -26,9 +26,9 @@ class OverlapTest:
         self._env, self._geoms = env, geoms
 
     def touched(self, item: MovableObject) -> list[str]:
-        """Owners of the solids that an object touches where the engine has it now, the closest first.
+        """Owners of the solids that an object touches at its pose in the engine, the closest first.
 
-        What lies on the floor touches `FLOOR` before anything else.
+        For an object on the floor the first owner is `FLOOR`.
         """
         model, data, index = self._env.model, self._env.data, self._geoms
         closest: dict[str, float] = {}
@@ -43,9 +43,9 @@ class OverlapTest:
         return sorted(closest, key=lambda owner: (closest[owner], owner))
 
     def inside(self, item: MovableObject, deep: float = OVERLAP_M) -> str:
-        """Id of the thing, wall or object that the object is in where the engine has it now, empty for none.
+        """Id of a thing, wall or object that the object overlaps at its pose in the engine, empty for none.
 
-        Being less than ``deep`` [m] in it does not count. The object counts as solid for this even when it is carried.
+        Overlaps of less than ``deep`` [m] do not count. A carried object counts as solid here.
         """
         model, data, index = self._env.model, self._env.data, self._geoms
         mujoco.mj_kinematics(model, data)
@@ -58,7 +58,7 @@ class OverlapTest:
         return ""
 
     def _near(self, item: MovableObject, geom: int, gap: float = 0.0) -> list[int]:
-        """Solids of others whose bounding spheres come within ``gap`` [m] of that of one of the object's."""
+        """Solids of other owners whose bounding spheres are within ``gap`` [m] of that of solid ``geom``."""
         model, data, radius = self._env.model, self._env.data, self._geoms.radius
         solid = (model.geom_contype & _MEETS) != 0
         solid &= model.geom_type != int(mujoco.mjtGeom.mjGEOM_PLANE)

@@ -1,4 +1,4 @@
-"""Surfaces of furniture in the house frame: what lies on which, and where one more object fits.
+"""Surfaces of furniture in the house frame: which objects lie on them, and where another object fits.
 
 The surface of a drawer moves with it; see `SupportSurfaces.pull`.
 """
@@ -16,13 +16,13 @@ from hthor.geometry import plane
 from hthor.types import Joint, Thing, Vec2, Vec3
 
 _SINK_M = 0.03
-"""[m] by which the underside of an object may be below the surface that it lies on, as round or tilted ones are."""
+"""[m] by which the lowest point of an object, such as a tilted one, may be below the surface that it lies on."""
 _GAP_M = 0.005
-"""[m] kept free on every side of what is put down, and the height from which it is released."""
+"""[m] kept free on every side of an object that is put down, and the height from which it is released."""
 
 
 class SupportSurface(Struct, frozen=True, kw_only=True):
-    """A surface of ``thing``: ``centre`` [m] house frame, ``half`` [m] along local axes that are turned by ``yaw``.
+    """A surface of ``thing``: its ``centre`` [m], house frame, and half extents [m] along axes turned by ``yaw``.
 
     ``pull`` [m], house frame, is the displacement of its drawer when fully open; zero for a fixed surface.
     """
@@ -37,7 +37,7 @@ class SupportSurface(Struct, frozen=True, kw_only=True):
 
     @property
     def slides(self) -> bool:
-        """Whether it is in a drawer."""
+        """Whether the surface is in a drawer."""
         return self.pull != (0.0, 0.0, 0.0)
 
     def distance(self, x: float, y: float) -> float:
@@ -46,13 +46,13 @@ class SupportSurface(Struct, frozen=True, kw_only=True):
         return plane.distance_to_rectangle((x, y), self.centre[:2], size, self.yaw)
 
     def holds(self, position: Vec3, height: float) -> bool:
-        """Whether an object ``height`` [m] tall with its centre there lies on it or on what lies on it."""
+        """Whether an object ``height`` [m] tall with its centre at ``position`` lies on it, directly or not."""
         gap = position[2] - height / 2 - self.centre[2]
         return -_SINK_M <= gap <= self.clearance and self.distance(*position[:2]) == 0.0
 
 
 class SupportSurfaces:
-    """Every surface of the given things, in their order."""
+    """Every surface of the given things, in the order of the things."""
 
     def __init__(self, things: Iterable[Thing]) -> None:
         self._closed: dict[str, tuple[SupportSurface, ...]] = {}
@@ -74,11 +74,11 @@ class SupportSurfaces:
         return (place for places in self._by_thing.values() for place in places)
 
     def of(self, thing: str) -> tuple[SupportSurface, ...]:
-        """The thing's surfaces; none for what is no receptacle."""
+        """The thing's surfaces; empty for a thing that is not a receptacle."""
         return self._by_thing.get(thing, ())
 
     def pull(self, thing: str, share: float) -> None:
-        """Move the thing's drawers out by a share of their travel, 0 to 1."""
+        """Pull the thing's drawers out by a share of their travel, 0 to 1."""
         pulled = tuple(_pulled_out(place, share) for place in self._closed.get(thing, ()))
         if any(place.slides for place in pulled):
             self._by_thing[thing] = pulled
@@ -89,7 +89,7 @@ class SupportSurfaces:
         """The thing on whose surface an object rests, directly or on top of others; empty on the floor.
 
         Args:
-            position: [m] the object's centre. height: [m] how tall it is.
+            position: [m] the object's centre. height: [m] of the object.
         """
         if not self._owners:
             return ""
@@ -106,7 +106,7 @@ def free_spots(place: SupportSurface, size: Vec3, boxes: tuple[Any, Any], near: 
 
     Args:
         boxes: centres (M, 3) and half extents (M, 3) [m] of upright boxes that are in the way.
-        near: [m] house frame; only its x and y count.
+        near: [m], house frame; only x and y are used.
     """
     half = (size[0] / 2, size[1] / 2)
     spare = (place.half[0] - half[0], place.half[1] - half[1])
@@ -151,14 +151,14 @@ def _pulled_out(place: SupportSurface, share: float) -> SupportSurface:
 
 
 def _grid_line(reach: float, aim: float) -> Any:
-    """Grid points along one axis and, between them, the wanted coordinate itself when it is within reach."""
+    """Grid points along one axis, with the wanted coordinate ``aim`` among them if it is within ``reach``."""
     count = math.floor(reach / rules.GRID_M + 1e-9)
     line = np.arange(-count, count + 1) * rules.GRID_M
     return np.sort(np.append(line, aim)) if abs(aim) <= reach else line
 
 
 def _is_covered(place: SupportSurface, u: Any, v: Any, half: Vec2, height: float, boxes: tuple[Any, Any]) -> Any:
-    """(N,) bool: which local positions would touch one of the boxes."""
+    """(N,) bool, the local positions at which the object would touch one of the boxes."""
     centres, extents = boxes
     low = place.centre[2]
     tall = (centres[:, 2] + extents[:, 2] > low + 1e-3) & (centres[:, 2] - extents[:, 2] < low + height + 2 * _GAP_M)
