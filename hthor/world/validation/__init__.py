@@ -1,1 +1,1 @@
-"""Houses proven in the engine: drops, penetration, soundness."""
+"""Checks of houses by the physics engine: drops, penetration, soundness."""

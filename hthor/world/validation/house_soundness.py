@@ -1,4 +1,4 @@
-"""All checks of a house, by the rules on its plan and by the physics engine; generates homes until one passes."""
+"""All checks of a house, on its floor plan and in the physics engine; generates homes until one passes."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -15,16 +15,16 @@ from hthor.world.model import door_geometry
 from hthor.world.validation.physics_checks import drop_findings, penetration_findings
 
 RADIUS_M = 0.25
-"""[m] Radius of the broadest body that a home is checked for."""
+"""[m] Radius of the widest body that a home is checked for."""
 ATTEMPTS = 20
-"""How many homes of one seed are tried."""
+"""How many homes are generated from one seed before giving up."""
 
 
 def check_soundness(house: HouseSpec, radius: float = 0.25) -> tuple[Finding, ...]:
     """All faults of a generated house for bodies up to this radius [m]; errors come first.
 
-    The rules of `hthor.houses.checks.house_checks`, applied strictly, ``swing-free`` for the leaves in its doorways
-    too, then ``penetration`` and ``surface-takes``.
+    Checked are the rules of `hthor.houses.checks.house_checks`, applied strictly; ``swing-free`` also for the doors in
+    doorways; then ``penetration`` and ``surface-takes``.
     """
     plain = check(house, radius, strict=True)
     found = (*plain, *_leaves(house), *penetration_findings(house), *drop_findings(house))
@@ -38,10 +38,10 @@ def _leaves(house: HouseSpec) -> Iterator[Finding]:
 
 
 class ValidHome(Struct, frozen=True, kw_only=True):
-    """A home that is sound: its ``document`` in ProcTHOR's schema, and the same as a ``house``.
+    """A sound home, as a ``document`` in ProcTHOR's schema and as a ``house``.
 
-    ``attempt`` counts from 0: how many homes of this seed were rejected before it. ``refused`` holds the errors of
-    those that the generator had passed and the proof refused, ``findings`` what is left to say of this one.
+    ``attempt`` is the number of homes of this seed that were rejected before it. ``refused`` has the errors of the
+    homes that passed the generator's rules but failed these checks, ``findings`` the remaining findings of this home.
     """
 
     seed: int
@@ -54,7 +54,7 @@ class ValidHome(Struct, frozen=True, kw_only=True):
 
 
 def home_name(seed: int, rooms: int) -> str:
-    """What a home is called unless it is given another name."""
+    """The default name of a home."""
     return f"home-{rooms}-{seed}"
 
 
@@ -62,7 +62,7 @@ def generate_valid_home(seed: int, rooms: int) -> ValidHome:
     """The first sound home of a seed; equal arguments give equal documents.
 
     Raises:
-        HthorError: when the number of rooms is none that can be made, or no attempt is sound.
+        HthorError: when homes with this number of rooms cannot be made, or no attempt is sound.
     """
     refused: list[Finding] = []
     attempt = 0

@@ -1,8 +1,8 @@
-"""Does every surface of a house take every target, and do no things penetrate one another? Shown by the engine.
+"""Checks in the engine that every surface of a house takes every target and that no things penetrate one another.
 
-Targets are put down and watched, all in one simulation, in which they do not meet one another; penetration is exact,
-part by part. The models have nothing but the house's solids, straight from the catalogue: they take a hundredth of a
-second to make, so a house can be proved sound while it is being generated.
+All targets are put down and watched in one simulation, in which they do not collide with one another; penetration is
+computed exactly for each part. The models consist only of the house's solids from the catalogue and are made in about
+10 ms, so that a house can be checked while it is being generated.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -22,13 +22,13 @@ from hthor.world.model.engine import mujoco
 from hthor.world.state.support_surfaces import SupportSurface, SupportSurfaces, free_spots
 
 STAYS_M = 0.02
-"""[m] by which an object may move from where it was put."""
+"""[m] by which an object may move from the place where it was put."""
 WATCHED_S = 2.0
-"""[s] for which it is watched."""
+"""[s] for which an object is watched after it was put down."""
 _LOOKS = 10
-"""How often its position is read in that time."""
+"""How often an object's position is read while it is watched."""
 PENETRATION_MAX_M = 0.005
-"""[m] by which parts may overlap: what a solver leaves of a contact, and too little to be seen."""
+"""[m] by which parts may overlap: the engine's solver leaves such overlaps, and they are too small to be seen."""
 _SOLID = {"contype": 1, "conaffinity": 0}
 _ALONE = {"contype": 2, "conaffinity": 1}
 _TOUCHING = {"contype": 1, "conaffinity": 1}
@@ -38,11 +38,11 @@ _SHAPES = {
     "sphere": mujoco.mjtGeom.mjGEOM_SPHERE,
 }
 _MEMORY = 64 << 20
-"""Bytes for contacts: a house at rest has thousands."""
+"""[bytes] Memory for contacts: a house at rest has thousands of them."""
 
 
 def _empty_model(house: HouseSpec, bits: Mapping[str, int]) -> Any:
-    """A model in the making, with the options of a world: the ground, and every wall, closed door and window pane."""
+    """A model specification with a world's options: the ground, and every wall, closed door and window pane."""
     spec = mujoco.MjSpec()
     spec.memory = _MEMORY
     spec.option.timestep = 0.02
@@ -76,7 +76,7 @@ def _add_things(body: Any, things: Iterable[Thing], **more: Any) -> None:
 
 
 class DropTrial(Struct, frozen=True, kw_only=True):
-    """One target on one surface: where it is put [m], None where it does not fit."""
+    """One target on one surface: ``at`` [m] is where it is put, None if it does not fit."""
 
     thing: Thing
     surface: Surface
@@ -85,9 +85,9 @@ class DropTrial(Struct, frozen=True, kw_only=True):
 
 
 def drop_findings(house: HouseSpec) -> tuple[Finding, ...]:
-    """``surface-takes``: every target that some surface has no room for, or that does not stay there.
+    """``surface-takes``: one finding for every surface and target that does not fit on it or does not stay there.
 
-    Of the surfaces where a task may put things (`hthor.catalog.Kind.rests`) of everything that cannot be carried away.
+    It checks the surfaces where a task may put things (`hthor.catalog.Kind.rests`) of all things that never move.
     """
     trials = list(_trials(house))
     strayed = iter(_watch(house, [trial for trial in trials if trial.at is not None]))
@@ -127,7 +127,7 @@ def _trials(house: HouseSpec) -> Iterator[DropTrial]:
 
 
 def _upright(house: HouseSpec) -> tuple[Any, Any]:
-    """Centres and half extents (M, 3) [m] of unturned boxes around all parts of all things and walls."""
+    """Centres and half extents (M, 3) [m] of axis-aligned boxes around all parts of all things and walls."""
     parts = [box for thing in house.things for _, box in boxes.boxes_of(thing)]
     upright = (0.0, 0.0, 1.0)
     parts += [
@@ -139,7 +139,7 @@ def _upright(house: HouseSpec) -> tuple[Any, Any]:
 
 
 def _within(solids: tuple[Any, Any], place: SupportSurface) -> tuple[Any, Any]:
-    """Those of the boxes that may lie over the place: all that `candidates` would look at, and far fewer."""
+    """The boxes that may lie over the surface; `support_surfaces.free_spots` is faster with these few."""
     centres, halves = solids
     reach = float(np.hypot(*place.half))
     gap = np.abs(centres[:, :2] - place.centre[:2]) - halves[:, :2]
@@ -148,7 +148,7 @@ def _within(solids: tuple[Any, Any], place: SupportSurface) -> tuple[Any, Any]:
 
 
 def _watch(house: HouseSpec, trials: list[DropTrial]) -> list[float]:
-    """How far [m] each object was, at the farthest, from where it was put."""
+    """The largest distance [m] of each object from the place where it was put."""
     if not trials:
         return []
     spec = _empty_model(house, _SOLID)
@@ -180,7 +180,7 @@ def _object(spec: Any, trial: DropTrial) -> None:
 
 
 def penetration_findings(house: HouseSpec) -> tuple[Finding, ...]:
-    """``penetration``: pairs of things, or a thing and a wall or the floor, more than `PENETRATION_MAX_M` deep."""
+    """``penetration``: things that are more than `PENETRATION_MAX_M` deep in another thing, a wall or the floor."""
     things = {thing.id: thing for thing in house.things}
     found = []
     for (one, two), depth in sorted(penetration_depths(house).items()):
@@ -193,14 +193,14 @@ def penetration_findings(house: HouseSpec) -> tuple[Finding, ...]:
 
 
 def penetration_depths(house: HouseSpec) -> dict[tuple[str, str], float]:
-    """How deep [m] in one another the deepest parts of every two touching owners are.
+    """The largest depth [m] to which parts of two touching owners overlap, for every such pair.
 
     Owners are ids of things, "floor" and "wall"; each pair is in alphabetic order.
     """
     spec, owners = _empty_model(house, _TOUCHING), ["wall"]
     for thing in house.things:
         body = spec.worldbody.add_body()
-        # The engine only compares bodies that could move.
+        # The engine only detects contacts of bodies that can move.
         body.add_joint(type=mujoco.mjtJoint.mjJNT_SLIDE)
         body.mass, body.inertia, body.explicitinertial = 1.0, (1.0, 1.0, 1.0), True
         _add_things(body, (thing,), **_TOUCHING)
