@@ -1,4 +1,4 @@
-"""The simulator: a house with bodies and objects, what they can do and what they see; the only user of MuJoCo.
+"""The simulator: a house with bodies and objects, their actions and sensors; only this package uses MuJoCo.
 
 Begin with `world` (for scripts) or `simulation` (one tick at a time, for trials).
 """

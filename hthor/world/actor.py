@@ -1,7 +1,7 @@
 """Control of one body by hand, for notebooks and scripts: motions, perception and messages.
 
-Each call starts motions and lets ticks pass until the body is free again; meanwhile the other bodies stand still unless
-something else moves them. A trial, in which all bodies move at once, uses `hthor.world.simulation.Simulation` instead.
+Each call starts motions and lets ticks pass until the body is free again; the other bodies start no motions during the
+call. A trial, in which all bodies act at once, uses `hthor.world.simulation.Simulation` instead.
 """
 
 import math
@@ -43,7 +43,7 @@ from hthor.world.rendering.lazy_images import Size
 
 _EPS = 1e-9
 _LENGTH_MIN_M, _TURN_MIN_RAD = 1e-6, 1e-3
-"""On a route, a shorter leg [m] needs no turn, and a smaller turn [rad] is left out."""
+"""On a route, no turn is made for a leg shorter than the first [m], nor a turn smaller than the second [rad]."""
 MOVE_CALL_MAX_M = 1000.0
 """[m] The longest distance of one call of `Actor.move`."""
 
@@ -51,8 +51,8 @@ MOVE_CALL_MAX_M = 1000.0
 class Actor:
     """One seat of a `World`: the person, or a robot.
 
-    Calls that move return the `Outcome`: ``ok``, or the ``reason`` why not. What the house or a rule forbids
-    never raises; wrong arguments do, such as a name that does not exist.
+    Calls that move return the `Outcome`: ``ok``, or the ``reason`` of the failure. A motion that the house or a rule
+    forbids never raises; wrong arguments do, such as a name that does not exist.
     """
 
     def __init__(self, world: InteractiveSimulation, seat: str) -> None:
@@ -71,7 +71,7 @@ class Actor:
 
     @property
     def pose(self) -> Pose:
-        """Where the body is, house frame."""
+        """The body's pose, house frame."""
         return self._world.pose(self.seat)
 
     @property
@@ -87,17 +87,17 @@ class Actor:
     # ----------------------------------------------------------------------------------------------------- control
 
     def do(self, motion: Motion) -> Outcome:
-        """Carry out any motion and wait for its end."""
+        """Carry out a motion of any type and wait for its end."""
         return self._world.run(self.seat, motion)
 
     def move(self, forward: float, left: float = 0.0) -> Outcome:
-        """Go by the vector (``forward``, ``left``) [m] of the body's own frame, in steps of at most 0.5 m.
+        """Move by the vector (``forward``, ``left``) [m] in the body's own frame, in steps of at most 0.5 m.
 
         Returns:
-            the outcome of the last step; a step that is blocked is the last.
+            the outcome of the last step; the call ends at the first step that is blocked.
         """
         if not (numbers.is_finite(forward) and numbers.is_finite(left)):
-            return self.do(Move(forward=forward, left=left))  # which says what is wrong with them
+            return self.do(Move(forward=forward, left=left))  # its outcome says what is wrong with the numbers
         length = math.hypot(forward, left)
         if length > MOVE_CALL_MAX_M:
             reason = f"move is {numbers.format_number(length)} m long; at most {MOVE_CALL_MAX_M:.0f} m at once"
@@ -111,7 +111,7 @@ class Actor:
         return outcome
 
     def rotate(self, yaw: float, pitch: float = 0.0) -> Outcome:
-        """Turn by the vector (``yaw``, ``pitch``) [rad]: the body to the left, the camera up."""
+        """Turn the body to the left by ``yaw`` and tilt the camera up by ``pitch`` [rad]."""
         return self.do(Rotate(yaw=yaw, pitch=pitch))
 
     def look_at(self, target: str | Vec3) -> Outcome:
@@ -120,14 +120,13 @@ class Actor:
         return self.do(walk_to.rotation_towards(self.pose, self.body, point))
 
     def go_to(self, target: str | Vec2) -> Outcome:
-        """Walk the shortest way to the free floor nearest to a point (x, y) [m], or to where a thing, an object or a
-        seat is in reach: an object where it can be seen from, if there is such a place.
+        """Walk the shortest way to the free floor nearest to a point (x, y) [m], or to a place from which a thing, an
+        object or a seat is in reach: for an object, a place that it can be seen from, if there is one.
 
-        The way is worked out on the house's own plan, as if by someone who lives there. Going to a thing ends
-        facing it.
+        The way is planned on the house's true floor plan. A walk to a thing ends with the body facing it.
 
         Raises:
-            UnknownName: when there is no such thing. HthorError: when the point is in no room.
+            UnknownName: when no thing, object or seat has this name. HthorError: when the point is in no room.
         """
         world, seat = self._world, self.seat
         target = target if isinstance(target, str) else numbers.point2("target", target)
@@ -153,10 +152,10 @@ class Actor:
         return self.move(length)
 
     def teleport(self, x: float, y: float, yaw: float | None = None, pitch: float | None = None) -> Pose:
-        """Be at (x, y) [m] at once, facing ``yaw`` [rad], camera at ``pitch`` [rad]; None keeps what is.
+        """Put the body at (x, y) [m] at once, with heading ``yaw`` and camera pitch ``pitch`` [rad]; None keeps either.
 
         Raises:
-            HthorError: when the body does not fit there, somebody is there, or a number is not finite or out of range.
+            HthorError: when the body does not fit there, another is there, or a number is not finite or out of range.
         """
         now = self.pose
         self._world.teleport(
@@ -165,23 +164,23 @@ class Actor:
         return self.pose
 
     def pick(self, object: str) -> Outcome:
-        """Take an object in hand."""
+        """Pick up an object."""
         return self.do(Pick(object=object))
 
     def place(self, on: str, position: Vec3 | None = None) -> Outcome:
-        """Put what is held on or in a thing, near ``position`` [m] if given."""
+        """Put the held object on or in a thing, near ``position`` [m] if given."""
         return self.do(Place(on=on, position=position))
 
     def drop(self) -> Outcome:
-        """Let go of what is held, right here."""
+        """Let go of the held object, which falls."""
         return self.do(Drop())
 
     def open(self, thing: str) -> Outcome:
-        """Open a fridge, a drawer, a door."""
+        """Open a fridge, a drawer or a door."""
         return self.do(Open(thing=thing))
 
     def close(self, thing: str) -> Outcome:
-        """Close it again."""
+        """Close a fridge, a drawer or a door."""
         return self.do(Close(thing=thing))
 
     def wait(self, seconds: float = rules.TICK_S) -> Outcome:
@@ -194,12 +193,12 @@ class Actor:
         """Colour, depth and segmentation of this moment, and the camera that took them.
 
         Args:
-            size: (width, height) [pixels], None for the camera's own. profile: fast, nice, or None for the world's.
+            size: (width, height) [pixels], None for the camera's own. profile: "fast", "nice", or None for the world's.
         """
         return self._world.look(self.seat, size, profile)
 
     def rgb(self, size: Size = None, profile: str | None = None) -> NDArray[np.uint8]:
-        """(H, W, 3) uint8, what its camera sees; arguments as in `look`."""
+        """The camera's picture, (H, W, 3) uint8; arguments as in `look`."""
         return self._world.picture(self.seat, "rgb", size, profile)
 
     def depth(self, size: Size = None, profile: str | None = None) -> NDArray[np.float32]:
@@ -211,20 +210,20 @@ class Actor:
         return self._world.picture(self.seat, "segmentation", size, profile)
 
     def detections(self) -> tuple[Detection, ...]:
-        """What its detector reports now, by id."""
+        """Detections of the body's detector now, by id."""
         return self._world.detections(self.seat)
 
     def sees(self, id: str) -> bool:
-        """Whether its detector reports this object, thing or seat now.
+        """Whether the body's detector reports this object, thing or seat now.
 
         Raises:
-            UnknownName: when there is no such thing in the house now.
+            UnknownName: when nothing with this id is in the house now.
         """
-        self._world.position(id)  # raises when it is not there
+        self._world.position(id)  # raises when it is not in the house
         return any(seen.id == id for seen in self.detections())
 
     def scan(self) -> Scan:
-        """Ranges to what would stop this body."""
+        """Ranges to walls, furniture and shut doors, which would stop this body."""
         return self._world.scan(self.seat)
 
     # ----------------------------------------------------------------------------------------------- communication
@@ -233,10 +232,10 @@ class Actor:
         """Send the person an image-text message: the image is this body's own view now.
 
         Args:
-            text: what it says. object: id of what it is about. position: [m] where that is believed to be.
+            text: its words. object: id or kind of the thing it is about. position: [m] where the sender believes it is.
 
         Raises:
-            HthorError: when this seat may not send, or the arguments do not fit.
+            HthorError: when this seat may not send, or an argument is invalid.
         """
         world, words = self._world, Send(text=text, object=object, position=position)
         self._post(world.mail.send(world.tick, self.seat, words, world.frame(self.seat)))
@@ -245,17 +244,17 @@ class Actor:
         return receipt
 
     def inbox(self) -> tuple[Message, ...]:
-        """The message that waits for an answer; the person's only. Reading it shows it."""
+        """The message that waits for an answer, only for the person; reading it sets its status to "shown"."""
         messages = self._world.mail.inbox(self.seat)
         if messages:
             self._post(self._world.mail.shown(self._world.tick))
         return messages
 
     def reply(self, accept: bool, message: int | None = None) -> None:
-        """Accept or decline a message by its number, or the open one when None.
+        """Accept or decline a message: the one with number ``message``, or the open one if None.
 
         Raises:
-            HthorError: when nothing waits, or this seat may not reply.
+            HthorError: when no message waits for an answer, or this seat may not reply.
         """
         if message is None:
             waiting = self.inbox()
@@ -265,7 +264,7 @@ class Actor:
         self._post(self._world.mail.reply(self._world.tick, self.seat, Reply(message=message, accept=accept)))
 
     def receipt(self) -> Receipt | None:
-        """What became of this robot's last message: sent, shown, confirmed, declined or covered; None before any."""
+        """The status of this robot's last message: sent, shown, confirmed, declined or covered; None before any."""
         return self._world.mail.receipt(self.seat)
 
     def _post(self, events: Iterable[Event]) -> None:

@@ -1,4 +1,4 @@
-"""The true state of a world, recomputed only where something changed."""
+"""The true state of a world; only the parts that changed are recomputed."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from hthor.world.state.objects import Objects
 
 
 class GroundTruth:
-    """The states of all objects and all things that open, and what the person has in view."""
+    """The states of all objects and all things that open, and the objects that the person has in view."""
 
     def __init__(self, objects: Objects, doors: Doors, visibility: Visibility, seats: Sequence[BodyState]) -> None:
         self._objects, self._doors, self._visibility, self._seats = objects, doors, visibility, seats
@@ -23,15 +23,15 @@ class GroundTruth:
         self._view: LazyInView | None = None
 
     def snapshot(self, tick: int) -> Snapshot:
-        """Everything at this tick."""
+        """The true state at this tick."""
         poses, holding = {}, {}
-        for seat in self._seats:  # at every tick of a trial: one loop is cheaper than two comprehensions
+        for seat in self._seats:  # called at every tick: one loop is cheaper than two comprehensions
             poses[seat.name], holding[seat.name] = seat.pose, seat.holding
         view, things = self._in_view(tick), self.states()
         return Snapshot(tick=tick, poses=poses, things=things, in_view=view, holding=holding)
 
     def states(self) -> dict[str, ThingState]:
-        """By id: a fresh dict whenever anything changed, the same one as long as nothing did."""
+        """States by id; the same dict as before if nothing has changed, else a new one."""
         version = (self._objects.changes, self._doors.changes)
         if version != self._version:
             self._things = self._renewed(doors=version[1] != self._version[1])
@@ -39,7 +39,7 @@ class GroundTruth:
         return self._things
 
     def _renewed(self, doors: bool) -> dict[str, ThingState]:
-        """The states, those of what changed replaced; ``doors`` says whether any door moved."""
+        """The states, with those that changed replaced; ``doors`` says whether any door moved."""
         things, known = dict(self._things), len(self._things)
         gone = False
         for item in self._objects.news():
@@ -52,17 +52,17 @@ class GroundTruth:
         return {id: things[id] for id in sorted(things)} if gone or len(things) != known else things
 
     def _in_view(self, tick: int) -> LazyInView:
-        """The same as long as nothing changes."""
+        """The person's objects in view; the same record as long as nothing changes."""
         moment = (self._human.pose, self._objects.changes, self._doors.changes)
         if self._view is None or self._view.moment != moment:
             self._view = LazyInView(self, moment, tick)
         return self._view
 
     def look(self, moment: tuple[Pose, int, int], tick: int) -> tuple[str, ...]:
-        """What the person has in view.
+        """Ids of the objects that the person has in view.
 
         Raises:
-            StaleObservation: when it is not this ``moment`` any more.
+            StaleObservation: when the world is no longer at this ``moment``.
         """
         if moment != (self._human.pose, self._objects.changes, self._doors.changes):
             raise StaleObservation(
@@ -73,7 +73,7 @@ class GroundTruth:
 
 
 class LazyInView(Mapping[str, tuple[str, ...]]):
-    """What `hthor.types.Snapshot.in_view` holds: worked out when it is first read, which few tasks do."""
+    """The value of `hthor.types.Snapshot.in_view`, computed at its first reading because few tasks read it."""
 
     __slots__ = ("_found", "_tick", "_truth", "moment")
 

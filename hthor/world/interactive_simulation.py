@@ -1,4 +1,4 @@
-"""A simulation to use by hand: what is where, motions that run until they end, and the mailbox."""
+"""A simulation to use by hand: positions by id, motions that run until they end, and the mailbox."""
 
 from collections.abc import Iterable
 
@@ -12,13 +12,13 @@ from hthor.world.motion import spawn
 from hthor.world.sensing_simulation import SensingSimulation
 
 _MOTION_TICKS_MAX = 36_000
-"""[ticks] An hour: a motion that has not ended by then never will."""
+"""[ticks] An hour: the most that `run` waits for the end of a motion."""
 _STEP_TICKS_MAX = 864_000
-"""[ticks] A day: the longest `step` at once."""
+"""[ticks] A day: the most that one call of `step` accepts."""
 
 
 class InteractiveSimulation(SensingSimulation):
-    """A `SensingSimulation` whose calls let time pass, with questions by id, kind and room, and a mailbox.
+    """A `SensingSimulation` whose calls let time pass, with look-up by id, kind and room, and a mailbox.
 
     Attributes:
         mail: the mailbox that `hthor.world.actor.Actor` uses.
@@ -26,7 +26,7 @@ class InteractiveSimulation(SensingSimulation):
     """
 
     def reset(self, task: TaskSpec | None = None, seed: int = 0) -> None:
-        """Begin an episode of a task, or, without one, with the house as it is and every body at the house's start."""
+        """Begin an episode of a task; without a task, of the house as it is, with every body at the house's start."""
         if task is not None:
             super().reset(task, seed)
             return
@@ -35,7 +35,7 @@ class InteractiveSimulation(SensingSimulation):
         spawn.place_bodies(tuple(self._seats.values()), self.house.start, ())
 
     def objects(self, kind: str = "", room: str = "") -> tuple[ThingState, ...]:
-        """True states of the objects that can be picked up, by id; of one kind, or in one room (its id), when given.
+        """True states of the objects that can be picked up, by id; only of ``kind`` and in ``room`` (id) if given.
 
         Raises:
             UnknownName: when there is no such room or kind.
@@ -46,7 +46,7 @@ class InteractiveSimulation(SensingSimulation):
         return tuple(state for state in states if not where or plane.inside(state.position[:2], where))
 
     def furniture(self, kind: str = "", room: str = "") -> tuple[Thing, ...]:
-        """The things that stay where they are, as the house file has them; of one kind, or in one room, when given.
+        """The things that never move, as in the house's file; only those of ``kind`` and in ``room`` if given.
 
         Raises:
             UnknownName: when there is no such room or kind.
@@ -57,7 +57,7 @@ class InteractiveSimulation(SensingSimulation):
         return tuple(thing for thing in things if kind in ("", thing.kind) and where in ("", thing.room))
 
     def count(self, kind: str) -> int:
-        """How many things of a kind are in the house now, those in hands included.
+        """How many things of a kind are in the house now, including those in hands.
 
         Raises:
             UnknownName: when there is no such kind.
@@ -65,10 +65,10 @@ class InteractiveSimulation(SensingSimulation):
         return len(self.objects(kind)) + len(self.furniture(kind))
 
     def state(self, id: str) -> ThingState:
-        """True state of an object or of a thing that opens: where it is, on what, in whose hand, whether open.
+        """True state of an object or of a thing that opens: its position, support, holder, and whether it is open.
 
         Raises:
-            UnknownName: when it is not in the house now.
+            UnknownName: when nothing with this id is in the house now.
         """
         states = {state.id: state for state in self.truth()}
         if id not in states:
@@ -79,7 +79,7 @@ class InteractiveSimulation(SensingSimulation):
         """Centre [m], house frame, of an object, a thing, a doorway or a seat's body (at the height of its eye).
 
         Raises:
-            UnknownName: when there is no such thing.
+            UnknownName: when nothing has this id.
         """
         if id in self.bodies:
             pose = self.pose(id)
@@ -102,7 +102,7 @@ class InteractiveSimulation(SensingSimulation):
         return outcome
 
     def step(self, ticks: int = 1) -> tuple[Event, ...]:
-        """Let ``ticks`` of 0.1 s pass; returns what happened in them, which `events` keeps too."""
+        """Let ``ticks`` of 0.1 s pass; returns their events, which are also added to `events`."""
         news: list[Event] = []
         for _ in range(numbers.whole_number("ticks", ticks, 0, _STEP_TICKS_MAX)):
             happened = self.advance()
@@ -111,7 +111,7 @@ class InteractiveSimulation(SensingSimulation):
         return tuple(news)
 
     def settle(self, seconds: float = 10.0) -> bool:
-        """Let time pass until nothing falls, rolls or swings, at most ``seconds``; says whether all is still."""
+        """Let time pass until nothing falls, rolls or swings, at most ``seconds``; returns whether all is at rest."""
         for _ in range(
             round(numbers.number("seconds", seconds, "seconds", 0.0, _MOTION_TICKS_MAX * rules.TICK_S) * 10)
         ):
@@ -122,11 +122,11 @@ class InteractiveSimulation(SensingSimulation):
 
     @property
     def messages(self) -> tuple[tuple[Message, Receipt], ...]:
-        """Every message since the last reset, with what became of it."""
+        """Every message since the last reset, each with its status."""
         return self.mail.messages
 
     def note(self, events: Iterable[Event]) -> None:
-        """Keep events."""
+        """Add events to `events`."""
         self.events.extend(events)
 
     def _begin(self, placements: dict[str, Placement], task: str = "") -> None:
@@ -143,6 +143,6 @@ class InteractiveSimulation(SensingSimulation):
 
 
 def _check_kind(kind: str) -> None:
-    """Raise UnknownName for a kind that does not exist; "" stands for all."""
+    """Raise UnknownName for a kind that does not exist; "" means all kinds."""
     if kind:
         catalog.kind(kind)

@@ -10,7 +10,7 @@ from hthor.types import Pose, Vec2, Vec3
 
 
 def is_finite(value: object) -> bool:
-    """Whether it is a number, and neither infinite, nor undefined, nor too large for a float."""
+    """Whether ``value`` is a number that is not infinite, not NaN and not too large for a float."""
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         return False
     try:
@@ -20,15 +20,15 @@ def is_finite(value: object) -> bool:
 
 
 def quoted(value: object) -> str:
-    """What was given, for a message."""
+    """The text that shows a given value in an error message."""
     try:
         return f"{value!r:.40}"
-    except ValueError:  # a whole number of more digits than Python prints
+    except ValueError:  # an integer with more digits than Python prints
         return "a number of thousands of digits"
 
 
 def format_number(value: float) -> str:
-    """A number for a message: to the hundredth, or as a power of ten where that would be long."""
+    """A number for a message: with two decimals, or with a power of ten where that would be long."""
     return f"{value:.2f}" if abs(value) < 1e6 else f"{value:.3g}"
 
 
@@ -36,9 +36,9 @@ def number(name: str, value: object, unit: str, low: float = -math.inf, high: fl
     """``value`` as a float.
 
     Raises:
-        HthorError: when it is no finite number, or not from ``low`` to ``high``; says what it is called and its unit.
+        HthorError: when it is not a finite number from ``low`` to ``high``; the message has its ``name`` and ``unit``.
     """
-    plain: Any = value.item() if hasattr(value, "item") and getattr(value, "ndim", 1) == 0 else value  # numpy's own
+    plain: Any = value.item() if hasattr(value, "item") and getattr(value, "ndim", 1) == 0 else value  # from numpy
     if not is_finite(plain):
         raise HthorError(f"{name} must be a finite number of {unit}, got {quoted(value)}")
     if not low <= plain <= high:
@@ -51,7 +51,7 @@ def whole_number(name: str, value: object, low: int, high: int) -> int:
     """``value`` as an int.
 
     Raises:
-        HthorError: when it is no whole number, or not from ``low`` to ``high``.
+        HthorError: when it is not a whole number from ``low`` to ``high``.
     """
     plain: Any = value.item() if hasattr(value, "item") and getattr(value, "ndim", 1) == 0 else value
     if isinstance(plain, bool) or not isinstance(plain, int) or not low <= plain <= high:
@@ -72,7 +72,7 @@ def point3(name: str, value: object, unit: str = "metres") -> Vec3:
 
 
 def pose(value: Pose) -> Pose:
-    """A pose of finite numbers, its heading in (-pi, pi]; raises as `number` does."""
+    """The same pose with its heading in (-pi, pi]; raises as `number` does if a number is not finite."""
     x, y = number("x", value.x, "metres"), number("y", value.y, "metres")
     yaw, pitch = number("yaw", value.yaw, "radians"), number("pitch", value.pitch, "radians")
     return Pose(x=x, y=y, yaw=plane.wrap(yaw), pitch=pitch)

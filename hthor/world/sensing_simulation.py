@@ -35,13 +35,11 @@ class SensingSimulation(Simulation):
 
     Args:
         house, robots, objects, detectors: see `Simulation`.
-        profile: how pictures are drawn unless a call says otherwise: "fast" needs the processor alone, "nice" is for
-            people and needs OpenGL.
-        assets: a furniture pack, or its name, that the profile "nice" shows instead of our own furniture where it can.
-        cameras: what pictures the robots' cameras take, in their order: a record, or what
-            `hthor.types.cameras.parse` reads;
-            where there is none, the body's own.
-
+        profile: how pictures are drawn unless a call names another profile: "fast" needs only the processor, "nice" is
+            for people and needs OpenGL.
+        assets: a furniture pack, or its name; the profile "nice" shows its furniture where it has any, else our own.
+        cameras: the robots' cameras, in the order of the robots: records, or texts that `hthor.types.cameras.parse`
+            reads; by default each body's own.
     """
 
     def __init__(
@@ -69,23 +67,23 @@ class SensingSimulation(Simulation):
     # -------------------------------------------------------------------------------------------------------- senses
 
     def senses(self, seat: str) -> Senses:
-        """What the seat perceives at this tick."""
+        """The seat's sensors at this tick."""
         return SeatSenses(self, seat)
 
     def detections(self, seat: str) -> tuple[Detection, ...]:
-        """What the seat's detector reports now, by id, with the errors that it has."""
+        """Detections of the seat's detector now, by id, with the detector's errors."""
         found, noise = self._visibility.detections(self._seats[seat]), self._detectors.get(seat)
         return found if noise is None else noise.report(found, self._objects, self._seed, self.tick)
 
     def sighting(self, seat: str, id: str) -> Sighting:
-        """How visible an object is to the seat now; a share of 0 if it is not in view or is no object."""
+        """How visible an object is to the seat now; a share of 0 if it is not in view or not an object."""
         return self._visibility.sighting(self._seats[seat], id)
 
     def hidden(self, id: str, eye: Vec3) -> bool:
         """Whether furniture, walls or other objects hide an object from an eye at (x, y, z) [m].
 
         Raises:
-            UnknownName: when there is no such object.
+            UnknownName: when there is no object with this id.
         """
         eye, item = numbers.point3("eye", eye), self._objects.known(id)
         if item is None:
@@ -93,7 +91,7 @@ class SensingSimulation(Simulation):
         return all(self._geoms.hidden(eye, point, id) for point in view_frustum.look_points(item.position, item.size))
 
     def scan(self, seat: str) -> Scan:
-        """What the seat's range scanner measures now."""
+        """The seat's range scan now."""
         body = self._seats[seat]
         return self._scanners[seat].scan(body.pose, body.space)
 
@@ -101,43 +99,43 @@ class SensingSimulation(Simulation):
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What the numbers of a segmentation stand for: things, seats, rooms, walls and openings.
+        """Ids that the numbers of a segmentation stand for: of things, seats, rooms, walls and openings.
 
-        Every episode shuffles them, by its seed.
+        Every episode shuffles the numbers by its seed.
         """
         return self._pictures.names(self._seed)
 
     @property
     def profile(self) -> str:
-        """How pictures are drawn unless a call says otherwise."""
+        """How pictures are drawn unless a call names another profile."""
         return self._pictures.profile
 
     def picture(self, seat: str, mode: str = "rgb", size: Size = None, profile: str | None = None) -> NDArray[Any]:
-        """The seat's own view now, without its own body.
+        """The picture of the seat's camera now, without the seat's own body.
 
         Args:
             mode: rgb (H, W, 3) uint8, depth (H, W) float32 [m] along the optical axis, or segmentation (H, W) int32,
                 indices into `names`, -1 for nothing. Depth and segmentation look through glass.
-            size: (width, height) [pixels]; None for the camera's own. Pixels are square: a picture of another
-                shape than the body's field of view shows the middle of it.
+            size: (width, height) [pixels]; None for the camera's own. Pixels are square: a picture whose
+                shape differs from that of the body's field of view shows the middle of it.
             profile: "fast", "nice", or None for the world's own.
 
         Raises:
-            ValueError: when mode, size or profile are none of these.
+            ValueError: when mode, size or profile is invalid.
             RenderingUnavailable: when the profile is nice and no OpenGL back end works.
         """
         return self._pictures.view(seat, mode, size, profile, self._seed)
 
     def look(self, seat: str, size: Size = None, profile: str | None = None) -> View:
-        """All three pictures of this moment and the camera they were taken with; see `picture`."""
+        """All three pictures of this moment, and the camera that took them; see `picture`."""
         return self._pictures.look(seat, size, profile, self._seed)
 
     def camera(self, seat: str, size: Size = None) -> Camera:
-        """The seat's camera now: how it projects pictures of ``size`` (width, height) [pixels], and where it is."""
+        """The pose of the seat's camera now, and its projection for pictures of ``size`` (width, height) [pixels]."""
         return self._pictures.camera(seat, size)
 
     def frame(self, seat: str, size: Size = None, profile: str | None = None) -> Callable[[], NDArray[np.uint8]]:
-        """The seat's own view of this very moment, (H, W, 3) uint8, drawn if and when it is called."""
+        """A function that draws the seat's view of this moment, (H, W, 3) uint8; it may be called later."""
         return self._pictures.frame(seat, size, profile)
 
     def top_view(self, pixels_per_metre: float = 50.0, profile: str | None = None) -> NDArray[np.uint8]:
@@ -157,7 +155,7 @@ class SensingSimulation(Simulation):
 
 
 class SeatSenses:
-    """A seat's detector, range scanner and camera at the tick at which this was made."""
+    """A seat's detector, range scanner and camera at the tick at which this object was made."""
 
     __slots__ = ("_detections", "_drawn", "_moment", "_scan", "_seat", "_view", "_world")
 
@@ -176,19 +174,19 @@ class SeatSenses:
         return self._detections
 
     def sighting(self, id: str) -> Sighting:
-        """How visible an object is; a share of 0 for what is not in view."""
+        """How visible an object is; a share of 0 if it is not in view."""
         self._check()
         return self._world.sighting(self._seat, id)
 
     def scan(self) -> Scan:
-        """Ranges to what would stop this body: walls and furniture, not people, robots or objects."""
+        """Ranges to walls, furniture and shut doors, which stop this body; not to people, robots or objects."""
         self._check()
         if self._scan is None:
             self._scan = self._world.scan(self._seat)
         return self._scan
 
     def rgb(self) -> NDArray[np.uint8]:
-        """(H, W, 3) uint8."""
+        """The camera's picture, (H, W, 3) uint8."""
         image: NDArray[np.uint8] = self._picture("rgb")
         return image
 
@@ -203,7 +201,7 @@ class SeatSenses:
         return image
 
     def camera(self) -> Camera:
-        """Where the camera is and how it projects."""
+        """The pose and the projection of the camera."""
         self._check()
         return self._world.camera(self._seat)
 

@@ -37,15 +37,15 @@ from hthor.world.state.body_state import BodyState
 class Simulation:
     """A house, one person and any number of robots.
 
-    The model is compiled once, here; `reset` only writes poses. After a reset, the same motions give the same states,
-    bit for bit.
+    The constructor compiles the model; `reset` only writes poses. After a reset, the same motions give bitwise the same
+    states.
 
     Args:
         house: a floor plan, or the name of one.
-        robots: the robots' bodies or their names; they sit at "robot", "robot2", ...
+        robots: the robots' bodies or their names; their seats are "robot", "robot2", ...
         objects: (id, kind) pairs of the movable objects that tasks may place, besides the house's own.
-        detectors: how the robots' detectors err, in their order: records, or what `hthor.types.detector_specs.parse`
-            takes; "own", the default, is what the body declares.
+        detectors: the robots' detectors, in the order of the robots: records, or texts that
+            `hthor.types.detector_specs.parse` reads; the default "own" is the detector that the body declares.
 
     Attributes:
         house: the floor plan. seats: names of all seats, the person's first. bodies: what each seat's body can do.
@@ -86,11 +86,11 @@ class Simulation:
         return self._env.model
 
     def reset(self, task: TaskSpec, seed: int = 0) -> None:
-        """Begin a task: all objects in place and asleep, things closed, doorways open.
+        """Begin a task: all objects in place and at rest, things closed, doorways open.
 
-        A body whose start is not free stands at the nearest free place; a robot without a start in the task, at the
-        nearest place to the first robot's start that is clear of the others. ``seed`` decides all chance in the
-        episode, which is the errors of noisy detectors.
+        A body whose start is not free stands at the nearest free place. A robot without a start in the task stands at
+        the free place nearest to the first robot's start. ``seed`` decides all random draws of the episode, which are
+        the errors of noisy detectors and the numbers of segmentations.
 
         Raises:
             TaskError: when the task belongs to another house or places an object that this world does not have.
@@ -128,7 +128,7 @@ class Simulation:
         return self._seats[seat].activity is None
 
     def start(self, seat: str, action: Motion) -> None:
-        """Begin a motion. One that a rule forbids is refused: see `outcome`, and the next `advance` reports it."""
+        """Begin a motion. If a rule forbids it, `outcome` says why and the next `advance` returns a "refused" event."""
         body = self._seats[seat]
         reason = (
             f"{seat} is busy with another motion" if body.activity is not None else self._dispatch.refusal(body, action)
@@ -142,19 +142,19 @@ class Simulation:
         body.activity = self._dispatch.activity(body, action)
 
     def outcome(self, seat: str) -> Outcome | None:
-        """How the seat's last motion ended, None before any has."""
+        """How the seat's last motion ended; None before any motion has ended."""
         return self._seats[seat].outcome
 
     def advance(self) -> tuple[Event, ...]:
         """Let one tick pass: every busy body moves, in the order of the seats, then objects fall and doors swing.
 
         Returns:
-            what happened: picked, placed, dropped, opened, closed, refused, blocked (by the house), in_way (of another
-            body); held, lifted, lowered, released, see `hthor.world.carrying.joint_carrying`.
+            the tick's events: picked, placed, dropped, opened, closed, refused, blocked (by the house), in_way (by
+            another body); held, lifted, lowered, released, see `hthor.world.carrying.joint_carrying`.
 
         Raises:
-            PhysicsError: when the engine loses the state. All objects are then where they were a tick before, at rest,
-                and the next call goes on from there; what else happened in this tick, it returns.
+            PhysicsError: when the engine loses the state. All objects are then at rest where they were a tick before.
+                The next call goes on from there and also returns the other events of this tick.
         """
         self.tick += 1
         events, self._events = self._events, []
@@ -175,7 +175,7 @@ class Simulation:
         return tuple(sorted(events, key=lambda event: event.tick)) if events else ()
 
     def _check(self, events: list[Event]) -> None:
-        """Recover when the engine has lost the state, and say so; nothing that happened in the tick is lost."""
+        """Recover and raise PhysicsError if the engine has lost the state; the tick's ``events`` are kept."""
         complaints = self._env.warnings()
         if not complaints:
             return
@@ -189,12 +189,12 @@ class Simulation:
         )
 
     def out_of_hand(self, seat: str, id: str, place: Vec2 | None = None) -> str:
-        """Why a body could not pick an object up, or get at a thing's door, with an empty hand; empty when it could.
+        """Why a body could not pick an object up or reach a thing's door with an empty hand; empty when it could.
 
         Args:
-            seat: whose body. id: the object or thing; "" is the answer for what can be neither picked up nor opened,
-                and for a body that does neither.
-            place: (x, y) [m] where the body would stand, facing it; None for where it stands, as it stands.
+            seat: the body's seat. id: the object or thing; the result is also "" if it can be neither picked up nor
+                opened, or if the body can do neither.
+            place: (x, y) [m] where the body would stand, facing the thing; None for its present pose.
         """
         body = self._seats[seat]
         return self._manipulation.out_of_hand(body if place is None else self._imagined(body, id, place), id)
@@ -208,7 +208,7 @@ class Simulation:
         return copy
 
     def teleport(self, seat: str, pose: Pose) -> None:
-        """Put a body somewhere at once; what it was doing ends.
+        """Put a body somewhere at once; its motion under way ends.
 
         Raises:
             HthorError: when the body does not fit there, another is there, or a number is not finite or out of range.
@@ -230,19 +230,19 @@ class Simulation:
         yaw: float = 0.0,
         velocity: Sequence[float] = (0.0, 0.0, 0.0),
     ) -> None:
-        """Set one of this world's objects somewhere at once; the engine takes it from there.
+        """Put one of this world's objects somewhere at once; from then on the engine moves it.
 
         Args:
-            id: an object of the house or of ``objects``, whether it is in the episode by now or not.
-            position: [m] of its centre; with ``on``, where it should be as nearly as there is room.
-            on: id of a thing to put it on, or in when it has no top, along the thing's edges when ``yaw`` is 0.
+            id: an object of the house or of ``objects``; it need not be in the episode yet.
+            position: [m] of its centre; with ``on``, it is put as near to this point as there is room.
+            on: id of a thing to put it on (or in, if the thing has no top), along the thing's edges when ``yaw`` is 0.
             yaw: [rad] its heading; with ``on``, relative to the thing.
-            velocity: [m/s] to throw it with.
+            velocity: [m/s] its initial velocity.
 
         Raises:
-            UnknownName: when there is no such object, or nothing can be put on that thing.
-            HthorError: when it is in someone's hand, would be outdoors or inside something, has no room there, or is
-                to fly faster than anyone throws.
+            UnknownName: when there is no object with this id, or nothing can be put on the thing ``on``.
+            HthorError: when the object is in someone's hand, would be outdoors or inside something, has no room there,
+                or its velocity is too high.
         """
         self._editor.put(id, position, on, yaw, velocity)
 
@@ -250,7 +250,7 @@ class Simulation:
         """Take an object out of the episode; `put_object` brings it back.
 
         Raises:
-            UnknownName: when there is no such object. HthorError: when it is in a hand.
+            UnknownName: when there is no object with this id. HthorError: when it is in a hand.
         """
         self._editor.remove(id)
 
@@ -258,26 +258,26 @@ class Simulation:
         """Open or close a fridge, a drawer or a door at once.
 
         Raises:
-            UnknownName: when no such thing opens. HthorError: when something is in its way.
+            UnknownName: when no thing with this id opens. HthorError: when something is in its way.
         """
         self._door_handling.put(thing, wanted)
 
     @property
     def still(self) -> bool:
-        """Whether every object and door is at rest, apart from what is carried."""
+        """Whether every door and every object that is not carried is at rest."""
         return self._env.still
 
     @property
     def moment(self) -> tuple[int, int]:
-        """Episode and tick: what an observation belongs to."""
+        """The numbers of the episode and the tick, to which an observation belongs."""
         return (self._episode, self.tick)
 
     def pose(self, seat: str) -> Pose:
-        """Where the seat's body is."""
+        """The pose of the seat's body."""
         return self._seats[seat].pose
 
     def poses(self) -> dict[str, Pose]:
-        """Where every seat's body is, the person first."""
+        """The pose of every seat's body, the person's first."""
         return {name: seat.pose for name, seat in self._seats.items()}
 
     def holding(self, seat: str) -> str:
@@ -285,7 +285,7 @@ class Simulation:
         return self._seats[seat].holding
 
     def room(self, seat: str) -> str:
-        """Id of the room the seat's body is in, the last one while it is between rooms."""
+        """Id of the room that the seat's body is in; between rooms, of the room that it was in last."""
         return self._rooms.room(seat, self._seats[seat].pose)
 
     def truth(self) -> tuple[ThingState, ...]:

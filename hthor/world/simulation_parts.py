@@ -1,4 +1,4 @@
-"""The parts of a simulation, made in the order in which they need one another; which of them decides on an action."""
+"""The parts of a simulation, made in the order of their dependencies; each action goes to the part that handles it."""
 
 from collections.abc import Mapping, Sequence
 
@@ -40,7 +40,7 @@ from hthor.world.state.support_surfaces import SupportSurfaces
 
 
 class ActionDispatch:
-    """Checks actions of one world's bodies and starts them."""
+    """Checks the motions of one world's bodies and starts them."""
 
     def __init__(self, house: HouseSpec, manipulation: Manipulation, doors: Doors, seats: Sequence[BodyState]) -> None:
         self._manipulation, self._doors, self._obstacles = manipulation, doors, ObstacleFootprints(house)
@@ -57,7 +57,7 @@ class ActionDispatch:
         return f"{type(action).__name__} is not a motion; valid: Move, Rotate, Pick, Place, Drop, Open, Close, Wait"
 
     def activity(self, seat: BodyState, action: Motion) -> Activity:
-        """The motion under way."""
+        """A motion that has begun, to be carried on tick by tick."""
         load = self._joint_carrying.of(seat) if seat.holding else None
         if load is not None and isinstance(action, Move):
             return CarryMotion(seat, action, load, self._culprit)
@@ -72,7 +72,7 @@ class ActionDispatch:
         return HandMotion(seat, action, self._manipulation)
 
     def _culprit(self, seat: BodyState, step: Vec2) -> str:
-        """What the body would have run into: the nearest thing's id, or "wall"."""
+        """The obstacle that the body would have hit: the nearest thing's id, or "wall"."""
         shut = [leaf.opening for leaf in self._doors if leaf.opening is not None and not leaf.open]
         return self._obstacles.nearest((seat.pose.x + step[0], seat.pose.y + step[1]), seat.spec.height, shut)
 
@@ -81,10 +81,10 @@ class SimulationParts:
     """Everything that shares one compiled model of a house.
 
     Args:
-        house: the floor plan. contents: its things, split by what moves.
-        bodies: what each seat's body can do, the person's first. space: each seat's free-space grid; the dict is kept
-            up to date when doorways are shut or opened.
-        detectors: how each robot's detector errs.
+        house: the floor plan. contents: its things, split into moving and static ones.
+        bodies: the body in each seat, the person's first. space: each seat's free-space grid; the dict is updated when
+            doorways are shut or opened.
+        detectors: each robot's detector.
     """
 
     def __init__(

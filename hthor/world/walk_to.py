@@ -1,4 +1,4 @@
-"""Routes for `Actor.go_to` on the house's own plan: which way to walk, and where to stand."""
+"""Routes for `Actor.go_to` on the house's true floor plan, and the places where they end."""
 
 import math
 from typing import Any
@@ -15,23 +15,23 @@ from hthor.world.interactive_simulation import InteractiveSimulation
 from hthor.world.state import doors
 
 _REACH_SHARES = (0.8, 0.97, 0.9999)
-"""How close a body goes to an object, in shares of its reach (metres for a body without hands); the next share is tried
-where no place so close lets it see and grasp the object. The margins absorb rounding to grid cells."""
+"""How close a body goes to an object, as shares of its reach (metres for a body without hands). If no place within one
+share lets it see and grasp the object, the next share is tried. The margins absorb rounding to grid cells."""
 _NEAR_M, _FAR_M, _ = _REACH_SHARES
 _SHORT_M = 0.3
-"""Ending this much [m] farther from the target than the house alone would require means that a body is in the way."""
+"""[m] A walk that ends this much farther from the target than the house requires has a body in its way."""
 _BESIDE_M = 1.0
-"""How near [m] one can be expected to come to a place that another body occupies."""
+"""[m] How near a body has to come to a place that another body occupies."""
 _ROUND = ((1.0, 0.5), (0.87, 0.8), (0.6, 1.0))
 """Half sides of three rectangles that together cover a disc of radius 1."""
 _MARGIN_M = 0.04
-"""Half the diagonal of a cell: paths may run anywhere in a free cell, but only its middle is tested."""
+"""[m] Half the diagonal of a cell: paths may cross a free cell anywhere, but only its middle is tested."""
 _TRIES = 100
-"""How many places around a body, or within reach of an object, are tried before all are."""
+"""About how many places around a body, or within reach of an object, are tried before all of them are."""
 
 
 def rotation_towards(pose: Pose, body: BodySpec, point: Vec3) -> Rotate:
-    """The rotation after which a body at ``pose`` faces ``point`` [m], with its camera tilted as far as it can be."""
+    """The rotation after which a body at ``pose`` faces ``point`` [m], its camera tilted to it as far as possible."""
     dx, dy = point[0] - pose.x, point[1] - pose.y
     yaw = plane.wrap(math.atan2(dy, dx) - pose.yaw)
     up = math.atan2(point[2] - body.eye, max(math.hypot(dx, dy), 1e-6))
@@ -39,10 +39,10 @@ def rotation_towards(pose: Pose, body: BodySpec, point: Vec3) -> Rotate:
 
 
 def route(world: InteractiveSimulation, seat: str, target: str | Vec2) -> tuple[Vec2, ...]:
-    """The corners [m] of the shortest way of a seat's body to a place, or to where a thing is in reach.
+    """The corners [m] of the shortest way of a seat's body to a place, or to a place from which a thing is in reach.
 
     Raises:
-        UnknownName: when there is no such thing. HthorError: when the place is in no room, or the body cannot move.
+        UnknownName: when nothing has this id. HthorError: when the place is in no room, or the body cannot move.
     """
     pose = world.pose(seat)
     paths = Geodesics(_space_around_others(world, seat))
@@ -55,7 +55,7 @@ def route(world: InteractiveSimulation, seat: str, target: str | Vec2) -> tuple[
 
 
 def body_in_the_way(world: InteractiveSimulation, seat: str, target: str | Vec2) -> str:
-    """The seat that keeps a body that has walked its route farther away than the house does; empty for none."""
+    """The seat whose body kept another one, at the end of its route, away from the target; empty for none."""
     if _detour(world, seat, target) <= _SHORT_M:
         return ""
     pose = world.pose(seat)
@@ -64,7 +64,7 @@ def body_in_the_way(world: InteractiveSimulation, seat: str, target: str | Vec2)
 
 
 def out_of_hand(world: InteractiveSimulation, seat: str, target: str) -> str:
-    """Why a body cannot pick up the object that it walked to; empty when it can, or when that is no object."""
+    """Why a body cannot pick up the object that it walked to; empty when it can, or when it is not an object."""
     states = {state.id: state for state in world.truth()}
     reason = world.out_of_hand(seat, target) if _is_object(world, target) else ""
     inside = states.get(states[target].support) if reason else None
@@ -73,7 +73,7 @@ def out_of_hand(world: InteractiveSimulation, seat: str, target: str) -> str:
 
 
 def _is_object(world: InteractiveSimulation, target: str) -> bool:
-    """Whether it is an object, not furniture or a body."""
+    """Whether ``target`` is an object, not furniture or a body."""
     return any(state.id == target for state in world.objects())
 
 
@@ -92,7 +92,7 @@ def _detour(world: InteractiveSimulation, seat: str, target: str | Vec2) -> floa
 
 
 def _is_taken(world: InteractiveSimulation, seat: str, goal: Vec2) -> bool:
-    """Whether another body stands at the goal; then a place beside it is as good."""
+    """Whether another body stands at the goal; then a place next to that body is good enough."""
     others = [(world.pose(name), world.bodies[name].radius) for name in world.seats if name != seat]
     reach = _SHORT_M + world.bodies[seat].radius
     return any(math.dist((pose.x, pose.y), goal) < reach + radius for pose, radius in others)
@@ -107,7 +107,7 @@ def _indoors(world: InteractiveSimulation, target: Vec2) -> Vec2:
 
 
 def _nearest_free_floor(world: InteractiveSimulation, seat: str, space: FreeSpace) -> Vec2:
-    """The nearest free floor for a body that stands close to others, reached in a straight line past none of them."""
+    """The nearest free floor for a body close to others, which it reaches in a straight line without touching them."""
     pose = world.pose(seat)
     places = space.centres(space.free)
     order = np.argsort(np.hypot(places[:, 0] - pose.x, places[:, 1] - pose.y), kind="stable")[:_TRIES]
@@ -131,9 +131,9 @@ def _space_around_others(world: InteractiveSimulation, seat: str) -> FreeSpace:
 
 
 def _standing_place(world: InteractiveSimulation, seat: str, paths: Geodesics, here: Vec2, target: str) -> Vec2:
-    """The free place by ``target`` that is the shortest walk away: in front of a thing, within reach of an object.
+    """The place, by the shortest walk, that is in front of the thing or within reach of the object ``target``.
 
-    Preferred is a place from which the hand gets at it, then one from which it is in sight, then the nearest.
+    A place from which the hand can grasp the target is preferred, then one from which it is in sight.
     """
     places = paths.space.centres(paths.space.component(*here))
     if not len(places):
@@ -153,7 +153,7 @@ def _standing_place(world: InteractiveSimulation, seat: str, paths: Geodesics, h
 
     for good in (lambda place: handy(place) and visible(place), visible):
         for near in rings:
-            for stride in {max(1, len(near) // _TRIES): 0, 1: 0}:  # a few of them first
+            for stride in {max(1, len(near) // _TRIES): 0, 1: 0}:  # first a few places, then all
                 for x, y in near[::stride].tolist():
                     if good((x, y)):
                         return (x, y)
@@ -162,9 +162,9 @@ def _standing_place(world: InteractiveSimulation, seat: str, paths: Geodesics, h
 
 
 def _gaps(world: InteractiveSimulation, target: str, places: Any) -> Any:
-    """(N,) [m] from each of the ``places`` (N, 2) to a thing's footprint, or to an object's or body's middle.
+    """(N,) distances [m] from ``places`` (N, 2) to a thing's footprint, or to an object's or body's middle.
 
-    What stands behind a thing that has a back is as far as can be.
+    If a near place is in front of the thing, the distance of all places that are not in front is infinite.
     """
     thing = next((thing for thing in world.furniture() if thing.id == target), None)
     x, y, _ = world.position(target)

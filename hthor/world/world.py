@@ -1,4 +1,4 @@
-"""The simulator by hand: set up a house, move bodies, look around, pass messages.
+"""A simulation to control by hand: set up a house, move bodies, take pictures, pass messages.
 
 from hthor.world import World
 
@@ -22,8 +22,8 @@ class World(InteractiveSimulation):
     Args:
         house: a name of `scenes`, the path of a house file, or a `HouseSpec`.
         robots: the robots' bodies, by name or as `RobotSpec`; their seats are "robot", "robot2", ...
-        objects: (id, kind) pairs of spare objects, which `put` brings into the house; by default the benchmark's six
-            targets, each under its kind's name.
+        objects: (id, kind) pairs of spare objects, which `put_object` brings into the house; by default the benchmark's
+            six targets, each with its kind's name as id.
 
     Attributes:
         mail: the mailbox that `Actor.send` and `Actor.reply` use.
@@ -39,7 +39,7 @@ class World(InteractiveSimulation):
         """The body in a seat.
 
         Raises:
-            UnknownName: when there is no such seat.
+            UnknownName: when this world has no such seat.
         """
         if seat not in self.bodies:
             raise UnknownName("seat", seat, self.seats, "Give robots=[...] when you make the world.")
