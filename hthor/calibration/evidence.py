@@ -1,4 +1,4 @@
-"""What a calibration finds out about its own population: records that its stages make and the validation report shows.
+"""The findings of a calibration about its population: records that its stages make and the validation report shows.
 
 Figures are named ``sr none``, ``twsr oracle``, ``adoption frontier`` and so on, and are fractions, not percentages. A
 predicted figure is always that of one group of the published study: six people with ten tasks each.
@@ -22,16 +22,16 @@ FIGURES = (
     *(f"{metric} {condition}" for metric in ("sr", "twsr") for condition in CONDITIONS),
     *(f"adoption {condition}" for condition in CONDITIONS[1:]),
 )
-"""The eight published figures; without a robot there is nothing to adopt."""
+"""The eight published figures; without a robot there is no adoption."""
 TOLERANCE = {"sr": 0.04, "twsr": 0.04, "adoption": 0.07}
-"""How far the median of a predicted figure may lie from the published one, by metric. Our choice."""
+"""Largest distance of a predicted figure's median from the published figure, by metric. Our choice."""
 BAND90 = (0.05, 0.5, 0.95)
-"""Quantiles of a median and a 90 % interval."""
+"""Quantiles of a 90 % interval and its median."""
 _Record = TypeVar("_Record", bound=Struct)
 
 
 class Band(Struct, frozen=True, kw_only=True):
-    """Median of a distribution and an interval around it; the field that holds it says of which probability."""
+    """Median of a distribution and an interval around it; its probability is given where the band is used."""
 
     low: float
     median: float
@@ -42,7 +42,7 @@ class PredictedFigure(Struct, frozen=True, kw_only=True):
     """A published figure before and after the fit: medians and 90 % intervals of study groups.
 
     ``prior`` and ``posterior`` are predicted by the emulator, ``simulated`` comes from whole studies with people of the
-    posterior. ``design_effect`` is the variance over that of independent trials, None where the fit does not use it.
+    posterior. ``design_effect`` is the variance over that of independent trials, None if the fit does not use one.
     """
 
     figure: str
@@ -53,7 +53,7 @@ class PredictedFigure(Struct, frozen=True, kw_only=True):
 
 
 class HeldOutFigure(Struct, frozen=True, kw_only=True):
-    """A published figure and an interval predicted for it; of a condition left out of the fit an 80 % interval."""
+    """A published figure and its predicted interval (80 % when the fit left out the figure's condition)."""
 
     figure: str
     published: float
@@ -71,10 +71,10 @@ class HeldOutFigure(Struct, frozen=True, kw_only=True):
 
 
 class HeldOutCondition(Struct, frozen=True, kw_only=True):
-    """A condition left out: what the other two predict of it.
+    """A condition left out of the fit, and its prediction from the other two.
 
     ``log_score`` and ``log_score_prior`` are log predictive densities [nats] of its published counts and ratio, after
-    a fit to the conditions ``fitted`` and before any fit; ``rivals`` has those of simple human models, by name.
+    a fit to the conditions ``fitted`` and before any fit; ``rivals`` has the densities by simple human models.
     """
 
     condition: str
@@ -86,12 +86,12 @@ class HeldOutCondition(Struct, frozen=True, kw_only=True):
 
 
 class ParameterFinding(Struct, frozen=True, kw_only=True):
-    """What the published numbers say of one parameter; ``prior`` and ``posterior`` are 90 % bands in its own unit.
+    """What the published numbers say about a parameter; ``prior`` and ``posterior`` are 90 % bands in its own unit.
 
     ``contraction`` is 1 - posterior variance / prior variance in the unit cube. ``recovery`` is the correlation of true
-    values and posterior means over simulated studies, ``coverage`` the share of them whose 90 % interval held the
+    values and posterior means over simulated studies, ``coverage`` the share of studies whose 90 % interval has the
     truth, ``ranks`` a histogram of the truth's rank among posterior draws (flat when the posterior is calibrated).
-    ``fitted``: whether the published numbers are expected to move it; all parameters are sampled.
+    ``fitted``: whether the published numbers are expected to change it; all parameters are sampled.
     """
 
     name: str
@@ -108,7 +108,7 @@ class ParameterFinding(Struct, frozen=True, kw_only=True):
 
 
 class CoverageFinding(Struct, frozen=True, kw_only=True):
-    """The share of 90 % intervals that held the truth of simulated studies; ``low``, ``high``: of single parameters."""
+    """The share of 90 % intervals of simulated studies with the truth; ``low``, ``high``: over parameters."""
 
     studies: int
     mean: float
@@ -120,7 +120,7 @@ class EmulatorFit(Struct, frozen=True, kw_only=True):
     """How well an emulator predicts trials that it was not trained on: one outcome in one condition.
 
     ``z_sd`` is the sd of standardised errors on whole simulated studies, ``score`` the mean log score per trial and
-    ``baseline`` that of always predicting the mean [nats]; ``bins`` are (predicted frequency, observed, trials).
+    ``baseline`` the score of always predicting the mean [nats]; ``bins`` are (predicted frequency, observed, trials).
     """
 
     outcome: str
@@ -132,7 +132,7 @@ class EmulatorFit(Struct, frozen=True, kw_only=True):
 
 
 class AbcShift(Struct, frozen=True, kw_only=True):
-    """How far ABC's posterior median lies from ours, and the standard ``error`` of that, in our posterior sds."""
+    """Distance of ABC's posterior median from ours, and its standard ``error``, in our posterior sds."""
 
     name: str
     shift: float
@@ -140,9 +140,9 @@ class AbcShift(Struct, frozen=True, kw_only=True):
 
 
 class ParameterSwing(Struct, frozen=True, kw_only=True):
-    """What a parameter does to a gap between robots when it alone goes from a low to a high quantile of its prior.
+    """The change of a gap between robots when one parameter alone moves from a low to a high quantile of its prior.
 
-    ``low`` and ``high`` are mean gaps in SR, ``ordered`` the share of draws in order, at the worse end.
+    ``low`` and ``high`` are mean gaps in SR at the two ends, ``ordered`` the share of draws in order at the worse end.
     """
 
     name: str
@@ -157,7 +157,7 @@ class RobotRanking(Struct, frozen=True, kw_only=True):
     """How often posterior draws rank the robots oracle over frontier over none.
 
     ``sr``, ``twsr`` and ``both`` are shares of the draws, each judged on ``trials`` noisy trials with each robot;
-    ``expected`` has the shares of draws in which the robots' true rates are in that order, by the same names;
+    ``expected`` has the shares of draws whose true rates have that order, by the same names;
     ``pairs`` has the share of each pair, such as ``sr oracle>frontier``.
     """
 
@@ -173,7 +173,7 @@ class RobotRanking(Struct, frozen=True, kw_only=True):
 
 
 class Origin(Struct, frozen=True, kw_only=True):
-    """What the calibration was made from; ``effective`` is the effective number of posterior draws."""
+    """The inputs of the calibration; ``effective`` is the effective number of posterior draws."""
 
     population_sha256: str
     targets_sha256: str
@@ -188,7 +188,7 @@ class Origin(Struct, frozen=True, kw_only=True):
 
 
 class Evidence(Struct, frozen=True, kw_only=True):
-    """Everything that a calibration can say of the population that it made. Empty parts were not computed.
+    """Everything that a calibration says about the population that it made. Empty parts were not computed.
 
     ``emulator_z`` is the sd of the emulator's standardised errors over all eight figures of whole simulated studies.
     """
@@ -231,10 +231,10 @@ def encode_evidence(evidence: Evidence) -> bytes:
 
 
 def load_evidence(path: Path) -> Evidence:
-    """The evidence in a file, or in the calibration's folder that holds it.
+    """The evidence in a file, or in the folder of a calibration.
 
     Raises:
-        RunError: when there is none, or it cannot be read.
+        RunError: when there is no evidence, or it cannot be read.
     """
     file = path / FILE if path.is_dir() else path
     if not file.is_file():

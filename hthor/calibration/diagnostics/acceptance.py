@@ -1,6 +1,6 @@
 """The criteria that a calibration has to meet before its population is worth using.
 
-A small calibration has wider ones: with ten studies, a coverage of .90 is estimated as anything from .7 to 1, its
+A small calibration has wider bounds: with ten studies, a coverage of .90 is estimated as anything from .7 to 1, its
 emulator has seen a thirtieth of the trials, and there are too few studies for the ABC check.
 """
 
@@ -13,11 +13,11 @@ from hthor.calibration.evidence import AbcShift
 
 
 class AcceptanceBounds(Struct, frozen=True, kw_only=True):
-    """Where a figure of merit has to lie. Our choice.
+    """The bounds of each figure of merit. Our choice.
 
     ``coverage`` is the share of true values inside 90 % intervals, ``z_sd`` the sd of the emulator's standardised
-    errors on whole studies, ``shift`` the greatest of a fitted median by ABC, in our sds; ``effective`` points and
-    simulated ``studies`` are least numbers; ``covered`` is the share of published figures inside 90 % intervals.
+    errors on whole studies, ``shift`` the greatest shift of a fitted median by ABC, in our sds; ``effective`` (points)
+    and ``studies`` (simulated) are least numbers; ``covered`` is the share of published figures in 90 % intervals.
     """
 
     coverage: tuple[float, float]
@@ -38,7 +38,7 @@ CLOSE = "SR and TWSR within 4 points, adoption within 7"
 
 
 class QualityFigures(Struct, frozen=True, kw_only=True):
-    """What is judged; see `AcceptanceBounds`. ``covered`` and ``close`` are (how many, of how many)."""
+    """The figures that are judged; see `AcceptanceBounds`. ``covered`` and ``close`` are (number, out of)."""
 
     coverage: float
     studies: int
@@ -50,7 +50,7 @@ class QualityFigures(Struct, frozen=True, kw_only=True):
 
 
 class Gate(Struct, frozen=True, kw_only=True):
-    """A criterion: what it asks, what was found, and whether that passes."""
+    """A criterion: its requirement (``asks``), the finding, and whether the finding passes."""
 
     name: str
     asks: str
@@ -73,7 +73,7 @@ def judge_calibration(found: QualityFigures, *, quick: bool) -> tuple[Gate, ...]
 
 
 def count(values: Sequence[bool]) -> tuple[int, int]:
-    """How many are true, and of how many."""
+    """The number of true values, and the number of all."""
     return sum(values), len(values)
 
 

@@ -1,14 +1,14 @@
-"""Whether intervals hold the truth as often as they claim.
+"""Whether intervals contain the truth as often as they claim.
 
-Simulated studies, whose truth is known, are fitted; and every two conditions of the published study predict the third.
+Simulated studies, whose true parameters are known, are fitted. Each condition of the published study is predicted from
+the other two.
 
-The posterior is also checked by simulated studies alone, without the emulator: approximate Bayesian computation.
-Studies simulated at points of the prior are weighted by how near their summary is to the published study's, and a
-local-linear regression moves each kept parameter to where its summary would be the published one (Beaumont et al.
-2002). The summary of a study for a parameter is the mean that our posterior would give it (Fearnhead and Prangle
-2012): one number, so that a few hundred studies, which is all that can be afforded, are enough to see a posterior that
-is off by half its width. What this cannot see: whether the study tells more than the summary keeps, and the shape of
-tails.
+Approximate Bayesian computation (ABC) also checks the posterior by simulated studies alone, without the emulator.
+Studies simulated at points of the prior are weighted by how near their summary is to that of the published study, and a
+local-linear regression moves each kept parameter to where its summary would equal the published one (Beaumont et al.
+2002). The summary of a study for a parameter is the mean that our posterior would give it (Fearnhead and Prangle 2012):
+one number, so that the few hundred studies that we can afford reveal a posterior that is off by half its width. They
+do not reveal information that the summary loses, or the shape of tails.
 """
 
 from typing import Any
@@ -35,17 +35,17 @@ BINS = 10
 """Bins of the histogram of ranks."""
 _BAND80 = (0.1, 0.5, 0.9)
 KEPT = 0.5
-"""Share of the studies within the bandwidth."""
+"""Share of the studies within the bandwidth of ABC."""
 FEWEST = 40
-"""Studies that are needed."""
+"""Least number of studies for ABC."""
 _REPLICAS = 200
 """Bootstrap replicas of the studies, for the standard error."""
 
 
 class Coverage(Struct, frozen=True, kw_only=True, eq=False):
-    """What was found, by parameter (P,).
+    """The findings by parameter (P,).
 
-    ``covered`` is the share of studies whose 90 % interval held the truth, ``overall`` its mean over all parameters.
+    ``covered`` is the share of studies whose 90 % interval has the truth, ``overall`` its mean over all parameters.
     ``means`` (S, P) are posterior means, ``ranks`` (S, P) the share of the posterior below the truth, uniform when
     posteriors are calibrated; ``recovery`` is the correlation of truth and posterior mean.
     """
@@ -66,9 +66,9 @@ class Coverage(Struct, frozen=True, kw_only=True, eq=False):
 def check_coverage(
     emulator: Emulator, points: Array, studies: StudyResults, seed: int = 0, proposals: int = PROPOSALS
 ) -> Coverage:
-    """Fit every study, simulated at the truths ``points`` (S, P), drawn from the prior.
+    """Fit every simulated study; their true ``points`` (S, P) were drawn from the prior.
 
-    The emulator must not have seen them; the design effects for one are estimated from others.
+    The emulator must not have seen these studies; the design effects for each are estimated from others.
     """
     prior, rates = posterior.sample_prior(emulator, seed, proposals), emulator.rates(points)
     ranks, means = np.zeros(points.shape), np.zeros(points.shape)
@@ -136,7 +136,7 @@ def compare_posteriors(
 ) -> tuple[AbcShift, ...]:
     """How far ABC's median of each of these parameters lies from the posterior's.
 
-    ``points`` (S, P) are those of the prior that studies were simulated at, ``summaries`` (S, P) their posterior means.
+    Studies were simulated at ``points`` (S, P) of the prior; ``summaries`` (S, P) are their posterior means.
 
     Raises:
         ValueError: with fewer than `FEWEST` studies.

@@ -17,18 +17,18 @@ PAIRS = (("oracle", "frontier"), ("frontier", "none"))
 """Better robot, worse robot."""
 METRICS = ("sr", "twsr")
 TRIALS = 600
-"""Trials with each robot that an order is judged on. Our choice."""
+"""Trials with each robot from which an order is judged. Our choice."""
 ENDS = (0.1, 0.9)
-"""Quantiles of a parameter's prior between which it is moved."""
+"""Quantiles of its prior between which a parameter is moved."""
 _MEASUREMENTS = 256
 
 
 def rank_robots(
     rates: Rates, effects: DesignEffects, trials: int = TRIALS, seed: int = 0, suite: str = ""
 ) -> RobotRanking:
-    """Judge the order oracle > frontier > none, each robot measured on ``trials`` trials of people of its own.
+    """Judge the order oracle > frontier > none, each robot measured on ``trials`` trials with different people.
 
-    ``rates`` are expected at the D draws of a posterior; ``effects`` say how much a rate of so many trials varies.
+    ``rates`` are predicted at the D draws of a posterior; ``effects`` say how much a rate measured on trials varies.
     """
     chances = {name: float(row.mean()) for name, row in _order_probability(rates, effects, trials, seed).items()}
     ordered: dict[str, list[Array]] = {
@@ -54,7 +54,7 @@ def rank_robots(
 
 
 def parameter_swings(emulator: Emulator, posterior: Posterior) -> tuple[ParameterSwing, ...]:
-    """What each parameter does to each gap in SR, the others staying as they are in the posterior."""
+    """How each parameter changes each gap in SR, while the others stay as they are in the posterior."""
     swings = []
     for column, name in enumerate(posterior.names):
         ends = []
@@ -78,12 +78,12 @@ def parameter_swings(emulator: Emulator, posterior: Posterior) -> tuple[Paramete
 
 
 def _order_probability(rates: Rates, effects: DesignEffects, trials: int, seed: int) -> dict[str, Array]:
-    """(D,) probability that all gaps come out positive when measured, by metric, and "both".
+    """(D,) probability that all measured gaps are positive, by metric, and "both".
 
     SR and TWSR of one robot rise and fall together: a trial's covariance of the two is TWSR (1 - SR).
     """
     rng = np.random.Generator(np.random.Philox(seeds.derive(seed, "ranking")))
-    rng.standard_normal((2, _MEASUREMENTS))  # a noise that robots measured on the same people would share
+    rng.standard_normal((2, _MEASUREMENTS))  # skip the noise that robots measured on the same people would share
     seen = []
     for number in range(len(CONDITIONS)):
         own = rng.standard_normal((2, _MEASUREMENTS))
@@ -104,7 +104,7 @@ def _order_probability(rates: Rates, effects: DesignEffects, trials: int, seed: 
 def _positive_probability(
     rates: Rates, effects: DesignEffects, trials: int, metric: str, better: str, worse: str
 ) -> Array:
-    """(D,) probability that a gap measured on so many trials with each robot is positive."""
+    """(D,) probability that a gap is positive when it is measured on ``trials`` trials with each robot."""
     from scipy.special import ndtr
 
     first, second = (_variance(rates, effects, trials, metric, CONDITIONS.index(name)) for name in (better, worse))
@@ -119,7 +119,7 @@ def _gap(rates: Rates, metric: str, better: str, worse: str) -> Array:
 
 
 def _variance(rates: Rates, effects: DesignEffects, trials: int, metric: str, condition: int) -> Array:
-    """(D,) variance of a rate that is measured on so many trials."""
+    """(D,) variance of a rate that is measured on ``trials`` trials."""
     sr, ratio = rates.sr[:, condition], rates.ratio[:, condition]
     square = ratio**2 + rates.ratio_sd[:, condition] ** 2
     single = sr * (1.0 - sr) if metric == "sr" else sr * square - (sr * ratio) ** 2

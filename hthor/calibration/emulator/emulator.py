@@ -1,9 +1,9 @@
-"""Predicts what people do without simulating them: rates of every condition at any point of the prior.
+"""Predicts without simulation what people do: rates of every condition at any point of the prior.
 
-It is trained on single trials and averages over people, tasks and the order of trials because these are not among its
-inputs: sessions are assigned evenly, so nothing is lost by it except precision. The mean of an ensemble's members is
-the prediction; how far they disagree says how good it is, up to a factor that is estimated on studies that no member
-has seen (`hthor.calibration.inference.design_effects`).
+It is trained on single trials. It averages over people, tasks and the order of trials, because these are not among its
+inputs; sessions are assigned evenly, so this loses only precision. The mean of an ensemble's members is the prediction;
+their disagreement shows its precision, up to a factor that is estimated on studies that no member has seen
+(`hthor.calibration.inference.design_effects`).
 """
 
 from collections.abc import Iterator
@@ -23,20 +23,20 @@ Array = np.ndarray[Any, Any]
 
 _CHUNK = 50_000
 TWSR_LEVELS = tuple(np.round(np.arange(0.1, 1.01, 0.1), 1).tolist())
-"""Levels of time-weighted success that a trial may reach."""
+"""Levels of time-weighted success that a trial may reach; one outcome each."""
 SUCCESS_QUESTIONS = 1 + len(TWSR_LEVELS)
-"""How many of the questions are about success and time-weighted success."""
+"""Number of outcomes about success and time-weighted success."""
 TIME_LEVELS_S = tuple(np.arange(10.0, rules.TIME_LIMIT_S, 5.0).tolist())
-"""Times [s] at which a trial may still last."""
+"""Times [s] at which a trial may still go on."""
 MESSAGE_LEVELS_S = (15.0, 30.0, 45.0, 60.0)
 """Times [s] by which a message may have been sent or accepted."""
 
 
 class Rates(Struct, frozen=True, kw_only=True, eq=False):
-    """What to expect at N points, float64 arrays (N, 3) by condition; adoption without a robot is 0.
+    """Expected rates at N points, float64 arrays (N, 3) by condition; adoption without a robot is 0.
 
-    ``ratio`` is the mean of T*/max(T*, T) over successes, ``ratio_sd`` its spread between them, ``adoption`` the chance
-    that a message is accepted; ``_se`` is how far the ensemble disagrees, the sd of a member's prediction.
+    ``ratio`` is the mean of T*/max(T*, T) over successes, ``ratio_sd`` its sd over successes, ``adoption`` the
+    probability that a message is accepted; ``_se`` is the ensemble's disagreement, the sd of a member's prediction.
     """
 
     sr: Array
@@ -64,7 +64,7 @@ class Emulator(Struct, frozen=True, kw_only=True, eq=False):
     messages: tuple[Network, ...]
 
     def rates(self, points: Array) -> Rates:
-        """What to expect of the populations at points (N, P) of the unit cube."""
+        """The expected rates of the populations at points (N, P) of the unit cube."""
         with single_thread():
             return join_rates([self._rates(chunk) for chunk in _chunks(points)])
 
@@ -86,12 +86,12 @@ class Emulator(Struct, frozen=True, kw_only=True, eq=False):
 
 
 def fit_emulator(table: Table, t_star: Array, seed: int = 0, members: int = MEMBERS) -> Emulator:
-    """An emulator of the trials of a table. Points of any density will do: it learns what follows from a point.
+    """An emulator fitted to the trials of a table. The points may have any density in the prior.
 
     Args:
-        table: sessions; each should have a point of its own.
+        table: sessions, each best at a different point.
         t_star: T* [s] by task.
-        seed: of the networks.
+        seed: seed of the networks.
 
     Raises:
         MissingExtra: without scikit-learn.
@@ -120,20 +120,20 @@ def _chunks(points: Array) -> Iterator[Array]:
 
 
 def network_inputs(points: Array, condition: Array | int) -> Array:
-    """(N, P + 3) a network's inputs for trials: the point, from -1 to 1, and which condition it is."""
+    """(N, P + 3) a network's inputs for trials: the point, from -1 to 1, and the condition as indicators."""
     chosen = np.eye(len(CONDITIONS))[np.broadcast_to(condition, len(points))]
     return np.column_stack([2.0 * points - 1.0, 2.0 * chosen - 0.7])
 
 
 def success_outcomes(table: Table, t_star: Array) -> Array:
-    """(N, 1 + levels + times) met, TWSR at least each level, not done at each time. ``t_star`` is T* [s] by task."""
+    """(N, 1 + levels + times) goal met, TWSR at least each level, still going at each time; T* [s] by task."""
     twsr, spent = tables.twsr(table, t_star), tables.time_spent_s(table)
     reached = twsr[:, None] >= np.array(TWSR_LEVELS) - 1e-9
     return np.column_stack([table.met, reached, spent[:, None] > np.array(TIME_LEVELS_S)])
 
 
 def message_outcomes(table: Table) -> Array:
-    """(N, 2 + 2 times) whether a message was accepted, or sent at all; and each of the two by each time."""
+    """(N, 2 + 2 times) whether a message was accepted, and sent, in the whole trial and by each time."""
     by = np.array(MESSAGE_LEVELS_S) / rules.TICK_S
     confirmed, sent = table.confirmed[:, None], table.sent[:, None]
     early = (confirmed >= 0) & (confirmed <= by), (sent >= 0) & (sent <= by)

@@ -19,14 +19,14 @@ EPOCHS = 20
 ALPHA = 0.3
 """L2 penalty, for about 25 outcomes at once."""
 _BATCHES = 64
-"""Steps of a pass over the trials, unless a batch would be smaller or larger than these:"""
+"""Steps of a pass over the trials, unless a batch would be outside these limits:"""
 _LEAST_BATCH, _MOST_BATCH = 32, 512
 _STEP = 2e-3
 _CHUNK = 16384
 MEMBERS = 6
 """Networks in an ensemble."""
 PILOTS = 2
-"""Networks that find out which parameters matter."""
+"""Networks that show which parameters matter."""
 _LEAST_SCALE = 0.05
 _PILOT_TRIALS = 3000
 _LEAST_SLOPE = 1e-3
@@ -54,11 +54,11 @@ class Network(Struct, frozen=True, kw_only=True, eq=False):
 
 
 def fit_network(inputs: Array, outcomes: Array, seed: int, scale: Array | None = None, epochs: int = EPOCHS) -> Network:
-    """A network for inputs (N, F) and outcomes (N, K) of 0 and 1, K at least 2.
+    """A network fitted to inputs (N, F) and outcomes (N, K) of 0 and 1, K at least 2.
 
     Args:
-        seed: of its first weights and of the order of the trials; the same on every machine of one kind.
-        scale: (F,) weight of each input; small ones are hard to use, so that what does not matter is left out.
+        seed: seed of the first weights and of the order of trials; it gives the same network on machines of one kind.
+        scale: (F,) factor of each input; an input with a small factor is hard to use, so the fit leaves it out.
 
     Raises:
         MissingExtra: without scikit-learn.
@@ -106,7 +106,7 @@ def single_thread() -> AbstractContextManager[Any]:
     """A context in which numerical libraries use one thread.
 
     Raises:
-        MissingExtra: without scikit-learn, whose dependency does it.
+        MissingExtra: without scikit-learn, which brings the library for this.
     """
     try:
         from threadpoolctl import threadpool_limits
@@ -126,7 +126,7 @@ def fit_ensemble(
     members: int = MEMBERS,
     epochs: int = EPOCHS,
 ) -> tuple[Network, ...]:
-    """An ensemble for inputs (N, F) and outcomes (N, K) of 0 and 1, of the points of these numbers (N,).
+    """An ensemble for inputs (N, F) and outcomes (N, K) of 0 and 1; ``point`` (N,) has each trial's point number.
 
     The first ``width`` inputs are parameters, which are weighted by how much they matter.
     """
@@ -139,7 +139,7 @@ def fit_ensemble(
 
 
 def assign_folds(point: Array, seed: int, members: int) -> Array:
-    """(N,) which member is not trained on a trial, if any: all trials of a point go together, no member misses many."""
+    """(N,) the member not trained on each trial, if any: the same for all trials of a point, evenly over members."""
     numbers, of_trial = np.unique(point, return_inverse=True)
     order = np.argsort(np.random.Generator(np.random.Philox(seeds.derive(seed, "folds"))).random(len(numbers)))
     folds: Array = (order % max(members, MEMBERS))[of_trial]
@@ -147,7 +147,7 @@ def assign_folds(point: Array, seed: int, members: int) -> Array:
 
 
 def _input_scale(inputs: Array, outcomes: Array, width: int, seed: int, name: str, epochs: int) -> Array:
-    """Weights of the inputs, by what they do to the predictions of pilots: parameters that do nothing get the least."""
+    """Factors of the inputs, by their effect on the predictions of pilots: parameters without effect get the least."""
     first = np.ones(inputs.shape[1])
     first[:width] = 0.5
     pilots = [fit_network(inputs, outcomes, seeds.derive(seed, "pilot", name, k), first, epochs) for k in range(PILOTS)]

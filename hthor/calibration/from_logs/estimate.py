@@ -49,18 +49,18 @@ NEEDS: dict[str, tuple[int, str]] = {
     "tau_s": (100, "ratings"),
     "sigma": (12, "people"),
 }
-"""Data that each estimate needs to be reliable: its error is then about 15 %, by experience."""
+"""Amount of data that each estimate needs for an error of about 15 %, by experience."""
 _CAPPED = 0.985
-"""Measurements this near to what the device allows are lower bounds: the person might be faster without it."""
+"""Share of the device's limit from which a measurement is a lower bound: without the limit it might be larger."""
 _LEAST_SE = 1e-3
 
 
 class Estimate(Struct, frozen=True, kw_only=True):
     """A parameter's value in its own unit; ``at`` and ``se`` are that value and its standard error on ``scale``.
 
-    ``low`` and ``high`` bound a 90 % interval, ``n`` counts the data, ``needed`` is how many are wanted. ``words`` says
-    how reliable it is. ``between`` is the standard deviation between people on the scale, with its relative standard
-    error, None where no difference between people is modelled.
+    ``low`` and ``high`` bound a 90 % interval, ``n`` counts the data, ``needed`` is the number that a reliable estimate
+    needs. ``words`` says how reliable the estimate is. ``between`` is the standard deviation between people on the
+    scale, with its relative standard error, None if no difference between people is modelled.
     """
 
     name: str
@@ -84,7 +84,7 @@ class Estimate(Struct, frozen=True, kw_only=True):
 
 
 def make_estimate(belief: Belief, at: float, se: float, n: int, method: str) -> Estimate:
-    """An estimate of a parameter with a prior belief; ``at`` and its standard error ``se`` are on that one's scale."""
+    """An estimate of a parameter with a prior belief; ``at`` and its standard error ``se`` are on its scale."""
     needed, what = NEEDS[belief.name]
     at = min(max(at, float(to_scale(belief.low, belief.scale))), float(to_scale(belief.high, belief.scale)))
     value, low, high = (
@@ -115,7 +115,7 @@ def _words(n: int, needed: int, what: str, se: float, prior_sd: float) -> str:
 
 
 class EstimateCollector:
-    """Trials, prior beliefs, ``estimates`` so far, and ``spreads``: logarithms of ``sigma`` and their errors."""
+    """Collects ``estimates`` from trials and prior beliefs; ``spreads``: logarithms of ``sigma`` and their errors."""
 
     def __init__(self, trials: Sequence[TrialFeatures], beliefs: dict[str, Belief]) -> None:
         self.trials, self.beliefs = trials, beliefs
@@ -124,7 +124,7 @@ class EstimateCollector:
         self.people = len({one.person for one in trials})
 
     def add(self, names: Sequence[str], fit: Fit, n: int, method: str) -> None:
-        """Keep these terms of a fitted model, and the spread of the first of them as one measurement of ``sigma``."""
+        """Keep these terms of a fitted model, and the spread of the first term as one measurement of ``sigma``."""
         for name in names:
             self.estimates[name] = make_estimate(self.beliefs[name], fit.value[name], fit.se[name], n, method)
         log, se, first = fit.value[SPREAD], fit.se[SPREAD], names[0]
@@ -132,15 +132,15 @@ class EstimateCollector:
         self.estimates[first] = msgspec.structs.replace(self.estimates[first], between=(math.exp(log), se))
 
     def capped(self, rows: Sequence[tuple[float, TrialFeatures, float]]) -> Sample:
-        """A sample of (value, trial, most that the device allows); values near that are lower bounds."""
+        """A sample of (value, trial, greatest value that the device allows); values near it are lower bounds."""
         return timing_models.make_sample(
             [(y, one.person, one.index, int(y >= _CAPPED * most)) for y, one, most in rows]
         )
 
     def median(self, name: str, values: Sequence[float], method: str, *, least: float) -> None:
-        """Estimate a number that is the same for everybody by its median, as some measurements are plainly wrong.
+        """Estimate a number that is the same for everybody by the median, because some measurements are wrong.
 
-        ``least`` is the least error that a measurement can have, in the parameter's unit, however many there are.
+        ``least`` is the least error of the estimate, in the parameter's unit, however many measurements there are.
         """
         finite = np.array([value for value in values if math.isfinite(value) and value > 0.0])
         if len(finite):
@@ -150,7 +150,7 @@ class EstimateCollector:
             self._combine(name, middle, error, len(finite), method)
 
     def rate(self, name: str, total: float, count: int, method: str, *, least: float) -> None:
-        """Estimate the mean time from one event to the next, of events at random times; ``least`` is relative."""
+        """Estimate the mean time between events at random times; ``least`` is the least relative error."""
         if count and total > 0.0:
             every = total / count
             self._combine(name, every, every * math.hypot(count**-0.5, least), count, method)

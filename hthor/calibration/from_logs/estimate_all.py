@@ -1,7 +1,7 @@
 """Estimates every parameter that logs measure directly, one group after the other.
 
-Later estimators use earlier estimates: the trust at which a message was answered comes from the ratings, practice
-from the pace.
+Later estimators use earlier estimates: trust at the time of an answer is estimated from the ratings, and practice from
+the pace.
 """
 
 import math
@@ -21,13 +21,13 @@ from hthor.humans.population.parameter_registry import parameter
 
 Tell = Callable[[str], None]
 READING = "reading"
-"""The name of the time from a message to its answer, of twelve words: the sum of ``t_notice`` and ``t_read``."""
+"""The name of the time from a message of twelve words to its answer: the sum of ``t_notice`` and ``t_read``."""
 
 
 def estimate_parameters(sessions: Sessions, beliefs: Beliefs, tell: Tell = lambda _: None) -> tuple[Estimate, ...]:
     """All estimates, in the registry's order, and `READING`; ``tell`` is called with the name of each step.
 
-    The prior belief about each parameter decides where the logs say little.
+    If the logs say little about a parameter, its estimate stays close to the prior belief.
     """
     collector = EstimateCollector(trial_features.extract_features(sessions), dict(beliefs))
     for name, step in _STEPS.items():
@@ -59,7 +59,7 @@ def estimate_walking(collector: EstimateCollector) -> None:
 
 
 def estimate_manipulation(collector: EstimateCollector) -> None:
-    """Duration and misses of manipulation attempts; the least duration that the device allows is an upper bound."""
+    """Duration and misses of attempts; a duration at the device's minimum is an upper bound of the person's own."""
     attempts = [(one, attempt) for one in collector.trials for attempt in one.attempts]
     if not attempts:
         return
@@ -96,7 +96,7 @@ def estimate_messages(collector: EstimateCollector) -> None:
 
 
 def estimate_trust(collector: EstimateCollector) -> None:
-    """Initial trust and what changes it, from the ratings; then, at that trust, which messages were accepted."""
+    """Initial trust and its changes, from the ratings; then acceptance of messages, given this trust."""
     sessions: dict[int, list[int]] = {}
     for number, one in enumerate(collector.trials):
         sessions.setdefault(one.session, []).append(number)
@@ -157,7 +157,7 @@ _STEPS: dict[str, Callable[[EstimateCollector], None]] = {
 
 
 def _current_belief(collector: EstimateCollector, name: str) -> Belief:
-    """The current belief: around an earlier estimate, where there is one."""
+    """The current belief about a parameter: around its earlier estimate, if there is one."""
     belief, found = collector.beliefs[name], collector.estimates.get(name)
     return belief if found is None else msgspec.structs.replace(belief, mean=found.at)
 

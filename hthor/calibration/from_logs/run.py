@@ -20,7 +20,7 @@ SCHEMA = "hthor.estimates/1"
 
 
 class EstimateRow(Struct, frozen=True, kw_only=True):
-    """A parameter before and after: medians and 90 % intervals in its unit, and the estimate from the logs, if any."""
+    """A parameter before and after the logs: medians and 90 % intervals in its unit, and its estimate, if any."""
 
     name: str
     unit: str
@@ -97,10 +97,10 @@ def _population(
     few = [one.name for one in estimates if not one.used]
     notes = [
         f"Brought up to date with {len(data.trials)} trials of {data.people} people; {len(updated.direct)} parameters "
-        f"were estimated from them, the others were weighted by those ({updated.effective:.0f} effective draws)."
+        f"were estimated from them, the others were weighted by these ({updated.effective:.0f} effective draws)."
     ]
     if few:
-        notes.append(f"The logs held too little on {', '.join(few)}; they are as they were.")
+        notes.append(f"The logs have too few data on {', '.join(few)}; they did not change.")
     return Population.make(
         out.resolve().name,
         updated.draws,

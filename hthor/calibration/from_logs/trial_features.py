@@ -1,4 +1,4 @@
-"""Reads logs as people and their trials in order, and everything that the estimators use of each trial."""
+"""Reads logs as people with their trials in order, and extracts the features that the estimators use."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -19,7 +19,7 @@ from hthor.humans.population.parameters import Parameters
 
 
 class Trial(Struct, frozen=True, kw_only=True):
-    """A trial, and the numbers of its person and of its session among those of a `Sessions`, from 0."""
+    """A trial, and the numbers of its person and of its session within a `Sessions`, from 0."""
 
     record: TrialRecord
     person: int
@@ -39,13 +39,13 @@ class Sessions(Struct, frozen=True, kw_only=True):
 
 
 def read_sessions(paths: Sequence[Path]) -> Sessions:
-    """The trials in some logs, each once.
+    """The trials in some logs, each trial once.
 
     Args:
         paths: runs' folders, or files like their ``trials.jsonl``.
 
     Raises:
-        RunError: when one cannot be read, naming file, line and field.
+        RunError: when a log cannot be read; it names file, line and field.
     """
     records_by_key: dict[str, TrialRecord] = {}
     for path in paths:
@@ -112,7 +112,7 @@ class Attempt(Struct, frozen=True, kw_only=True):
 
 
 class TrialFeatures(Struct, frozen=True, kw_only=True):
-    """A trial as numbers; ``walk`` is None where the log has no joystick data."""
+    """The features of a trial; ``walk`` is None when the log has no joystick data."""
 
     person: int
     session: int
@@ -177,7 +177,7 @@ def _helps(offer: dict[str, object]) -> bool:
 
 
 def manipulation_attempts(record: TrialRecord) -> tuple[Attempt, ...]:
-    """The attempts of a trial in order; one without an outcome was cut short by walking on or by the end."""
+    """The attempts of a trial in order; an attempt without outcome was cut short by walking on or by the end."""
     walked = [
         tick
         for event in record.journal

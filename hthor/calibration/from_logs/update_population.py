@@ -2,9 +2,9 @@
 
 Measured parameters are replaced: each draw gets new values of those parameters, from their estimates and errors. The
 other parameters are resampled by importance weights: draws far from the estimates count less. Only measured parameters
-that are correlated with others are used as weights: where draws are independent, weighting would add nothing except
-noise. Estimates are often far more precise than draws are dense, so their errors are widened for the weights, as little
-as leaves enough draws.
+that are correlated with others are used for the weights: for independent draws, weighting would add only noise.
+Estimates are often more precise than the distances between draws, so their errors are widened for the weights, by the
+least amount that leaves enough draws.
 """
 
 import math
@@ -23,14 +23,14 @@ _WIDENINGS = tuple(0.05 * 1.2**k for k in range(30))
 _LEAST_SHARE, _LEAST_DRAWS = 0.1, 50.0
 _REACH = 3.0
 _EVIDENT = 4.0
-"""A correlation counts when it is this many times what independent draws show by chance."""
+"""A correlation counts when it is this many times the usual correlation of independent draws."""
 
 
 class Updated(Struct, frozen=True, kw_only=True):
     """New draws (D, P) in the parameters' units, all of equal weight.
 
-    ``effective`` is the effective number of old draws, ``widening`` by how many standard deviations of the old draws
-    the errors were widened, ``direct`` the parameters that the logs measured.
+    ``effective`` is the effective number of old draws; ``widening`` is the amount by which errors were widened, in
+    standard deviations of the old draws; ``direct`` are the parameters that the logs measured.
     """
 
     draws: Any
@@ -42,9 +42,9 @@ class Updated(Struct, frozen=True, kw_only=True):
 def update_draws(
     names: Sequence[str], draws: Any, weights: Any, beliefs: Beliefs, estimates: Sequence[Estimate], seed: int
 ) -> Updated:
-    """Update the draws (D, P) of a population, of these column names and ``weights`` (D,) that add up to 1.
+    """Update the draws (D, P) of a population; ``names`` are their columns, ``weights`` (D,) add up to 1.
 
-    ``beliefs`` are those of these draws, see `hthor.calibration.from_logs.models.priors.population_beliefs`.
+    ``beliefs`` come from these draws, see `hthor.calibration.from_logs.models.priors.population_beliefs`.
     """
     used = {one.name: one for one in estimates if one.used and one.name in names}
     scaled = {name: to_scale(draws[:, names.index(name)], beliefs[name].scale) for name in used}
@@ -61,7 +61,7 @@ def update_draws(
 
 
 def _is_correlated(values: Any, others: Sequence[Any], weights: Any) -> bool:
-    """Whether any of the others is correlated with these values, beyond chance."""
+    """Whether any of the ``others`` is correlated with these values, beyond chance."""
     chance = _EVIDENT * math.sqrt(float((weights**2).sum()))
     return any(abs(_correlation(values, other, weights)) > chance for other in others)
 
@@ -75,7 +75,7 @@ def _correlation(a: Any, b: Any, weights: Any) -> float:
 def _weights(
     scaled: dict[str, Any], used: dict[str, Estimate], beliefs: Beliefs, before: Any
 ) -> tuple[Any, float, float]:
-    """Importance weights, and how much the errors had to be widened for them."""
+    """Importance weights, their effective number of draws, and the widening of the errors that they needed."""
     least = max(_LEAST_DRAWS, _LEAST_SHARE / (before**2).sum())
     weight, effective, widening = before, 1.0 / float((before**2).sum()), 0.0
     if not scaled:
@@ -95,7 +95,7 @@ def _weights(
 
 
 def _from_logs_alone(estimate: Estimate, belief: Belief) -> tuple[float, float]:
-    """What the logs alone say: value and error of the estimate without the prior belief."""
+    """Value and error of the estimate from the logs alone, without the prior belief."""
     precision = max(estimate.se**-2 - belief.sd**-2, (_REACH * belief.sd) ** -2)
     at = (estimate.at * estimate.se**-2 - belief.mean * belief.sd**-2) / precision
     near = _REACH * belief.sd
@@ -103,13 +103,13 @@ def _from_logs_alone(estimate: Estimate, belief: Belief) -> tuple[float, float]:
 
 
 def _resample(weight: Any, start: float, count: int) -> Any:
-    """Rows, each as often as its weight says: systematic resampling."""
+    """Row numbers, each as often as its weight requires: systematic resampling."""
     marks = (np.arange(count) + start) / count
     return np.minimum(np.searchsorted(np.cumsum(weight), marks), count - 1)
 
 
 def _draw_values(estimate: Estimate, belief: Belief, count: int, seed: int) -> Any:
-    """Values by the estimate and its error, within the bounds of the prior."""
+    """Random values around the estimate by its error, within the bounds of the prior."""
     normal = np.array([seeds.normal(seed, estimate.name, k) for k in range(count)])
     return np.clip(from_scale(estimate.at + estimate.se * normal, belief.scale), belief.low, belief.high)
 
@@ -117,7 +117,7 @@ def _draw_values(estimate: Estimate, belief: Belief, count: int, seed: int) -> A
 def _replace_reading_times(
     new_draws: Any, names: Sequence[str], estimates: Sequence[Estimate], beliefs: Beliefs, seed: int
 ) -> None:
-    """Noticing and reading times are measured better together than each: their sum is drawn and split in proportion."""
+    """Draw the sum of noticing and reading time and split it in proportion: it is known better than its parts."""
     total_estimate = next((one for one in estimates if one.name == READING and one.used), None)
     if total_estimate is None or "t_notice" not in names or "t_read" not in names:
         return

@@ -1,11 +1,11 @@
-"""How noisy studies are: design effects, and how far an emulator can be trusted.
+"""How noisy studies are (design effects), and how precise an emulator is.
 
-People and tasks cluster trials, so a study's count varies more than a binomial one. Both that and the emulator's own
-error are estimated from simulated studies that the emulator was not trained on: the variance of an error is
+Trials are clustered by people and tasks, so a study's count varies more than a binomial count. This effect and the
+emulator's own error are estimated from simulated studies that the emulator was not trained on: an error's variance is
 
     phi * p (1 - p) / n  +  spread^2 * se^2
 
-with a design effect phi for each figure, and one factor ``spread`` for the ensemble's disagreement se.
+with a design effect phi for each figure, and one common factor ``spread`` for the ensemble's disagreement se.
 """
 
 from __future__ import annotations
@@ -31,18 +31,18 @@ NAMES = tuple(
 """The eight quantities in the likelihood."""
 _PLACES = tuple((name.split()[0], CONDITIONS.index(name.split()[1])) for name in NAMES)
 FOLDS = 5
-"""Parts of the studies; the design effects for one are estimated from the others."""
+"""Parts of the studies; the design effects for a part are estimated from the other parts."""
 _EDGE = 0.02
 _USUAL, _SPREAD, _WIDTH = 1.6, 1.0, 0.7
-"""Weak prior of phi and of the spread factor, and its sd in logarithms: it matters with a few dozen studies only."""
+"""Weak prior of phi and of the spread factor, and its sd in logarithms; it matters only with few studies."""
 _LEAST, _MOST = 0.25, 8.0
 _MOST_SPREAD = 4.0
 
 
 class DesignEffects(Struct, frozen=True, kw_only=True, eq=False):
-    """Design effects (3,) by condition of the metrics; 1 is binomial noise, or noise of independent successes.
+    """Design effects (3,) of each metric by condition; 1 is the noise of independent trials or successes.
 
-    ``spread`` multiplies the ensemble's disagreement; ``correlation`` (3, 3) is of the ratios' errors by condition.
+    ``spread`` multiplies the ensemble's disagreement; ``correlation`` (3, 3) is between conditions, of the ratios.
     """
 
     sr: Array
@@ -52,18 +52,18 @@ class DesignEffects(Struct, frozen=True, kw_only=True, eq=False):
     correlation: Array
 
     def figures(self) -> dict[str, float]:
-        """Design effects by name, and the spread factor."""
+        """Design effects and the spread factor, by name."""
         return {**dict(zip(NAMES, self.by_name().tolist(), strict=True)), "spread": self.spread}
 
     def by_name(self) -> Array:
-        """(8,) in the order of `NAMES`."""
+        """(8,) design effects in the order of `NAMES`."""
         return np.array([getattr(self, metric)[place] for metric, place in _PLACES])
 
 
 class EmulatorQuality(Struct, frozen=True, kw_only=True):
     """How well an emulator predicts ``studies`` studies that neither it nor the design effects have seen.
 
-    ``z_sd`` is the sd of standardised errors over all figures, ``by_figure`` that of each.
+    ``z_sd`` is the sd of standardised errors over all figures, ``by_figure`` the sd for each figure.
     """
 
     z_sd: float
@@ -83,7 +83,7 @@ class _Errors(Struct, frozen=True, eq=False):
 
 
 def estimate_effects(rates: Rates, studies: StudyResults) -> DesignEffects:
-    """Design effects and spread: the likeliest ones, for normal errors and a weak prior.
+    """The most probable design effects and spread, for normal errors and a weak prior.
 
     ``rates`` are predicted at the points of the ``studies``.
 
@@ -96,7 +96,7 @@ def estimate_effects(rates: Rates, studies: StudyResults) -> DesignEffects:
 
 
 def cross_validated_effects(rates: Rates, studies: StudyResults) -> list[tuple[Array, DesignEffects]]:
-    """Parts of the studies, as row numbers, each with the effects estimated from the other parts."""
+    """Parts of the studies, as row numbers, each part with the effects estimated from the other parts."""
     errors, fold = _errors(rates, studies), np.arange(len(studies)) % FOLDS
     return [(np.flatnonzero(fold == out), _effects(errors.take(fold != out))) for out in range(FOLDS)]
 
@@ -116,7 +116,7 @@ def emulator_quality(rates: Rates, studies: StudyResults) -> EmulatorQuality:
 
 
 def share_variance(share: Array, trials: Array | float, phi: Array, doubt: Array) -> Array:
-    """Variance of an observed share: clustered trials, and the emulator's own variance (already scaled)."""
+    """Variance of an observed share: from clustered trials, plus ``doubt``, the emulator's scaled variance."""
     safe = np.clip(share, _EDGE, 1.0 - _EDGE)
     variance: Array = phi * safe * (1.0 - safe) / np.maximum(trials, 1.0) + doubt
     return variance
@@ -171,7 +171,7 @@ def _effects(errors: _Errors) -> DesignEffects:
 
 
 def _correlation(z: Array) -> Array:
-    """(3, 3), shrunk a little towards none, so that it can be inverted for any sample."""
+    """(3, 3) correlation, shrunk a little towards zero, so that it can be inverted for any sample."""
     whole = z[np.isfinite(z).all(axis=1)]
     found = np.corrcoef(whole.T) if len(whole) > 2 else np.eye(len(CONDITIONS))
     mixed: Array = 0.97 * found + 0.03 * np.eye(len(CONDITIONS))

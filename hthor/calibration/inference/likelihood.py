@@ -1,4 +1,4 @@
-"""How likely a study's results are at given rates, and such results drawn: beta-binomial counts, normal ratios."""
+"""The likelihood of a study's results at given rates, and random results: beta-binomial counts, normal ratios."""
 
 from typing import Any
 
@@ -19,7 +19,7 @@ _MOST_RHO = 0.95
 
 
 def log_likelihood(rates: Rates, study: StudyResults, effects: DesignEffects) -> Array:
-    """(N,) log likelihood [nats] of one study at the rates of N points; what the study does not tell adds nothing."""
+    """(N,) log likelihood [nats] of one study at the rates of N points; results that it lacks add nothing."""
     total = np.zeros(len(rates))
     for metric, hits, out_of in (("sr", "successes", "trials"), ("adoption", "adopted", "asked")):
         for place in range(len(CONDITIONS)):
@@ -33,7 +33,7 @@ def log_likelihood(rates: Rates, study: StudyResults, effects: DesignEffects) ->
 
 
 def total_design_effect(share: Array, trials: float, phi: Array | float, doubt: Array) -> Array:
-    """(N,) design effects, the emulator's doubt (a variance of ``share``) included."""
+    """(N,) design effects, including the emulator's ``doubt``, a variance of ``share``."""
     safe = np.clip(share, _EDGE * 4.0, 1.0 - _EDGE * 4.0)
     whole: Array = phi + doubt * trials / (safe * (1.0 - safe))
     return whole
@@ -50,14 +50,14 @@ def log_beta_binomial(hits: float, trials: float, share: Array, phi: Array) -> A
 
 
 def beta_shape(share: Array, trials: float, phi: Array) -> tuple[Array, Array]:
-    """The two counts of the beta distribution that a beta-binomial one draws its chance from."""
+    """The two counts of the beta distribution from which a beta-binomial count draws its probability."""
     safe = np.clip(share, _EDGE, 1.0 - _EDGE)
     rho = np.clip((phi - 1.0) / max(trials - 1.0, 1.0), _LEAST_RHO, _MOST_RHO)
     return safe * (1.0 - rho) / rho, (1.0 - safe) * (1.0 - rho) / rho
 
 
 def ratio_variance(rates: Rates, successes: Array, effects: DesignEffects) -> Array:
-    """(N, 3) variance of the ratio of a group with so many successes (3,)."""
+    """(N, 3) variance of the ratio of a group with these numbers of ``successes`` (3,)."""
     noise = effects.ratio * rates.ratio_sd**2 / np.maximum(successes, 1.0)
     found: Array = noise + (effects.spread * rates.ratio_se) ** 2
     return found
@@ -79,7 +79,7 @@ def _ratios(rates: Rates, study: StudyResults, effects: DesignEffects) -> Array:
 def draw_studies(rates: Rates, design: StudyResults, effects: DesignEffects, seed: int = 0) -> StudyResults:
     """A simulated study for each of N points: counts are beta-binomial, ratios normal.
 
-    Of ``design`` (S = 1) only the numbers of trials are used; the noise of each condition is its own.
+    Of ``design`` (S = 1) only the numbers of trials are used; the noise of the conditions is independent.
     """
     shape = (len(rates), len(CONDITIONS))
     counts = {name: np.zeros(shape) for name in ("successes", "adopted")}
@@ -114,7 +114,7 @@ def compare_figures(
 ) -> tuple[HeldOutFigure, ...]:
     """Every figure that the published study reports, with three quantiles of ``predictions``: low, median and high.
 
-    They are fractions by figure, of any number of studies, emulated or simulated; NaN where there is none.
+    Predictions are fractions by figure, of any number of studies, emulated or simulated; NaN is left out.
     """
     return tuple(
         HeldOutFigure(figure=name, published=float(value[0]), band=band(np.nanquantile(predictions[name], quantiles)))

@@ -1,9 +1,9 @@
 """Which populations fit a study's results: importance sampling from the prior.
 
-Every parameter is sampled, including those that the results say nothing of, so that this ignorance goes into every
+Every parameter is sampled, even if the results say nothing about it, so that this ignorance goes into every
 prediction. The prior is uniform on the unit cube. When few of its points fit, a second round of points is drawn from a
-normal distribution around those that do, and all points of both rounds are weighted by the mixture that they come from:
-the weights stay exact.
+normal distribution around the points that fit. All points of both rounds are weighted by the mixture that they come
+from, so the weights stay exact.
 """
 
 from typing import Any
@@ -26,14 +26,14 @@ PROPOSALS = 1 << 18
 DRAWS = 2000
 """Draws of the posterior that are kept."""
 ENOUGH = 4000.0
-"""Effective number of weighted points from which on no second round is needed."""
+"""Least effective number of weighted points that needs no second round."""
 _INFORMED = 0.03
 _WIDER = 1.5
 _EDGE = 1e-6
 
 
 class PriorSample(Struct, frozen=True, kw_only=True, eq=False):
-    """Points (N, P), what to expect at each, and the log of the density (N,) that they were drawn from."""
+    """Points (N, P), the expected rates at each, and the log density (N,) from which they were drawn."""
 
     points: Array
     rates: Rates
@@ -44,7 +44,7 @@ class Posterior(Struct, frozen=True, kw_only=True, eq=False):
     """Populations that fit, and what was learned about each parameter, in the unit cube.
 
     ``points`` (D, P) are draws of the same weight; ``mean``, ``sd`` and ``contraction`` (1 - variance / prior variance)
-    are (P,); ``effective`` is the effective number of the ``proposals``, ``evidence`` the log chance [nats] of results.
+    are (P,); ``effective`` is the effective number of ``proposals``, ``evidence`` the log marginal likelihood [nats].
     """
 
     names: tuple[str, ...]
@@ -58,7 +58,7 @@ class Posterior(Struct, frozen=True, kw_only=True, eq=False):
 
 
 def sample_prior(emulator: Emulator, seed: int, proposals: int = PROPOSALS) -> PriorSample:
-    """Points that fill the prior evenly; they can be weighted by any number of studies."""
+    """Points that fill the prior evenly; the same points can be weighted for any number of studies."""
     points = design_points.sobol_points(proposals, len(emulator.names), seed, "posterior")
     return PriorSample(points=points, rates=emulator.rates(points), density=np.zeros(proposals))
 
@@ -83,7 +83,7 @@ def sample_posterior(
 
 
 def importance_weights(sample: PriorSample, study: StudyResults, effects: DesignEffects) -> tuple[Array, float]:
-    """(N,) weights of the points that add up to 1, and the log chance [nats] of the study under the prior."""
+    """(N,) weights of the points that add up to 1, and the log probability [nats] of the study under the prior."""
     log = likelihood.log_likelihood(sample.rates, study, effects) - sample.density
     top = float(log.max())
     weight = np.exp(log - top)
@@ -96,7 +96,7 @@ def effective_size(weight: Array) -> float:
 
 
 def propose_points(posterior: Posterior, count: int, seed: int) -> Array:
-    """(count, P) points to simulate at next: draws with noise, so that they reach a little beyond the posterior."""
+    """(count, P) points for the next simulations: draws with noise, to reach a little beyond the posterior."""
     from scipy.special import ndtr
 
     rng = np.random.Generator(np.random.Philox(seeds.derive(seed, "propose")))
@@ -106,7 +106,7 @@ def propose_points(posterior: Posterior, count: int, seed: int) -> Array:
 
 
 def _around(emulator: Emulator, prior: PriorSample, weight: Array, seed: int) -> PriorSample:
-    """The sample and as many points again around those of high weight, with the density of the whole mixture."""
+    """The sample and as many new points around points of high weight, with the density of the whole mixture."""
     from scipy.special import ndtr
 
     z = _probit(prior.points)
@@ -149,14 +149,14 @@ def _posterior(
 
 
 def systematic_resample(weight: Array, draws: int, start: float) -> Array:
-    """(draws,) row numbers, each as often as its weight says to within one (systematic resampling)."""
+    """(draws,) row numbers, each as often as its weight requires, within one (systematic resampling)."""
     marks = (np.arange(draws) + start) / draws
     rows: Array = np.minimum(np.searchsorted(np.cumsum(weight), marks, side="right"), len(weight) - 1)
     return rows
 
 
 def _mixed(rows: Array, seed: int) -> Array:
-    """The rows in random order, so that the first few are as good a sample as any."""
+    """The rows in random order, so that the first few are a good sample too."""
     order = np.random.Generator(np.random.Philox(seeds.derive(seed, "mix"))).permutation(len(rows))
     mixed: Array = rows[order]
     return mixed

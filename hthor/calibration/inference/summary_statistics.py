@@ -1,4 +1,4 @@
-"""What studies, published or simulated, are compared in: counts and ratios."""
+"""The statistics by which published and simulated studies are compared: counts and ratios."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ Array = np.ndarray[Any, Any]
 class StudyResults(Struct, frozen=True, kw_only=True, eq=False):
     """Results of S studies, float64 arrays (S, 3) by study and condition.
 
-    ``successes`` of ``trials`` met the goal, ``adopted`` of ``asked`` accepted a message; 0 trials where a study tells
-    nothing. ``ratio`` is TWSR / SR, the mean of T*/max(T*, T) over the successes; NaN where there is none.
+    ``successes`` of ``trials`` met the goal, ``adopted`` of ``asked`` accepted a message; 0 trials if a study does not
+    report them. ``ratio`` is TWSR / SR, the mean of T*/max(T*, T) over the successes; NaN without one.
     """
 
     successes: Array
@@ -40,7 +40,7 @@ class StudyResults(Struct, frozen=True, kw_only=True, eq=False):
         return self._keeping([name != condition for name in CONDITIONS])
 
     def only(self, condition: str) -> StudyResults:
-        """The same studies, with nothing but one condition."""
+        """The same studies, with only one condition."""
         return self._keeping([name == condition for name in CONDITIONS])
 
     def _keeping(self, kept: list[bool]) -> StudyResults:
@@ -48,7 +48,7 @@ class StudyResults(Struct, frozen=True, kw_only=True, eq=False):
         return StudyResults(**counts, ratio=np.where(kept, self.ratio, np.nan))
 
     def figures(self) -> dict[str, Array]:
-        """The eight figures (S,) by name, as fractions; NaN where a study does not tell."""
+        """The eight figures (S,) by name, as fractions; NaN for figures that a study does not report."""
         with np.errstate(invalid="ignore", divide="ignore"):
             sr, adoption = self.successes / self.trials, self.adopted / self.asked
         held = {"sr": sr, "twsr": sr * self.ratio, "adoption": adoption}
@@ -56,7 +56,7 @@ class StudyResults(Struct, frozen=True, kw_only=True, eq=False):
 
 
 def published_results(targets: Targets) -> StudyResults:
-    """The one study that was published; what the targets leave out is left out."""
+    """The published study; numbers that are not in the targets are left out."""
     counts = np.zeros((4, 1, len(CONDITIONS)))
     ratio = np.full((1, len(CONDITIONS)), np.nan)
     for place, name in enumerate(CONDITIONS):
@@ -71,7 +71,7 @@ def published_results(targets: Targets) -> StudyResults:
 def study_results(table: Table, least: Array) -> tuple[Array, StudyResults]:
     """Simulated studies as if they had been published: points (S, P) of the unit cube, and results in that order.
 
-    Trials outside any study are passed over; ``least`` is T* [s] by task.
+    Trials outside any study are ignored; ``least`` is T* [s] by task.
     """
     held = table.take(table.study >= 0)
     numbers, rows, study = np.unique(held.study, return_index=True, return_inverse=True)

@@ -1,4 +1,4 @@
-"""The evidence that a calibration's stages give."""
+"""Collects the evidence from a calibration's stages."""
 
 import msgspec
 import numpy as np
@@ -23,12 +23,12 @@ Array = np.ndarray
 _EDGE = 1e-3
 _BINS = 10
 _BIN_LEAST = 30
-"""Trials that a bin of the reliability diagram needs to be shown."""
+"""Least number of trials of a bin that the reliability diagram shows."""
 _OUTCOMES = (("success", "sr"), ("adoption", "adoption"))
 
 
 def collect_evidence(stages: CalibrationStages, population: Population, *, quick: bool) -> Evidence:
-    """Everything that the stages say of the population that came out of them; not rounded."""
+    """Everything that the stages say about the population that they produced; not rounded."""
     return Evidence(
         origin=_origin(stages, population, quick),
         predictive=_predictive(stages),
@@ -93,7 +93,7 @@ def _parameters(stages: CalibrationStages, population: Population) -> tuple[Para
 
 
 def _emulated(stages: CalibrationStages) -> list[EmulatorFit]:
-    """How well chances of single trials are predicted, on studies that the emulator has not seen."""
+    """How well outcomes of single trials are predicted, on studies that the emulator has not seen."""
     table, z = stages.studies, stages.quality.by_figure
     rates = stages.emulator.rates(table.points)
     fits = []
@@ -124,12 +124,12 @@ def _ratios(stages: CalibrationStages) -> list[EmulatorFit]:
 
 
 def log_score(predicted: Array, observed: Array) -> float:
-    """Mean log probability [nats] of what was ``observed`` (N,) bool, given the ``predicted`` chances (N,)."""
+    """Mean log probability [nats] of the ``observed`` outcomes (N,) bool under ``predicted`` probabilities (N,)."""
     return float(np.mean(np.where(observed, np.log(predicted), np.log1p(-predicted))))
 
 
 def reliability_bins(predicted: Array, observed: Array) -> tuple[tuple[float, float, int], ...]:
-    """Reliability diagram of outcomes (N,): frequency predicted and observed, and trials; small bins are left out."""
+    """Reliability diagram of outcomes (N,): predicted and observed frequency, and trials; small bins are left out."""
     bin_of = np.minimum((predicted * _BINS).astype(int), _BINS - 1)
     inside = [bin_of == number for number in range(_BINS)]
     return tuple(

@@ -1,4 +1,4 @@
-"""What a calibration does: the user's options, and the configuration that follows from them."""
+"""The settings of a calibration: the user's options, and the configuration that follows from them."""
 
 import os
 from pathlib import Path
@@ -19,13 +19,13 @@ class CalibrationSizes(Struct, frozen=True, kw_only=True):
     """Numbers of sessions of ten trials, of whole studies, and of draws.
 
     Attributes:
-        sessions: spread over the prior, to train the emulator on.
-        correction: near the first posterior, for a second training; 0 for none.
-        studies: at points of the prior, for coverage, design effects and the ABC check.
-        posterior_studies: at draws of the posterior: what people of the population really do.
-        members: networks in the emulator's ensemble.
-        draws: of the population. proposals: of the importance sampling.
-        quick: whether this is the small calibration, which shows that everything works and is not for use.
+        sessions: number of sessions spread over the prior, to train the emulator.
+        correction: number of sessions near the first posterior, for a second training; 0 for none.
+        studies: number of studies at points of the prior, for coverage, design effects and the ABC check.
+        posterior_studies: number of studies at draws of the posterior, to see what people of the population do.
+        members: number of networks in the emulator's ensemble.
+        draws: number of draws of the population. proposals: number of points of the importance sampling.
+        quick: whether this is the small calibration, which only shows that everything works; do not use its results.
     """
 
     sessions: int = 4000
@@ -45,7 +45,7 @@ QUICK = CalibrationSizes(
 
 
 class CalibrationOptions(Struct, frozen=True, kw_only=True):
-    """What the user asked for, None where the default holds."""
+    """The user's options; None means the default."""
 
     targets: tuple[str, ...] = ("paper",)
     suite: str = "paper"
@@ -59,7 +59,7 @@ class CalibrationOptions(Struct, frozen=True, kw_only=True):
 
 
 class CalibrationConfig(Struct, frozen=True, kw_only=True):
-    """A calibration with every default resolved; ``folder`` keeps everything, ``jobs`` counts worker processes."""
+    """A calibration with every default resolved; ``folder`` is for all files, ``jobs`` counts worker processes."""
 
     suite: Suite
     targets: Targets
@@ -70,7 +70,7 @@ class CalibrationConfig(Struct, frozen=True, kw_only=True):
 
 
 def resolve_options(options: CalibrationOptions) -> CalibrationConfig:
-    """The configuration that the options ask for.
+    """The configuration that follows from the options.
 
     Raises:
         UnknownName: when there is no such target or suite.
@@ -91,7 +91,7 @@ def resolve_options(options: CalibrationOptions) -> CalibrationConfig:
 
 
 def reproducing_command(options: CalibrationOptions) -> str:
-    """The command that makes the same population again, without the folder and the number of processes."""
+    """The command that makes the same population again; the folder and the number of processes are left out."""
     parts = ["hthor calibrate", *(f"--target {word}" for word in options.targets), f"--suite {options.suite}"]
     parts.append(f"--seed {options.seed}")
     parts += [f"--{name} {value}" for name, value in _given_sizes(options).items()]

@@ -1,6 +1,6 @@
-"""`hthor calibrate` on published numbers as one function: runs the stages and writes what they give.
+"""`hthor calibrate` on published numbers as one function: runs the stages and writes their results.
 
-That is the population, the evidence, the summary and the tables of simulated trials.
+The results are the population, the evidence, the summary and the tables of simulated trials.
 """
 
 import importlib
@@ -39,7 +39,7 @@ _PURPOSE = (
 
 
 class FigureSummary(Struct, frozen=True, kw_only=True):
-    """A published figure and what is predicted of studies, all in per cent; fields as in `PredictedFigure`."""
+    """A published figure and its predictions, all in per cent; fields as in `PredictedFigure`."""
 
     figure: str
     published: float
@@ -49,7 +49,7 @@ class FigureSummary(Struct, frozen=True, kw_only=True):
 
 
 class ParameterSummary(Struct, frozen=True, kw_only=True):
-    """A `ParameterFinding` in short; ``word`` says whether its contraction makes the parameter known."""
+    """A short `ParameterFinding`; ``word`` says whether the data identify the parameter, by its contraction."""
 
     name: str
     unit: str
@@ -88,12 +88,12 @@ class CalibrationSummary(Struct, frozen=True, kw_only=True):
 
 
 def run_calibration(options: CalibrationOptions, progress: ProgressReporter) -> CalibrationSummary | None:
-    """Run a calibration, or what is missing of it; None when it was told to stop before its end.
+    """Run a calibration, or its missing stages; None when the options say to stop before its end.
 
     Raises:
         MissingExtra: without scikit-learn.
         UnknownName: when there is no such target, suite or stage.
-        RunError: when the folder holds sessions simulated in another world or with another human model.
+        RunError: when the folder has sessions simulated in another world or with another human model.
         Interrupted: on Ctrl-C or SIGTERM; what was simulated is kept.
     """
     _require_libraries()
@@ -111,7 +111,7 @@ def run_calibration(options: CalibrationOptions, progress: ProgressReporter) -> 
 
 
 def _require_libraries() -> None:
-    """Fail before anything is simulated rather than after."""
+    """Fail before the simulation, not after it, when a library is missing."""
     for name in ("sklearn", "threadpoolctl"):
         try:
             importlib.import_module(name)
@@ -120,7 +120,7 @@ def _require_libraries() -> None:
 
 
 def write_results(stages: CalibrationStages, command: str) -> CalibrationSummary:
-    """Compute what is left of the stages, and write the population, the evidence, the tables and the summary."""
+    """Compute the remaining stages, and write the population, the evidence, the tables and the summary."""
     folder, quick = stages.config.folder, stages.config.sizes.quick
     population = make_population(stages, command)
     population_file.save_population(population, folder / POPULATION)
@@ -207,7 +207,7 @@ def _parameter_summaries(population: Population, findings: Evidence) -> tuple[Pa
 
 
 def _quality_figures(stages: CalibrationStages) -> QualityFigures:
-    """What the gates judge. A few simulated studies have no reliable median; then the emulator's are judged."""
+    """The figures that the gates judge: of simulated studies, or of the emulator if there are too few studies."""
     source = "posterior" if stages.config.sizes.quick else "simulated"
     rows = likelihood.compare_figures(stages.predictions[source], stages.published, evidence.BAND90)
     return QualityFigures(
@@ -222,7 +222,7 @@ def _quality_figures(stages: CalibrationStages) -> QualityFigures:
 
 
 def _statistics(stages: CalibrationStages) -> tuple[str, ...]:
-    """What was fitted to, in words."""
+    """The numbers that the population was fitted to, in words."""
     targets = stages.config.targets
     counts = [f"sr {name} {count.k}/{count.n}" for name, count in targets.sr.items()]
     counts += [

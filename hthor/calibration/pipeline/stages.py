@@ -1,6 +1,6 @@
 """The stages of a calibration on published numbers, each computed once and stored.
 
-A product is stored with the hash of everything that it was made from; when that has changed, it is made again.
+Each product is stored with the hash of its inputs, and made again when the hash has changed.
 """
 
 import pickle
@@ -32,13 +32,13 @@ from hthor.humans.population import parameter_registry
 _T = TypeVar("_T")
 _KEY_LENGTH = 64
 FITTED = tuple(one.name for one in parameter_registry.PARAMETERS if one.fitted)
-"""Parameters that the published numbers are expected to move."""
+"""Parameters that the published numbers are expected to change."""
 
 
 class ArtifactCache:
-    """Products of one calibration, in a folder of which only files that this program wrote are read.
+    """Products of one calibration, in a folder; only files that this program wrote are read.
 
-    ``key`` is the hash of everything that the products are made from, 64 hexadecimal digits.
+    ``key`` is the hash of all inputs of the products, 64 hexadecimal digits.
     """
 
     def __init__(self, folder: Path, key: str) -> None:
@@ -68,7 +68,7 @@ class ProgressReporter(Protocol):
 
 
 class CalibrationStages:
-    """The products of a calibration: asking for one computes those that it needs. Each is stored in the folder."""
+    """The products of a calibration, one per property, computed with all products that they need, and stored."""
 
     def __init__(self, config: CalibrationConfig, progress: ProgressReporter) -> None:
         self.config, self._progress = config, progress
@@ -135,18 +135,18 @@ class CalibrationStages:
 
     @cached_property
     def first_emulator(self) -> Emulator:
-        """Fitted to the training sessions alone."""
+        """The emulator fitted to the training sessions alone."""
         return self._emulator("first-emulator", self.training)
 
     @cached_property
     def first_posterior(self) -> Posterior:
-        """By the first emulator: shows where to simulate more sessions."""
+        """The posterior by the first emulator; it shows where to simulate more sessions."""
         effects = self._effects("first-effects", self.first_emulator)
         return self._posterior("first-posterior", self.first_emulator, effects)
 
     @cached_property
     def emulator(self) -> Emulator:
-        """Fitted to the training and the correction, where there is one."""
+        """The emulator fitted to training and correction sessions, if there are correction sessions."""
         if not self.config.sizes.correction:
             return self.first_emulator
         return self._emulator("emulator", trial_table.join_tables([self.training, self.correction]))
@@ -158,7 +158,7 @@ class CalibrationStages:
 
     @cached_property
     def posterior(self) -> Posterior:
-        """Of the published numbers."""
+        """The posterior given the published numbers."""
         return self._posterior("posterior", self.emulator, self.effects)
 
     def _emulator(self, name: str, table: Table) -> Emulator:
@@ -178,12 +178,12 @@ class CalibrationStages:
 
     @cached_property
     def published(self) -> StudyResults:
-        """The study that was published."""
+        """The published study."""
         return summary_statistics.published_results(self.config.targets)
 
     @cached_property
     def observed(self) -> StudyResults:
-        """What each simulated study would have published."""
+        """The results that each simulated study would have published."""
         return summary_statistics.study_results(self.studies, self.t_star)[1]
 
     @cached_property
@@ -194,7 +194,7 @@ class CalibrationStages:
 
     @cached_property
     def coverage(self) -> Coverage:
-        """How often the 90 % intervals of simulated studies hold the truth."""
+        """How often the 90 % intervals of simulated studies contain the truth."""
         fitted, points, observed = self.emulator, self.studies.points, self.observed
         seed, size = self.config.seed, self.config.sizes.proposals // 2
         return self._cached(
@@ -203,7 +203,7 @@ class CalibrationStages:
 
     @cached_property
     def abc_shifts(self) -> tuple[AbcShift, ...]:
-        """The fitted parameters by approximate Bayesian computation; empty with too few studies for it."""
+        """Shifts of the fitted parameters by approximate Bayesian computation; empty with too few studies."""
         if self.config.sizes.studies < coverage.FEWEST:
             return ()
         points, means, seed, ours = self.studies.points, self.coverage.means, self.config.seed, self.posterior
@@ -234,7 +234,7 @@ class CalibrationStages:
 
     @cached_property
     def swings(self) -> tuple[ParameterSwing, ...]:
-        """What each parameter alone does to the gaps between robots."""
+        """How each parameter alone changes the gaps between robots."""
         fitted, ours = self.emulator, self.posterior
         return self._cached("swings", lambda: ranking_robustness.parameter_swings(fitted, ours))
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from hthor.eval.runner.progress import Watcher
 
 _SHOWN_FROM_S = 1.0
-"""Stages that compute are reported when they take longer than this."""
+"""Time from which a stage that only computes is reported."""
 
 
 class SilentProgress:
@@ -26,17 +26,17 @@ class SilentProgress:
 
     @contextmanager
     def watch(self, stage: str) -> Iterator[Watcher]:  # noqa: ARG002
-        """Report nothing of a stage that simulates."""
+        """Report nothing about a stage that simulates."""
         yield progress.Silent()
 
     @contextmanager
     def work(self, stage: str) -> Iterator[None]:  # noqa: ARG002
-        """Report nothing of a stage that computes."""
+        """Report nothing about a stage that computes."""
         yield
 
 
 class PrintedProgress:
-    """A bar, or lines where there is no terminal, for each stage that simulates; a line for each that computes."""
+    """A bar (without a terminal: lines) for each stage that simulates, and a line for each that computes."""
 
     def __init__(self, console: Console, *, live: bool) -> None:
         self._console, self._live = console, live
@@ -75,7 +75,7 @@ def result_tables(summary: CalibrationSummary) -> Iterator[RenderableType]:
         ),
     )
     yield _table(
-        "what the published numbers say of each parameter (fitted ones are marked *)",
+        "what the published numbers say about each parameter (* marks fitted parameters)",
         ("parameter", "unit", "prior", "posterior", "contraction", "recovery", "known?"),
         (
             (

@@ -1,4 +1,4 @@
-"""Where in the prior to simulate: points of the unit cube."""
+"""The points of the prior's unit cube at which to simulate."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ _DIGITS = 9
 def sobol_points(count: int, dimensions: int, seed: int, *names: str) -> np.ndarray:
     """(count, dimensions) float64, points that fill the unit cube evenly: a scrambled Sobol sequence.
 
-    The first points are the same for every ``count``, so that more can be asked for later.
+    The first points are the same for every ``count``, so that more points can be added later.
     """
     from scipy.stats import qmc
 
@@ -22,6 +22,6 @@ def sobol_points(count: int, dimensions: int, seed: int, *names: str) -> np.ndar
 
 
 def round_points(points: np.ndarray) -> np.ndarray:
-    """The same points, away from the faces and rounded, so that they read the same from a file."""
+    """The same points, kept away from the faces and rounded, so that a file gives exactly the same points."""
     inside: np.ndarray = np.round(np.clip(points, _EDGE, 1.0 - _EDGE), _DIGITS)
     return inside

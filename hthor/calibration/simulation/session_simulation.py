@@ -1,4 +1,4 @@
-"""One participant's session in the simulated world, run for its outcomes alone.
+"""One participant's session in the simulated world, of which only the outcomes are kept.
 
 A person is drawn from the population at a point of the prior's cube, as `hthor.humans.population.participant` draws
 people, and does ten tasks one after the other with the robot of a condition, or without one.
@@ -25,16 +25,16 @@ CODE_ROOT = "sessions"
 
 _FIRST = ("sent", "shown", "confirmed", "declined", "picked")
 OUTCOMES = ("task", "met", "ticks", *_FIRST, "messages", "adopted", "trust")
-"""What is kept of a trial, in order; see `hthor.calibration.simulation.trial_table.Table`."""
+"""The outcomes that are kept of a trial, in order; see `hthor.calibration.simulation.trial_table.Table`."""
 
 OutcomeRow = tuple[int, ...]
 
 
 class SessionSpec(Struct, frozen=True, kw_only=True):
-    """A session to be run, by the person ``participant`` of the study with this seed, of the population at a ``point``.
+    """A session to run: person ``participant`` of the study with this seed, from the population at a ``point``.
 
-    ``key`` is a hash of all that decides its course; ``condition`` is 0 none, 1 frontier, 2 oracle; ``tasks`` are
-    numbers in the suite, in the order of the trials.
+    ``key`` is a hash of everything that decides its course; ``condition`` is 0 none, 1 frontier, 2 oracle; ``tasks``
+    are the tasks' numbers in the suite, in the order of the trials.
     """
 
     key: str
@@ -46,7 +46,7 @@ class SessionSpec(Struct, frozen=True, kw_only=True):
 
 
 class SessionOutcome(Struct, frozen=True, kw_only=True):
-    """A session that was run: a row of `OUTCOMES` for each trial. One without a key reports a single trial."""
+    """The outcome of a session: a row of `OUTCOMES` per trial. Without a key, it reports a single trial."""
 
     key: str = ""
     rows: tuple[OutcomeRow, ...]
@@ -59,7 +59,7 @@ def make_session_runner(
 ) -> Callable[[SessionSpec], Iterator[TrialOutcome]]:
     """A function that runs sessions in a worker, with each condition's robots: it reports each trial, then the session.
 
-    Called in the worker; keeps worlds for later sessions.
+    The function is called in the worker; it keeps worlds for later sessions.
     """
     runner = TrialRunner(Sources(houses=str(suite.houses.folder or "")))
 
@@ -74,14 +74,14 @@ def make_session_runner(
 
 
 def _message(outcome: Any) -> TrialOutcome:
-    """A worker's message; it is only encoded, so it need not hold a trial's record."""
+    """A worker's message; it is only encoded, so its ``record`` may be something other than a trial's record."""
     return TrialOutcome(record=outcome)
 
 
 def run_session(
     spec: SessionSpec, suite: Suite, robots: tuple[RobotSeat, ...], runner: TrialRunner
 ) -> Iterator[OutcomeRow]:
-    """Run a session from its first trial to its last; a row of `OUTCOMES` for each."""
+    """Run a session from its first trial to its last; yields a row of `OUTCOMES` per trial."""
     trials = [_trial(spec, suite.tasks[number], robots, index) for index, number in enumerate(spec.tasks)]
     logs = run_trials(trials, parameter_registry.parameters_at(spec.point), runner)
     for number, trial, log in zip(spec.tasks, trials, logs, strict=True):
@@ -91,7 +91,7 @@ def run_session(
 
 
 def run_trials(trials: Sequence[TrialSpec], population: Parameters, runner: TrialRunner) -> Iterator[EpisodeLog]:
-    """Run the trials of one session with a person drawn from the population; the log of each."""
+    """Run the trials of one session with a person drawn from the population; yields the log of each."""
     seed, participant = trials[0].seed, trials[0].participant
     traits = add_random_effects(population, participant_root(seed, participant))
     human = Model(Participant(seed=seed, number=participant, traits=traits))
@@ -101,7 +101,7 @@ def run_trials(trials: Sequence[TrialSpec], population: Parameters, runner: Tria
 
 
 def outcome_row(number: int, trial: TrialSpec, log: EpisodeLog) -> OutcomeRow:
-    """What is kept of a trial of the task of this ``number`` in the suite, in the order of `OUTCOMES`."""
+    """The `OUTCOMES` of a trial; ``number`` is the number of its task in the suite."""
     first: dict[str, int] = {}
     messages, target = 0, trial.task.goal.target
     for event in log.events:

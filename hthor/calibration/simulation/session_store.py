@@ -1,7 +1,7 @@
-"""The store of simulated sessions, and what they depend on: trials of another world or person are never reused.
+"""The store of simulated sessions, and the hashes of what they depend on: outdated trials are never reused.
 
-The store is an append-only file with one writer. A killed command loses at most what its workers were running. The
-order of the lines depends on the workers' speed; readers go by the sessions' keys.
+The store is an append-only file with one writer. A killed command loses at most the sessions that its workers were
+running. The order of the lines depends on the workers' speed; readers find sessions by their keys.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from hthor.humans.population.parameter_registry import PARAMETERS
 from hthor.tasks import Suite
 
 ROBOT = "scout"
-"""The body of the article's robots."""
+"""Name of the robot body in the article."""
 _T_STAR = "T_STAR"
 _NOT_COURSE = ("t_star", "difficulty", "split")
 FILE, IDENTITY = "sessions.jsonl", "identity.json"
@@ -32,13 +32,13 @@ _SHOWN = 6
 
 
 class TrialIdentity(Struct, frozen=True, kw_only=True):
-    """Hashes of everything that decides the course of trials of a suite; ``parts`` has them by name."""
+    """Hashes of everything that decides the course of a suite's trials; ``parts`` has the hashes by name."""
 
     parts: dict[str, str]
 
     @property
     def sha256(self) -> str:
-        """Hash of them all."""
+        """Hash of all parts."""
         return jsonio.sha256(self.parts)
 
     def differences(self, other: TrialIdentity) -> list[str]:
@@ -70,7 +70,7 @@ def _course(task: object) -> dict[str, object]:
 
 
 def _code(suite: Suite) -> str:
-    """Hash of the code that plays sessions: the world, the proxy, the article's three robots, the suite's kinds."""
+    """Hash of the code that plays sessions: world, proxy, the article's three agents, the suite's task kinds."""
     own = [
         *(plugins.module_name("agent", name) for name in AGENTS),
         plugins.module_name("robot", ROBOT),
@@ -89,11 +89,11 @@ class SessionStore:
 
     Args:
         folder: made when absent.
-        identity: what the trials depend on; the folder keeps to the one that it began with.
+        identity: hashes of what the trials depend on; a folder accepts only the identity that it began with.
 
     Raises:
-        RunLocked: when another process is writing there.
-        RunError: when the folder holds sessions of another world or human model, or a damaged line.
+        RunLocked: when another process is writing to the folder.
+        RunError: when the folder has sessions of another world or human model, or a damaged line.
     """
 
     def __init__(self, folder: Path, identity: TrialIdentity) -> None:
@@ -120,7 +120,7 @@ class SessionStore:
         os.close(self._lock)
 
     def append(self, line: bytes) -> SessionOutcome:
-        """Store a session, given as its line, unless it is there; a line without a key is only decoded."""
+        """Store a session, given as its line, unless it is stored already; a line without a key is only decoded."""
         outcome = _decoder.decode(line)
         if outcome.key and outcome.key not in self.sessions:
             self._file.write(line)
@@ -132,7 +132,7 @@ def read_outcomes(path: Path) -> Iterator[SessionOutcome]:
     """Every session of a file.
 
     Raises:
-        RunError: when a line is not as it was written.
+        RunError: when a line was changed after it was written.
     """
     if not path.exists():
         return
@@ -151,7 +151,7 @@ def read_outcomes(path: Path) -> Iterator[SessionOutcome]:
 
 
 def _check_identity(folder: Path, identity: TrialIdentity) -> None:
-    """Refuse a folder with sessions of another world or human model; note the identity of a new one."""
+    """Refuse a folder with sessions of another world or human model; write the identity into a new folder."""
     path, sessions = folder / IDENTITY, folder / FILE
     if not path.exists() or not sessions.exists() or not sessions.stat().st_size:
         jsonio.write(path, jsonio.pretty(identity))

@@ -32,7 +32,7 @@ _MET = OUTCOMES.index("met")
 class SessionBatch(Struct, frozen=True, kw_only=True):
     """Sessions of a suite and the populations that their people come from.
 
-    ``sessions`` are (study, number of the session, row of ``points``, session), in the table's order.
+    ``sessions`` has tuples (study, number of the session, row of ``points``, session), in the table's order.
     """
 
     suite: Suite
@@ -44,15 +44,15 @@ class SessionBatch(Struct, frozen=True, kw_only=True):
 def simulate_sessions(
     points: np.ndarray, suite: Suite, seed: int, folder: Path, jobs: int, watch: Watcher, name: str
 ) -> Table:
-    """A session of one person from each point, the conditions in turn.
+    """One session per point, each with a person from that point; conditions take turns.
 
     Args:
         points: (S, P) points of the prior's unit cube.
-        folder: where sessions are stored; a later call with more points simulates only what is missing.
-        name: of these sessions; their people and chances are their own.
+        folder: where sessions are stored; a later call with more points simulates only the missing sessions.
+        name: name of these sessions; other names give other people and random numbers.
 
     Raises:
-        RunError: when the folder holds sessions of another world or human model.
+        RunError: when the folder has sessions of another world or human model.
         Interrupted: on Ctrl-C or SIGTERM.
     """
     points = design_points.round_points(points)
@@ -66,9 +66,9 @@ def simulate_sessions(
 
 
 def assign_condition(number: int) -> int:
-    """The condition of a training session: each in turn, starting one later every three sessions.
+    """The condition of a training session: the conditions in turn, starting one later every three sessions.
 
-    People of three consecutive numbers share all tasks between them, so every condition meets every third of them.
+    Three people with consecutive numbers do all tasks between them, so each condition meets each third of the tasks.
     """
     return (number + number // 3) % len(CONDITIONS)
 
@@ -85,7 +85,7 @@ def make_session_spec(
 
 
 def run_missing(batch: SessionBatch, folder: Path, jobs: int, watch: Watcher) -> Mapping[str, SessionOutcome]:
-    """Run the sessions of a batch that the folder lacks; every session by its key."""
+    """Run the sessions of a batch that the folder lacks; returns all sessions of the batch by key."""
     wanted = [spec for *_, spec in batch.sessions]
     with SessionStore(folder, batch.identity) as store:
         left = [spec for spec in wanted if spec.key not in store.sessions]
@@ -102,7 +102,7 @@ def run_missing(batch: SessionBatch, folder: Path, jobs: int, watch: Watcher) ->
 
 
 def make_table(batch: SessionBatch, outcomes: Mapping[str, SessionOutcome], **more: Any) -> Table:
-    """The table of a batch's sessions; ``more`` has columns that replace those of a session outside any study."""
+    """The table of a batch's sessions; ``more`` replaces columns that have defaults for sessions outside studies."""
     rows = [
         (study, number, point, spec.condition, spec.participant, index, *row)
         for study, number, point, spec in batch.sessions
@@ -146,8 +146,8 @@ def simulate_studies(
 ) -> Table:
     """A study of the published ``design`` at each point; study number s has people from row s.
 
-    It has as many people in each condition, assigned their tasks as `hthor eval` assigns them, and loses as many
-    trials, drawn at random. Other arguments as of `simulate_sessions`.
+    It has the design's number of people per condition, with tasks as `hthor eval` assigns them, and loses as many
+    trials, drawn at random. Other arguments as in `simulate_sessions`.
     """
     points, identity = design_points.round_points(points), session_store.trials_identity(suite)
     specs = []
@@ -164,12 +164,12 @@ def simulate_studies(
 
 
 def study_seed(seed: int, name: str, study: int) -> int:
-    """The seed of one study: of its people, their tasks and all its chances."""
+    """The seed of one study, for its people, their tasks and all its random numbers."""
     return seeds.derive(seed, "calibration", name, study)
 
 
 def select_counted(table: Table, seed: int, name: str, design: Design) -> tuple[np.ndarray, np.ndarray]:
-    """Which trials count in success and in adoption rates: as many in each group as in the published study."""
+    """Masks of the trials that count in success and in adoption rates: per group, as many as in the published study."""
     valid, counted = np.zeros(len(table), bool), np.zeros(len(table), bool)
     group = table.study.astype(np.int64) * len(CONDITIONS) + table.condition
     for number in range(len(table.points) * len(CONDITIONS)):

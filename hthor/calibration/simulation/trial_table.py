@@ -1,7 +1,7 @@
-"""A table of trials: the outcome of each, and whose it was.
+"""A table of trials: the outcome of each trial, and whose trial it was.
 
-Everything that statistics are computed from is here, as numpy arrays with one entry per trial. T* is not among them: it
-is looked up in the suite, so that a table stays valid when T* changes.
+It has all data for the statistics, as numpy arrays with one entry per trial, except T*: it is looked up in the suite,
+so that a table stays valid when T* changes.
 """
 
 from __future__ import annotations
@@ -57,14 +57,14 @@ class Table(Struct, frozen=True, kw_only=True, eq=False):
     Attributes:
         names: names (P,) of the parameters.
         points: (T, P) float64, points of the prior's unit cube: populations that people were drawn from.
-        study: number of the simulated study, -1 outside any. session: number of the session, from 0 in each study.
+        study: number of the simulated study, -1 without one. session: number of the session, from 0 in each study.
         point: row of ``points``. condition: 0 none, 1 frontier, 2 oracle. participant: the person's number.
         index: the trial's place in its session, from 0. task: number in the suite.
         met: whether the goal was met. ticks: length [ticks of 0.1 s], the time limit after a failure.
         sent, shown, confirmed, declined: tick at which this first happened to a message, -1 when it never did.
         picked: tick at which the target was first in the person's hand, -1 when it never was.
-        messages: how many were sent. adopted: whether one was accepted. trust: 1 to 7, 0 where none was rated.
-        valid: whether the trial counts in a study's success rate. counted: whether in its adoption rate.
+        messages: number of messages sent. adopted: whether one was accepted. trust: 1 to 7, 0 without a rating.
+        valid: whether the trial counts in a study's success rate. counted: whether it counts in the adoption rate.
     """
 
     names: tuple[str, ...]
@@ -93,23 +93,23 @@ class Table(Struct, frozen=True, kw_only=True, eq=False):
         return len(self.study)
 
     def take(self, rows: Array) -> Table:
-        """The trials of a mask or of row numbers; all points are kept."""
+        """The trials selected by a mask or by row numbers; all points are kept."""
         return Table(names=self.names, points=self.points, **{name: getattr(self, name)[rows] for name in COLUMNS})
 
     def unit(self, rows: Array | None = None) -> Array:
-        """(N, P) point of each trial, or of those of ``rows``."""
+        """(N, P) point of each trial, or of each trial in ``rows``."""
         points: Array = self.points[self.point if rows is None else self.point[rows]]
         return points
 
 
 def build_table(names: Sequence[str], points: Array, columns: dict[str, Any]) -> Table:
-    """A table of columns that numpy can read, each of length N."""
+    """A table from columns that numpy can read, each of length N."""
     typed = {name: np.asarray(columns[name]).astype(kind) for name, kind in _TYPES.items()}
     return Table(names=tuple(names), points=np.asarray(points, dtype="<f8").reshape(-1, len(names)), **typed)
 
 
 def join_tables(tables: Sequence[Table]) -> Table:
-    """One table of several; points are renumbered, studies and sessions keep their numbers."""
+    """One table from several tables; points are renumbered, studies and sessions keep their numbers."""
     shifts = np.cumsum([0, *(len(table.points) for table in tables)])
     columns = {name: np.concatenate([getattr(table, name) for table in tables]) for name in COLUMNS}
     columns["point"] = np.concatenate([table.point + shift for table, shift in zip(tables, shifts, strict=False)])
@@ -117,7 +117,7 @@ def join_tables(tables: Sequence[Table]) -> Table:
 
 
 def time_spent_s(table: Table) -> Array:
-    """(N,) float64, time spent [s]: the time limit where the goal was not met."""
+    """(N,) float64, time spent [s]: the time limit if the goal was not met."""
     seconds: Array = table.ticks * rules.TICK_S
     return seconds
 
@@ -143,7 +143,7 @@ def load_table(path: Path) -> Table:
     """The table in a file.
 
     Raises:
-        RunError: when there is none, or it is not whole.
+        RunError: when there is no such table, or it is damaged.
     """
     try:
         with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as arrays:

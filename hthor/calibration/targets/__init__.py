@@ -1,7 +1,7 @@
 """Published results of people, as counts to fit a model to.
 
-A target file says from how many trials each number comes, because percentages hide that, and marks what was inferred or
-only stated in words. Our own targets are in this folder.
+A target file gives the number of trials behind each number, because percentages hide it, and marks numbers that were
+inferred or only stated in words. Our own targets are in this folder.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ SCHEMA = "hthor.targets/1"
 CONDITIONS = ("none", "frontier", "oracle")
 _FOLDER = Path(__file__).parent
 _RATIO_STEP = 0.002
-"""How far a ratio may be from what the published percentages, of three digits, divide to."""
+"""Largest difference between a ratio and the quotient of the published percentages, which have three digits."""
 
 
 class Count(Struct, frozen=True, kw_only=True):
-    """``k`` of ``n`` trials; ``inferred`` when the study does not say how many, and ``note`` says how it was found."""
+    """``k`` of ``n`` trials; ``inferred`` when the study does not print them; ``note`` says how they were found."""
 
     k: int
     n: int
@@ -56,12 +56,12 @@ class Design(Struct, frozen=True, kw_only=True):
 
 
 class Targets(Struct, frozen=True, kw_only=True):
-    """Published numbers by condition: "none", "frontier", "oracle". What a study does not tell is absent.
+    """Published numbers by condition: "none", "frontier", "oracle". Numbers that a study does not report are absent.
 
     Attributes:
-        sr: successes. adoption: trials with a confirmed message.
+        sr: counts of successes. adoption: counts of trials with a confirmed message.
         ratio: TWSR / SR: mean of T*/max(T*, T) over the successes.
-        published: the percentages as printed, such as "sr none".
+        published: the percentages as printed, by name such as "sr none".
         left_out: always empty; a part of the hash that populations refer to.
     """
 
@@ -78,12 +78,12 @@ class Targets(Struct, frozen=True, kw_only=True):
 
     @property
     def sha256(self) -> str:
-        """Hash of all of it."""
+        """Hash of all fields."""
         return jsonio.sha256(self)
 
 
 def target_names() -> tuple[str, ...]:
-    """Targets that come with hthor."""
+    """Names of the targets that come with hthor."""
     return tuple(sorted(path.stem for path in _FOLDER.glob("*.json")))
 
 
@@ -104,7 +104,7 @@ def load_targets(name_or_path: str | Path) -> Targets:
 
 
 class _Strict(Targets, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """As a file must be."""
+    """Targets as read from a file, without unknown fields."""
 
 
 def _check(path: Path, targets: Targets) -> None:

@@ -1,4 +1,4 @@
-"""The runs of a validation: which people, on which suite, in which folder."""
+"""The plan of a validation's runs: their people, suites and folders."""
 
 import os
 from collections.abc import Iterator
@@ -21,20 +21,20 @@ from hthor.humans.population.resolve import PROXY
 
 SUITE = "paper"
 QUICK = 12
-"""Participants in each condition of a quick run, at most: two study groups, enough to see that everything works."""
+"""Most participants per condition of a quick run: two study groups, enough to see that everything works."""
 RIVALS = human_populations.EXTREMES
 _RIVAL_MOST, _KIND_MOST = 30, 20
-"""The most participants in each condition for a simple model, and for each kind of people."""
+"""Most participants per condition for a simple model, and for each kind of people."""
 
 
 class ValidationOptions(Struct, frozen=True, kw_only=True):
-    """What the user asked for.
+    """The user's options.
 
     Attributes:
-        name: as `hthor.humans.population.resolve.resolve_humans` reads it.
-        calibration: folder of the calibration that these people come from; None for what ships with them.
-        suites: other suites to rank the robots on. kinds: whether every kind of people is run too.
-        quick: few people and no simple models; the results are then not judged.
+        name: the people, as `hthor.humans.population.resolve.resolve_humans` reads it.
+        calibration: folder of the calibration that made these people; None for the evidence shipped with them.
+        suites: other suites on which to rank the robots. kinds: whether to run every kind of people too.
+        quick: few people and no simple models; the results are not judged.
     """
 
     name: str = PROXY
@@ -54,7 +54,7 @@ class ValidationOptions(Struct, frozen=True, kw_only=True):
 
 
 class ValidationRun(Struct, frozen=True, kw_only=True):
-    """People who do a suite in all conditions, and why; ``word`` as `resolve.resolve_humans` reads it."""
+    """People who do a suite in all conditions, and their ``role``; ``word`` as `resolve.resolve_humans` reads it."""
 
     word: str
     suite: str
@@ -66,7 +66,7 @@ def planned_runs(options: ValidationOptions) -> tuple[ValidationRun, ...]:
     """All runs, in order.
 
     Raises:
-        UnknownName: when there are no such people, or no such suite.
+        UnknownName: when no people or no suite have that name.
         HthorError: when there are too few participants for a study group.
     """
     count = options.count
@@ -117,10 +117,10 @@ def run_options_for(options: ValidationOptions, one: ValidationRun) -> run_optio
 
 
 def preview_runs(options: ValidationOptions) -> Iterator[tuple[ValidationRun, RunForecast]]:
-    """Each run, how far it is and how long it would take, without running or writing anything.
+    """Each run, its progress and how long it would still take, without running or writing anything.
 
     Raises:
-        HthorError: as `rounds`.
+        HthorError: as in `planned_runs`.
     """
     for one in planned_runs(options):
         evaluation, runs = run_options_for(options, one), list[RunForecast]()

@@ -1,6 +1,6 @@
-"""`hthor humans validate` as one function: runs people on the published study's tasks and compares them with it.
+"""`hthor humans validate` as one function: runs people on the published study's tasks and compares them with the study.
 
-Any people can be validated: a population, a kind of people, a human model in a file.
+Any people can be validated: a population, a kind of people, or a human model in a file.
 """
 
 from collections.abc import Callable, Sequence
@@ -28,8 +28,8 @@ from hthor.tasks import Suite
 
 TARGETS = "paper"
 JUDGED = 18
-"""Participants in each condition that give enough different groups for a verdict."""
-OTHERS = "The evidence at hand is of another population than these people's."
+"""Least participants per condition that give enough different groups for a verdict."""
+OTHERS = "The evidence belongs to another population than that of these people."
 _SHIPPED = Path(__file__).parent / "evidence"
 
 
@@ -44,15 +44,15 @@ WatcherFactory = Callable[[str], Watcher]
 
 
 def run_validation(options: ValidationOptions, watcher: WatcherFactory) -> ValidationResult:
-    """Run what is missing, compute the findings, and write the report.
+    """Run the missing trials, compute the findings, and write the report.
 
     Args:
         watcher: makes the progress display of a run, from its title.
 
     Raises:
-        UnknownName: when there are no such people, or no such suite.
+        UnknownName: when no people or no suite have that name.
         HthorError: when there are too few participants for a study group.
-        RunError: when a run's folder holds another run, or the calibration's folder no evidence.
+        RunError: when a run's folder has another run, or the calibration's folder has no evidence.
     """
     planned = plan.planned_runs(options)
     found, suite = resolve.resolve_humans(options.name), tasks.load_suite(SUITE)
@@ -87,7 +87,7 @@ class _ConditionRuns:
     def __init__(self, options: ValidationOptions, watcher: WatcherFactory) -> None:
         self._options, self._watcher = options, watcher
         self.notes: tuple[str, ...] = ()
-        """How the first people's runs differ from what their population was calibrated for."""
+        """How the runs of the people under test differ from the setting of their calibration."""
 
     def trials(self, one: ValidationRun) -> Table:
         """The trials of these people on their suite, in every condition."""
@@ -139,13 +139,13 @@ def _evidence(found: ParticipantSource, folder: Path | None) -> tuple[Evidence |
     elif found.model != PROXY:
         return None, "This human model was not calibrated, so nothing is known of a fit."
     elif found.kind is not None:
-        return None, "This kind of people is made out of a population by hand and was not calibrated itself."
+        return None, "This kind of people is a population changed by hand, and was not calibrated itself."
     elif (file := _file_of(found)) is not None:
         known = evidence.load_evidence(file)
     elif not found.population.validity.targets_sha256:
-        return None, "This population was fitted to no data: it is the literature's."
+        return None, "This population was not fitted to data; it comes from the literature."
     else:
-        return None, "The evidence of this population's calibration is not at hand; name its folder with --calibration."
+        return None, "The evidence of this population's calibration was not found; name its folder with --calibration."
     if known.origin.population_sha256 != found.population.sha256:
         return None, OTHERS
     return known, ""

@@ -1,1 +1,1 @@
-"""What one trial's log says of walking, manipulation and messages, as features."""
+"""Features of walking, manipulation and messages from one trial's log."""

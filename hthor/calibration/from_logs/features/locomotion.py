@@ -24,12 +24,12 @@ _ON_RAD, _STOP_TICKS = math.radians(15.0), round(6.0 / rules.TICK_S)
 
 
 class Walk(Struct, frozen=True, kw_only=True):
-    """Walking in one trial; NaN or empty where there are too few data.
+    """Walking in one trial; fields with too few data are NaN or empty.
 
     Attributes:
         full: speed at full deflection of the joystick [m/s]. fastest: the greatest turning speed of the body [rad/s].
         pace: median walking speed [m/s], while neither reading nor following a map.
-        guided: for each walk after an accepted message, the factor by which it was slower than that.
+        guided: for each walk after an accepted message, ``pace`` over its speed.
         turns: speed of each turn of more than 45 degrees [rad/s].
         start: when the person first moved or turned [s].
         under_way: time with the joystick deflected [s]. stops: durations of stops within a straight walk [s].
@@ -71,7 +71,7 @@ def walk_features(record: TrialRecord) -> Walk | None:
 
 
 def stick_deflection(record: TrialRecord) -> Array | None:
-    """(ticks,) deflection in thousandths at each tick; None where the log has none."""
+    """(ticks,) deflection in thousandths at each tick; None if the log has no joystick data."""
     runs = next((event.data["runs"] for event in record.journal if event.kind == "stick"), None)
     if runs is None:
         return None
@@ -94,7 +94,7 @@ def _reading(record: TrialRecord) -> Array:
 
 
 def _guided(record: TrialRecord) -> Array:
-    """(ticks,) bool, whether a message was accepted and nothing was picked up since."""
+    """(ticks,) bool, whether a message was accepted and the person has picked up nothing since."""
     mask, since = np.zeros(record.ticks, dtype=bool), -1
     for event in record.events:
         if event.kind == "confirmed" and since < 0:
@@ -108,7 +108,7 @@ def _guided(record: TrialRecord) -> Array:
 
 
 def _slower(record: TrialRecord, pushed: Array, reading: Array, usual: float) -> tuple[float, ...]:
-    """The factor by which each walk after an accepted message was slower, by its commonest deflection."""
+    """The factor by which each walk after an accepted message was slower, from its most frequent deflection."""
     found = []
     for event in record.events:
         if event.kind == "confirmed":
@@ -133,7 +133,7 @@ def _turns(turned: Array) -> tuple[float, ...]:
 
 
 def _start(path: Array, turned: Array, turns: tuple[float, ...]) -> float:
-    """When the person first moved or turned [s]; within a sample, estimated from how far it had turned."""
+    """When the person first moved or turned [s]; within a sample, estimated from the angle turned."""
     gone = np.hypot(*np.diff(path[:, :2], axis=0).T)
     moved = np.flatnonzero((np.abs(turned) > _STILL_RAD) | (gone > _STILL_RAD))
     if not len(moved):
@@ -144,7 +144,7 @@ def _start(path: Array, turned: Array, turns: tuple[float, ...]) -> float:
 
 
 def _stops(record: TrialRecord, on: Array, yaw: Array, turned: Array, rate: float) -> tuple[float, ...]:
-    """Durations without walking, turning or handling, where the walk then went on in the same direction [s].
+    """Durations [s] without walking, turning or handling after which the walk continued in the same direction.
 
     Time spent turning is subtracted, at the ``rate`` of the trial's turns [rad/s].
     """

@@ -15,11 +15,11 @@ from hthor.types import Event, Message
 _ANSWERS = ("confirmed", "declined")
 _BEFORE_TICKS = round(1.5 / rules.TICK_S)
 _SLOWER = 0.75
-"""A person who slows down to this share of their pace, while still walking, has noticed that a message came."""
+"""A person who slows down to this share of their pace, while still walking, has noticed a message."""
 
 
 class Reading(Struct, frozen=True, kw_only=True):
-    """A message of so many ``words``, from when it was shown to its answer, or until it could not be answered.
+    """The time [s] from showing a message of ``words`` words to its answer, or until an answer was impossible.
 
     ``known``: the same message had been shown before.
     """
@@ -59,7 +59,7 @@ def message_readings(record: TrialRecord) -> tuple[Reading, ...]:
 
 
 def message_noticings(record: TrialRecord) -> tuple[tuple[float, bool], ...]:
-    """For each message during a walk: seconds until the person slowed down, or first stopped, and which."""
+    """For each message during a walk: seconds until the person slowed down (True) or first stopped (False)."""
     stick = locomotion.stick_deflection(record)
     found: list[tuple[float, bool]] = []
     if stick is None:
@@ -94,7 +94,7 @@ def message_offers(record: TrialRecord) -> tuple[Offer, ...]:
 
 
 def _kept(stick: Any) -> Any:
-    """Whether a deflection lasts for more than a tick: the last step to a corner is always a short one."""
+    """Whether a deflection lasts for more than a tick; the last step to a corner is always short, so it does not."""
     follows = np.append(stick[1:], 0)
     return np.abs(follows - stick) <= 0.02 * stick
 
@@ -124,7 +124,7 @@ def _message(event: Event) -> Message:
 
 
 def _left(begun: tuple[int, Message, bool] | None, tick: int) -> tuple[Reading, ...]:
-    """A message that was not answered until ``tick``."""
+    """The reading of a message that was not answered until ``tick``, if there is one."""
     return () if begun is None or tick <= begun[0] else (_reading(begun, tick, answered=False),)
 
 

@@ -18,11 +18,11 @@ _STEPS, _H, _REACH = 12, 1e-3, 1.5
 _EDGE = 1e-3
 _SEARCH = {"maxiter": 200, "eps": 1e-4, "ftol": 1e-9, "gtol": 1e-4}
 _FAR = 5.0
-"""No parameter is searched for farther than this from its prior mean, in standard deviations."""
+"""Greatest distance of a parameter from its prior mean in the search, in standard deviations."""
 
 
 class Term(Struct, frozen=True, kw_only=True):
-    """One parameter of a model: where its search begins, and a normal prior."""
+    """One parameter of a model: the start of its search, and a normal prior."""
 
     name: str
     start: float
@@ -31,7 +31,7 @@ class Term(Struct, frozen=True, kw_only=True):
 
 
 class Fit(Struct, frozen=True, kw_only=True):
-    """The fit: a value and a standard error of each term, their covariance, and the mode of each effect."""
+    """A fitted model: value and standard error of each term, their covariance, and the mode of each effect."""
 
     value: dict[str, float]
     se: dict[str, float]
@@ -40,11 +40,11 @@ class Fit(Struct, frozen=True, kw_only=True):
 
 
 Likelihood = Callable[[dict[str, float], Array], Array]
-"""From the terms' values and the effect of each datum's person to the logarithm of each datum's likelihood."""
+"""Takes the terms' values and the effect of each datum's person; returns each datum's log likelihood."""
 
 
 def fit_mixed_model(likelihood: Likelihood, terms: Sequence[Term], person: Array, spread: Term | None) -> Fit:
-    """Fit ``terms`` and an effect for each ``person`` (N,), counted from 0, of each datum.
+    """Fit ``terms`` and an effect for each person; ``person`` (N,) is the person of each datum, from 0.
 
     ``spread`` is the logarithm of the effects' standard deviation, None for a model without effects.
     """
@@ -93,7 +93,7 @@ def _marginal(likelihood: Likelihood, values: dict[str, float], person: Array, s
         slope, curve = (up - down) / (2.0 * h), np.minimum((up - 2.0 * here + down) / h**2, -0.1 / sd**2)
         step = np.clip(-slope / curve, -_REACH * sd, _REACH * sd)
         there = summed(effects + step)
-        for _ in range(6):  # back where a step went too far
+        for _ in range(6):  # go back in the people whose step went too far
             worse = there < here - 1e-12
             if not worse.any():
                 break
@@ -124,6 +124,6 @@ def _curvature(loss: Callable[[Array], float], at: Array) -> Array:
 
 
 def _inverse(matrix: Array) -> Array:
-    """The inverse of what should be positive definite; directions that the data do not determine get a wide error."""
+    """The inverse of a matrix made positive definite: directions not determined by the data get a large error."""
     values, vectors = np.linalg.eigh(np.nan_to_num(matrix))
     return (vectors / np.maximum(values, 1e-4)) @ vectors.T

@@ -1,4 +1,4 @@
-"""The belief about each parameter before logs are used, normal on a fitting scale, and fits that start from it."""
+"""The belief about each parameter before logs are used, normal on a suitable scale, and fits that start from it."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -46,7 +46,7 @@ Beliefs = Mapping[str, Belief]
 
 
 def to_scale(value: Any, scale: Scale) -> Any:
-    """A value or an array of them on a scale."""
+    """A value, or an array of values, on a scale."""
     if scale == "log":
         return np.log(np.maximum(value, _LEAST))
     if scale == "logit":
@@ -56,14 +56,14 @@ def to_scale(value: Any, scale: Scale) -> Any:
 
 
 def from_scale(value: Any, scale: Scale) -> Any:
-    """The inverse of `on`."""
+    """The inverse of `to_scale`."""
     if scale == "log":
         return np.exp(value) if isinstance(value, np.ndarray) else math.exp(value)
     return 1.0 / (1.0 + np.exp(-value)) if scale == "logit" else value
 
 
 def spread_term(effect: float) -> Term:
-    """The logarithm of the standard deviation between people, with a wide prior around that of the published people."""
+    """The logarithm of the standard deviation between people, with a wide prior around its default."""
     centre = math.log(Parameters().sigma * effect)
     return Term(name=SPREAD, start=centre, mean=centre, sd=_SPREAD_SD)
 
@@ -82,14 +82,14 @@ def scale_of(parameter: Parameter) -> Scale:
 
 
 def prior_beliefs() -> dict[str, Belief]:
-    """The beliefs that the registry's priors give."""
+    """The beliefs from the registry's priors."""
     return {
         p.name: _belief(p, [p.prior.quantile(share) for share in _SHARES]) for p in PARAMETERS if p.prior is not None
     }
 
 
 def population_beliefs(names: Sequence[str], draws: Any, weights: Any) -> dict[str, Belief]:
-    """The beliefs that a population gives: ``draws`` (D, P) in the parameters' units, ``weights`` (D,)."""
+    """The beliefs from a population: ``draws`` (D, P) in the parameters' units, ``weights`` (D,)."""
     draws_of = dict(zip(names, np.asarray(draws).T, strict=True))
     return {
         p.name: _belief(p, [_quantile(draws_of[p.name], weights, share) for share in _SHARES])

@@ -3,9 +3,9 @@
 Choices are a conditional logit: the value of an option is (w knowledge + (1 - w) uniform) exp(-exposure) /
 seconds^kappa, and it is chosen with a chance that follows value^beta; ``beta`` differs from person to person.
 
-The rate of noticing is lam0 share exp(-(ecc / ecc_sd)^2 / 2 - clutter beside) / (1 + (a50 / angle)^2), more where the
-person is searching at that spot; an object is noticed in a glimpse with 1 - exp(-rate seconds), whose logarithm of the
-logarithm is linear in most of this. ``lam0`` differs from person to person.
+The rate of noticing is lam0 share exp(-(ecc / ecc_sd)^2 / 2 - clutter beside) / (1 + (a50 / angle)^2), more if the
+person is searching at that spot; a glimpse notices an object with probability 1 - exp(-rate seconds), whose
+complementary log-log is linear in most of these terms. ``lam0`` differs from person to person.
 """
 
 from collections.abc import Mapping, Sequence
@@ -23,9 +23,9 @@ _LEAST_RAD, _LEAST = 1e-3, 1e-12
 
 
 class Choice(Struct, frozen=True, kw_only=True):
-    """One choice of a person with this ``pace`` [m/s], and which of the ``options`` was ``chosen``.
+    """One choice of a person with this ``pace`` [m/s]; ``chosen`` is the index of the chosen one of the ``options``.
 
-    Their rows are [knowledge, uniform, metres, exposure, closed, is_door].
+    The rows of ``options`` are [knowledge, uniform, metres, exposure, closed, is_door].
     """
 
     options: Sequence[Sequence[float]]
@@ -34,7 +34,7 @@ class Choice(Struct, frozen=True, kw_only=True):
 
 
 def fit_choices(choices: Sequence[Choice], person: Array, beliefs: Mapping[str, Belief]) -> Fit:
-    """Fit `CHOICE_TERMS` to the choices of each ``person`` (N,); ``t_dwell`` and ``t_manip`` are as believed."""
+    """Fit `CHOICE_TERMS` to the choices of each ``person`` (N,); ``t_dwell`` and ``t_manip`` are the believed ones."""
     width = max(len(choice.options) for choice in choices)
     table = np.zeros((len(choices), width, 6))
     there = np.zeros((len(choices), width), dtype=bool)
@@ -62,7 +62,7 @@ def fit_choices(choices: Sequence[Choice], person: Array, beliefs: Mapping[str, 
 
 
 class Exposure(Struct, frozen=True, kw_only=True):
-    """What was in view of one object until it was ``noticed``, in the last row, or the trial ended.
+    """The glimpses at one object until it was ``noticed``, in the last row, or until the trial ended.
 
     ``rows`` are [seconds, angle, ecc, share, beside, attended], see `hthor.humans.perception.exposure_log`.
     """

@@ -1,7 +1,7 @@
 """How fast people walk, turn, start, handle and read: log-normal distributions with an effect per person.
 
 The time from a message to its answer is noticing and then reading; their sum is treated as log-normal with its own mean
-and variance (Fenton and Wilkinson). A message without an answer was either not handled yet, or will never get one.
+and variance (Fenton and Wilkinson). A message without an answer was either not handled yet, or never gets one.
 """
 
 import math
@@ -20,7 +20,7 @@ from hthor.humans.population.parameters import Parameters
 NOISE, LEARN = "noise", "learn"
 READING_TERMS = ("t_read", "t_notice")
 _LEAST_NOISE = 0.01
-"""No measurement is more precise than 1 %."""
+"""Least relative error of a measurement."""
 _LOST = Term(name="lost", start=-2.0, mean=-2.0, sd=1.0)
 """Logit of the share of messages that never get an answer."""
 
@@ -28,7 +28,7 @@ _LOST = Term(name="lost", start=-2.0, mean=-2.0, sd=1.0)
 class Sample(Struct, frozen=True, kw_only=True):
     """Positive numbers ``y`` (N,), the person of each, and the ``index`` (N,) of its trial.
 
-    ``censored`` (N,) is 0 for a measured number, 1 where only a lower, -1 where only an upper bound is known.
+    ``censored`` (N,) is 0 for a measured number, 1 for a lower bound, -1 for an upper bound of it.
     """
 
     y: Array
@@ -55,14 +55,14 @@ def fit_log_normal(
     practice: int = 0,
     learn: Any = 0.0,
 ) -> Fit:
-    """Fit median, spread between people, noise and, where it is free, practice.
+    """Fit median, spread between people, noise and, if it is free, practice.
 
     Args:
         middle: the logarithm of the median, in the first trial.
-        effect: the spread between people in units of ``sigma``, 0 when there is none.
+        effect: the spread between people in units of ``sigma``, 0 without spread.
         noise: a guess of the sd of one number's logarithm. noise_sd: the sd of that guess's own logarithm.
-        practice: 1 when numbers grow with practice, -1 when they shrink, 0 when neither.
-        learn: how much: a number, or a `Term` to find.
+        practice: 1 when numbers grow with practice, -1 when they shrink, 0 when they do not change.
+        learn: the size of the change by practice: a number, or a `Term` to fit.
     """
     from scipy.special import log_ndtr
 
@@ -83,14 +83,14 @@ def fit_log_normal(
 
 
 def fit_noticing(rows: Sequence[tuple[float, int, int, int]], belief: Belief) -> Fit:
-    """Fit ``t_notice`` to the seconds until people who walked slowed down; ``rows`` are those of `make_sample`."""
+    """Fit ``t_notice`` to the seconds until walking people slowed down; ``rows`` as in `make_sample`."""
     return fit_log_normal(make_sample(rows), belief.term(), 0.0, noise=Parameters().read_sd, noise_sd=0.3)
 
 
 def fit_reading(readings: Sequence[Reading], person: Array, beliefs: Mapping[str, Belief]) -> Fit:
     """Fit ``t_read``, with its spread between people, and ``t_notice`` to the readings of each ``person`` (N,).
 
-    The belief about ``t_notice`` may come from these logs already.
+    The belief about ``t_notice`` may already be an estimate from these logs.
     """
     from scipy.special import log_ndtr
 

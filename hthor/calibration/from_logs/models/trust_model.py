@@ -1,6 +1,6 @@
-"""How people's trust moved, from their ratings: a hierarchical Beta model (Guo and Yang 2021).
+"""How people's trust changed, from their ratings: a hierarchical Beta model (Guo and Yang 2021).
 
-Trust is Beta(alpha, beta); each trial adds counts for the value of the robots in it, and the rating is its mean on
+Trust is Beta(alpha, beta); each trial adds counts for the worth of the robots in it, and the rating is the mean on
 the scale of 1 to 7 with some noise. The first mean differs from person to person. Which messages are accepted at that
 trust is a logistic regression with an intercept for each person.
 """
@@ -25,9 +25,9 @@ ACCEPTANCE_TERMS = ("a0", "a_trust", "a_gain", "a_load", "a_again")
 class Experience(Struct, frozen=True, kw_only=True):
     """What the robots did in one trial, and the rating after it.
 
-    ``offered`` says whether any message was shown, ``helped`` [s] when the first good one was accepted (NaN without),
-    ``misled`` how many of those that were accepted led nowhere, ``met`` whether the goal was met; ``rating`` is 1 to
-    7, 0 for none.
+    ``offered``: whether any message was shown; ``helped`` [s]: when the first useful message was accepted, or NaN;
+    ``misled``: number of accepted messages that were of no help; ``met``: whether the goal was met; ``rating``: 1 to 7,
+    0 without a rating.
     """
 
     offered: bool
@@ -50,7 +50,7 @@ class TrustData(Struct, frozen=True, kw_only=True):
 
 
 def make_trust_data(sessions: Sequence[Sequence[Experience]], person: Array) -> TrustData:
-    """Sessions as arrays. ``person`` (S,) int is the person of each."""
+    """Sessions as arrays; ``person`` (S,) int is the person of each session."""
     shape = (len(sessions), max(map(len, sessions)))
     arrays = {name: np.zeros(shape) for name in ("offered", "helped", "misled", "met", "rating", "there")}
     for row, session in enumerate(sessions):
@@ -79,7 +79,7 @@ def mean_trust(data: TrustData, values: Mapping[str, float], effects: Array) -> 
 
 
 def fit_trust(data: TrustData, beliefs: Mapping[str, Belief]) -> Fit:
-    """Fit initial trust, its weight, and what changes it, with the spread of initial trust between people."""
+    """Fit initial trust, its weight and the terms of its change, with the spread of initial trust between people."""
     from scipy.special import ndtr
 
     rows, columns = np.nonzero(data.rating > 0.0)
@@ -102,7 +102,7 @@ def fit_trust(data: TrustData, beliefs: Mapping[str, Belief]) -> Fit:
 
 
 def _signals(data: TrustData, tau: float, fixed: Parameters) -> Array:
-    """Value of the robots (S, T) by the law of `hthor.humans.communication.trust`."""
+    """Worth of the robots (S, T) by the law of `hthor.humans.communication.trust`."""
     helped = data.helped > 0.0
     value = np.where(data.offered > 0.0, fixed.s_offered, 0.0)
     value = np.where(data.misled > 0.0, 0.0, value)
@@ -111,7 +111,7 @@ def _signals(data: TrustData, tau: float, fixed: Parameters) -> Array:
 
 
 def fit_acceptance(offers: Sequence[Offer], trust: Array, person: Array, beliefs: Mapping[str, Belief]) -> Fit:
-    """Fit the logit of accepting the offers (N) that each ``person`` (N,) read, at their mean ``trust`` (N,), 0 to 1.
+    """Fit the logit of acceptance to N offers, read by each ``person`` (N,) at mean ``trust`` (N,), 0 to 1.
 
     People sometimes press the wrong button (``p_slip``), so neither answer is ever certain.
     """

@@ -27,9 +27,9 @@ from hthor.tasks import Suite
 
 
 class PlayedTrials(Struct, frozen=True, kw_only=True, eq=False):
-    """Trials on the targets' suite: of the model under test, and of simple human models (``rivals``) by name.
+    """Trials on the targets' suite by the model under test, and by simple human models (``rivals``, by name).
 
-    ``t_star`` is T* [s] by task, ``round_size`` how many people together do every task once.
+    ``t_star`` is T* [s] by task; ``round_size`` people together do every task once.
     """
 
     trials: Table
@@ -49,7 +49,7 @@ def make_findings(
     kinds: Sequence[ModelFigures] = (),
     suites: Sequence[ModelFigures] = (),
 ) -> Findings:
-    """The whole document, gates and known misfits included."""
+    """The whole document, including gates and known misfits."""
     study = published_study(targets)
     own = _groups(played.trials, played, targets, setting.seed)
     rivals = {name: _groups(table, played, targets, setting.seed) for name, table in played.rivals.items()}
@@ -77,7 +77,7 @@ def make_findings(
 
 
 def _with_rivals(evidence: Evidence | None, scored: Sequence[ModelScore]) -> Evidence | None:
-    """The evidence, with how well simple models predict each condition that was left out."""
+    """The evidence, with the log scores of simple models for each condition that was left out."""
     if evidence is None:
         return None
     held_out = tuple(

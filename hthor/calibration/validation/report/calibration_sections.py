@@ -1,4 +1,4 @@
-"""The page's sections on a calibration; without one, a sentence in each says so."""
+"""The page's sections on a calibration; without a calibration, each section has a sentence that says so."""
 
 import msgspec
 
@@ -17,9 +17,9 @@ def predictive(found: Findings) -> list[str]:
         return _without(found, "there is no before and after")
     return [
         elements.paragraph(
-            "What study groups of six show when their population is drawn from the prior, and from the posterior. "
-            "Unlike those of section 2, each of these groups has one population of its own, so that what is not known "
-            "of the population is in the intervals too."
+            "The figures of study groups of six whose population is drawn from the prior, and from the posterior. "
+            "Unlike the groups of section 2, each group here has a population of its own, so that the intervals "
+            "include the uncertainty of the population."
         ),
         elements.paragraph(phrases.simulated(evidence)) if evidence.simulated_studies else "",
         elements.table(tables.PREDICTIVE, tables.predictive(evidence.predictive, found.published.figures)),
@@ -54,7 +54,7 @@ def held_out(found: Findings) -> list[str]:
             matplotlib_svg.to_svg(
                 predictions.held_out(evidence.held_out), "heldout", "Held-out conditions and their predictions"
             ),
-            "Each condition as the other two predict it: median and 80 % interval. Diamonds: published.",
+            "Each condition as predicted from the other two: median and 80 % interval. Diamonds: published.",
         ),
         elements.table(
             (*tables.SCORES, *(f"over {name}" for name in rivals)),
@@ -101,8 +101,8 @@ def coverage(found: Findings) -> list[str]:
     ranked = [one for one in evidence.parameters if one.ranks]
     drawn = elements.figure(
         matplotlib_svg.to_svg(diagnostics.ranks(ranked), "ranks", "Ranks of the true values among posterior draws"),
-        "Simulation-based calibration: ranks of the truth among posterior draws. Flat is right; 95 of 100 bars of an "
-        "honest posterior end within the shaded band. A hump means intervals that are too wide, horns too narrow.",
+        "Simulation-based calibration: ranks of the truth among posterior draws. They should be flat; 95 of 100 bars "
+        "of a correct posterior end in the shaded band. Peak in the middle: intervals too wide; at both ends: narrow.",
     )
     return [elements.paragraph(phrases.coverage(evidence.coverage)), drawn if ranked else ""]
 
@@ -123,7 +123,7 @@ def emulator(found: Findings) -> list[str]:
         elements.table(
             tables.EMULATED,
             tables.emulated(evidence.emulated),
-            "z sd: of errors on whole studies. Log score: per held-out trial [nats]; baseline: predicting the mean",
+            "z sd: sd of errors on whole studies. Log score: per held-out trial [nats]; baseline: predicting the mean",
             words=(0, 1),
         ),
         drawn if any(one.bins for one in evidence.emulated) else "",
@@ -162,7 +162,7 @@ def _draws(found: Findings, evidence: Evidence | None) -> list[str]:
                 "and the others at posterior draws.",
             ),
             elements.table(
-                ("parameter", "", *(f"SR {a} less {b}" for a, b in tables.pairs(home.swings)), "worst order [%]"),
+                ("parameter", "", *(f"SR {a} minus {b}" for a, b in tables.pairs(home.swings)), "worst order [%]"),
                 tables.swings(home.swings, evidence.parameters),
                 "From the low to the high end of the prior [points]; share of draws in order at the worst end",
                 words=(0, 1),

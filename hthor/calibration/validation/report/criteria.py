@@ -1,4 +1,4 @@
-"""What a validation concludes: the verdict on each criterion, and where the model differs from the published study."""
+"""The conclusions of a validation: a verdict on each criterion, and the model's misfits to the published study."""
 
 from collections.abc import Sequence
 
@@ -17,19 +17,19 @@ from hthor.calibration.validation.report.findings import (
 )
 
 ORDER = 0.95
-"""Share of posterior draws that have to rank the robots oracle > frontier > none."""
+"""Least share of posterior draws that rank the robots oracle > frontier > none."""
 _TAIL = 0.10
-"""A published figure in the outer tenth of the predicted distribution is a misfit worth watching."""
+"""A published figure in the outer tenth of the predicted distribution is reported as a misfit."""
 
 
 def judge_findings(found: Findings) -> tuple[Gate, ...]:
-    """Every gate's verdict. What a short run or a missing calibration leaves open is not judged."""
+    """Every gate's verdict. A gate that a short run or a missing calibration cannot decide is not judged."""
     short = found.setting.quick
     return (*_table(found.table, short), _trust(found.trust, short), *judge_evidence(found.evidence))
 
 
 def judge_evidence(found: Evidence | None) -> tuple[Gate, ...]:
-    """The criteria for a calibration. Those of a quick one are shown and not judged."""
+    """The criteria for a calibration. The criteria of a quick calibration are shown but not judged."""
     gates = (*_held_out(found), _coverage(found), _emulator(found), _abc(found), _ranking(found))
     if found is None or not found.origin.quick:
         return gates
@@ -37,7 +37,7 @@ def judge_evidence(found: Evidence | None) -> tuple[Gate, ...]:
 
 
 def failed_gates(gates: Sequence[Gate]) -> list[Gate]:
-    """Those that were not passed."""
+    """The criteria that were not met."""
     return [gate for gate in gates if gate.verdict == "failed"]
 
 
@@ -67,20 +67,20 @@ def _table(rows: Sequence[FigurePrediction], short: bool) -> tuple[Gate, ...]:
 
 
 def _trust(found: TrustFindings | None, short: bool) -> Gate:
-    name, asks = "trust", "in the oracle above that in the frontier robot over the session, and rising"
+    name, asks = "trust", "higher in the oracle than in the frontier robot over the session, and rising"
     if found is None:
         return _gate(name, asks, "nobody rated both robots", None)
     slope = next(curve.slope for curve in found.curves if curve.condition == "oracle")
-    said = f"{phrases.signed(found.gap, 2)} above, {phrases.signed(slope, 3)} a trial"
+    said = f"{phrases.signed(found.gap, 2)} above, {phrases.signed(slope, 3)} per trial"
     return _gate(name, asks, said, None if short else found.gap > 0.0 and slope > 0.0)
 
 
 def _absent(found: Evidence | None) -> str:
-    return "there is no calibration to ask" if found is None else "not worked out in this calibration"
+    return "there is no calibration" if found is None else "not computed in this calibration"
 
 
 def _held_out(found: Evidence | None) -> tuple[Gate, ...]:
-    inside = ("held-out figures", "every one that exists inside its 80 % interval")
+    inside = ("held-out figures", "every existing figure inside its 80 % interval")
     better = ("held-out log scores", "above the prior's in every condition")
     if found is None or not found.held_out:
         return (_gate(*inside, _absent(found), None), _gate(*better, _absent(found), None))
@@ -96,7 +96,7 @@ def _coverage(found: Evidence | None) -> Gate:
     low, high = FULL.coverage
     ask = (
         "coverage",
-        f"90 % intervals hold {low:.2f} to {high:.2f} of the truths, over {FULL.studies} studies or more",
+        f"90 % intervals contain {low:.2f} to {high:.2f} of the truths, over {FULL.studies} studies or more",
     )
     if found is None or found.coverage is None:
         return _gate(*ask, _absent(found), None)
@@ -129,7 +129,7 @@ def _ranking(found: Evidence | None) -> Gate:
     if home is None:
         return _gate(*ask, _absent(found), None)
     share = min(home.sr, home.twsr)
-    said = f"SR {phrases.percent(home.sr)} %, TWSR {phrases.percent(home.twsr)} %, at {home.trials} trials a robot"
+    said = f"SR {phrases.percent(home.sr)} %, TWSR {phrases.percent(home.twsr)} %, at {home.trials} trials per robot"
     return _gate(*ask, said, share >= ORDER)
 
 
@@ -188,17 +188,17 @@ def _trust_misfits(found: Findings) -> list[str]:
     if found.trust.above < trials:
         sentences.append(
             f"Mean trust in the oracle is above that in the frontier robot at {found.trust.above} of {trials} trials; "
-            "in the article it is so at every one."
+            "in the article it is above at every trial."
         )
     if oracle.slope <= 0.0:
-        sentences.append(f"Trust in the oracle does not rise ({phrases.signed(oracle.slope, 3)} points a trial).")
+        sentences.append(f"Trust in the oracle does not rise ({phrases.signed(oracle.slope, 3)} points per trial).")
     return sentences
 
 
 def _standing(found: Findings) -> list[str]:
     sentences = [
         "“Gradually converging” trust in the frontier robot is neither fitted nor claimed: the article says so "
-        "in words and prints no number that a model could be held to."
+        "in words and prints no number to compare a model with."
     ]
     inferred = [count for count in found.published.counts if count.inferred]
     if inferred:

@@ -11,12 +11,12 @@ from hthor.calibration.evidence import Band, Evidence, HeldOutFigure
 
 SCHEMA = "hthor.validation/1"
 QUARTILE_S = 7.0
-"""Lower quartiles of the time spent that differ by less than this count as equal."""
+"""Difference [s] below which two lower quartiles of the time spent count as equal."""
 Verdict = Literal["passed", "failed", "not judged"]
 
 
 class ModelUnderTest(Struct, frozen=True, kw_only=True):
-    """The human model under test. ``population`` names its population, empty where it has none."""
+    """The human model under test. ``population`` is the name of its population, empty without one."""
 
     name: str
     model: str
@@ -28,7 +28,7 @@ class ModelUnderTest(Struct, frozen=True, kw_only=True):
 
 
 class Setting(Struct, frozen=True, kw_only=True):
-    """What was run, by how many participants in each condition; ``quick``: too few people for a verdict on the runs."""
+    """The runs and their number of participants per condition; ``quick``: too few people for a verdict on the runs."""
 
     suite: str
     suite_sha256: str
@@ -42,7 +42,7 @@ class Setting(Struct, frozen=True, kw_only=True):
 
 
 class PublishedCount(Struct, frozen=True, kw_only=True):
-    """A published share ``k`` of ``n`` trials; ``inferred`` where the article prints only the percentage."""
+    """A published share ``k`` of ``n`` trials; ``inferred`` if the article prints only the percentage."""
 
     figure: str
     k: int
@@ -52,7 +52,7 @@ class PublishedCount(Struct, frozen=True, kw_only=True):
 
 
 class PublishedStudy(Struct, frozen=True, kw_only=True):
-    """The published study, as in `Targets`; ``figures`` are the eight published ones."""
+    """The published study, as in `Targets`; ``figures`` are the eight published figures."""
 
     name: str
     source: str
@@ -68,8 +68,8 @@ class PublishedStudy(Struct, frozen=True, kw_only=True):
 class FigurePrediction(HeldOutFigure, frozen=True, kw_only=True):
     """A published figure against simulated study groups of six people: their median and 90 % interval.
 
-    ``mean`` is that of all trials, ``percentile`` the share of groups below the published figure (half of those
-    equal to it counted in).
+    ``mean`` is the figure over all trials, ``percentile`` the share of groups below the published figure (equal groups
+    count half).
     """
 
     mean: float
@@ -95,9 +95,9 @@ class TimeSpent(Struct, frozen=True, kw_only=True):
 
 
 class TimeDifference(Struct, frozen=True, kw_only=True):
-    """By how much a statistic of the time spent [s] is larger in condition ``a`` than in ``b``.
+    """How much larger a statistic of the time spent [s] is in condition ``a`` than in ``b``.
 
-    ``value`` is that of all trials; ``group`` the median and 90 % interval among simulated study groups.
+    ``value`` is the difference over all trials; ``group`` the median and 90 % interval among simulated study groups.
     """
 
     statistic: Literal["lower quartile", "minimum"]
@@ -108,7 +108,7 @@ class TimeDifference(Struct, frozen=True, kw_only=True):
 
 
 class MessageReach(Struct, frozen=True, kw_only=True):
-    """How adoption arises: share of trials with a message shown, and of those with one accepted, None without any."""
+    """How adoption arises: share of trials with a message shown, and share of these with one accepted, if any."""
 
     condition: str
     shown: float
@@ -118,7 +118,7 @@ class MessageReach(Struct, frozen=True, kw_only=True):
 class TrustCurve(Struct, frozen=True, kw_only=True):
     """Trust by trial in one condition: means, their standard errors, and how many people rated each.
 
-    ``slope`` is the mean over people of the least-squares slope [points a trial], ``slope_se`` its standard error.
+    ``slope`` is the mean over people of the least-squares slope [points per trial], ``slope_se`` its standard error.
     """
 
     condition: str
@@ -130,9 +130,9 @@ class TrustCurve(Struct, frozen=True, kw_only=True):
 
 
 class TrustFindings(Struct, frozen=True, kw_only=True):
-    """Trust over a session. ``gap`` is oracle less frontier over all trials, ``above`` at how many it is positive.
+    """Trust over a session. ``gap`` is oracle minus frontier over all trials, positive in ``above`` of the trials.
 
-    ``groups_above`` is the share of study groups where it always is, ``groups_rising`` where trust in the oracle rises.
+    ``groups_above`` is the share of groups in which it is always positive, ``groups_rising`` with rising oracle trust.
     """
 
     curves: tuple[TrustCurve, ...]
@@ -144,7 +144,7 @@ class TrustFindings(Struct, frozen=True, kw_only=True):
 
 
 class ModelFigures(Struct, frozen=True, kw_only=True):
-    """A human model's figures on a suite: means over its trials, None where there are none."""
+    """A human model's figures on a suite: means over its trials, None without trials."""
 
     name: str
     figures: dict[str, float | None]
@@ -152,14 +152,14 @@ class ModelFigures(Struct, frozen=True, kw_only=True):
 
 
 class ModelScore(Struct, frozen=True, kw_only=True):
-    """A human model's log score [nats] of each condition's published counts and ratio, and the figures behind it."""
+    """A human model's log score [nats] of each condition's published counts and ratio, and the model's figures."""
 
     played: ModelFigures
     log_score: dict[str, float]
 
 
 class Gate(Struct, frozen=True, kw_only=True):
-    """A criterion: what it asks, what was found, and the verdict."""
+    """A criterion: its requirement (``asks``), the finding, and the verdict."""
 
     name: str
     asks: str
@@ -185,7 +185,7 @@ class Findings(Struct, frozen=True, kw_only=True):
     suites: tuple[ModelFigures, ...] = ()
     evidence: Evidence | None = None
     evidence_missing: str = ""
-    """Why there is no evidence, a sentence."""
+    """A sentence that says why there is no evidence."""
     gates: tuple[Gate, ...] = ()
     misfits: tuple[str, ...] = ()
     scope: str = ""

@@ -51,7 +51,7 @@ def mean_figures(played: Table, t_star: Array) -> dict[str, float | None]:
 def predict_figures(
     published: PublishedStudy, played: Table, t_star: Array, made: Mapping[str, StudyGroups]
 ) -> tuple[FigurePrediction, ...]:
-    """The eight published figures against simulated study groups."""
+    """The eight published figures, each compared with simulated study groups."""
     average = mean_figures(played, t_star)
     rows = []
     for name, draws in study_groups.group_figures(made).items():
@@ -88,7 +88,7 @@ def time_spent(run: Table) -> tuple[TimeSpent, ...]:
 
 
 def time_differences(run: Table, made: Mapping[str, StudyGroups]) -> tuple[TimeDifference, ...]:
-    """Lower quartiles and minima of the time spent, each condition against each before it."""
+    """Differences of lower quartiles and minima of the time spent, of each condition from each before it."""
     whole = {one.condition: one for one in time_spent(run)}
     statistics: tuple[tuple[Literal["lower quartile", "minimum"], str], ...] = (
         ("lower quartile", "lower"),
@@ -108,7 +108,7 @@ def time_differences(run: Table, made: Mapping[str, StudyGroups]) -> tuple[TimeD
 
 
 def message_reach(run: Table) -> tuple[MessageReach, ...]:
-    """How adoption came about, for each condition with a robot."""
+    """How often messages were shown and accepted, for each condition with a robot."""
     found = []
     for number, condition in enumerate(CONDITIONS):
         rows = (run.condition == number) & run.counted

@@ -1,6 +1,6 @@
-"""A validation as one HTML page that needs nothing else: no network, no script.
+"""A validation as one HTML page that needs no other files, network or scripts.
 
-The first and last sections are here, those of the calibration in
+The first and last sections are here, the sections on the calibration in
 `hthor.calibration.validation.report.calibration_sections`.
 """
 
@@ -65,7 +65,7 @@ def _head(found: Findings, title: str) -> str:
     listed = "".join(f"<dt>{escape(name)}</dt><dd>{escape(value)}</dd>" for name, value in facts.items())
     failed = [gate.name for gate in found.gates if gate.verdict == "failed"]
     judged = [gate for gate in found.gates if gate.verdict != "not judged"]
-    said = f"{len(judged) - len(failed)} of {len(judged)} criteria that could be judged are passed."
+    said = f"{len(judged) - len(failed)} of {len(judged)} judged criteria are met."
     if failed:
         said += f" Failed: {phrases.listed(failed)}."
     notes = list(subject.notes)
@@ -95,8 +95,8 @@ def _data(found: Findings) -> list[str]:
         elements.table(tables.COUNTS, tables.counts(published), words=(0, 3, 4)),
         elements.paragraph(
             f"TWSR is used as its ratio to SR ({ratios}), because the two are not independent. Each figure of the "
-            "study is that of one group of six people, so a model is compared with groups of six, not with its own "
-            "mean alone."
+            "study comes from one group of six people, so a model's groups of six are compared with it, not only the "
+            "model's mean."
         ),
         "<h3>What the article says in words</h3>" + elements.bullets(says) if says else "",
     ]
@@ -115,7 +115,7 @@ def _table(found: Findings) -> list[str]:
             "and 90 % interval of simulated study groups of six people, with as many trials as the study counted.",
         ),
         elements.paragraph(phrases.reach(found.reach)) if found.reach else "",
-        "<h3>Against simple human models</h3>"
+        "<h3>Comparison with simple human models</h3>"
         + elements.table(
             tables.MODELS, tables.models([found.own.played, *(one.played for one in found.rivals)]), "Means [%]"
         )

@@ -28,9 +28,9 @@ from hthor.report.html.number_format import signed as signed
 
 IDENTIFIED, WEAKLY, NOT = "identified", "weakly identified", "not identified"
 CONTRACTS, CONTRACTS_WEAKLY = 0.4, 0.1
-"""Contraction from which on a parameter is identified, and weakly so."""
+"""Least contraction of a parameter that is identified, and of one that is weakly identified."""
 RECOVERS, RECOVERS_WEAKLY = 0.6, 0.45
-"""Recovery that is needed too, where it was computed."""
+"""Least recovery that is needed too, if it was computed."""
 METRIC = {name: registry.get(name).symbol for name in ("sr", "twsr", "adoption")}
 CONDITION = {"none": "no robot", "frontier": "frontier", "oracle": "oracle"}
 _ROBOT = {"frontier": "the frontier robot", "oracle": "the oracle"}
@@ -87,7 +87,7 @@ def held_out(parts: Sequence[HeldOutCondition]) -> list[str]:
     missing = 9 - len(rows)
     sentences = [f"{inside} of {len(rows)} held-out figures lie inside their 80 % intervals."]
     if missing == 1:
-        sentences.append("One of the nine figures does not exist: without a robot there is nothing to adopt.")
+        sentences.append("One of the nine figures does not exist: without a robot there is no adoption.")
     out = [figure(row.figure) for row in rows if not row.inside]
     if out:
         sentences.append(f"Outside: {listed(out)}.")
@@ -103,7 +103,7 @@ def parameters(parts: Sequence[ParameterFinding]) -> list[str]:
     by_word = {word: [one.name for one in parts if identified(one) == word] for word in (IDENTIFIED, WEAKLY, NOT)}
     counts = {word: f"{len(names)}{f' ({listed(names)})' if names else ''}" for word, names in by_word.items()}
     return [
-        f"Of {len(parts)} parameters {counts[IDENTIFIED]} are identified and {counts[WEAKLY]} weakly so. "
+        f"Of {len(parts)} parameters {counts[IDENTIFIED]} are identified and {counts[WEAKLY]} weakly identified. "
         f"The other {len(by_word[NOT])} are not identified: their values come from the literature or are our own "
         "choice, not from the published study."
     ]
@@ -123,7 +123,7 @@ def emulator(found: Evidence) -> str:
         return "The emulator's errors on whole studies were not computed."
     return (
         f"On whole simulated studies the emulator's standardised errors have a standard deviation of "
-        f"{found.emulator_z:.2f} (1 is right; above 1 it is overconfident)."
+        f"{found.emulator_z:.2f} (it should be 1; above 1 the emulator is overconfident)."
     )
 
 
@@ -140,7 +140,7 @@ def cross_check(parts: Sequence[AbcShift]) -> str:
 def ranking(one: RobotRanking) -> str:
     """How firm the order of the robots is."""
     return (
-        f"On {one.suite}, judged at {one.trials} trials a robot, oracle > frontier > none holds in success for "
+        f"On {one.suite}, judged at {one.trials} trials per robot, oracle > frontier > none holds in success for "
         f"{percent(one.sr)} %, in time-weighted success for {percent(one.twsr)} % and in both for "
         f"{percent(one.both)} % of {one.draws} posterior draws."
         + (f" The true rates are in that order in {percent(one.expected['both'])} %." if "both" in one.expected else "")
@@ -148,7 +148,7 @@ def ranking(one: RobotRanking) -> str:
 
 
 def swings(one: RobotRanking, known: Sequence[ParameterFinding]) -> list[str]:
-    """What the parameters that are not identified do to the gaps between robots."""
+    """How the parameters that are not identified change the gaps between robots."""
     free = {part.name for part in known if identified(part) == NOT}
     rows = [swing for swing in one.swings if swing.name in free]
     if not rows:
@@ -157,12 +157,12 @@ def swings(one: RobotRanking, known: Sequence[ParameterFinding]) -> list[str]:
     turned = [swing.name for swing in rows if min(swing.low, swing.high) <= 0.0]
     text = (
         f"Of the parameters that are not identified, {worst.name} moves a gap most: SR of {CONDITION[worst.better]} "
-        f"less {CONDITION[worst.worse]} goes from {signed(100.0 * worst.low)} to {signed(100.0 * worst.high)} points "
+        f"minus {CONDITION[worst.worse]} goes from {signed(100.0 * worst.low)} to {signed(100.0 * worst.high)} points "
         "over its prior. "
     )
     if turned:
-        return [text + f"The mean gap vanishes or turns at an end of the prior of {listed(dict.fromkeys(turned))}."]
-    return [text + "No such parameter, at either end of its prior, turns a mean gap."]
+        return [text + f"The mean gap is zero or negative at an end of the prior of {listed(dict.fromkeys(turned))}."]
+    return [text + "None of these parameters changes the sign of a mean gap at either end of its prior."]
 
 
 def order(one: ModelFigures) -> str:
@@ -182,11 +182,11 @@ def _kept(one: ModelFigures, metric: str) -> bool:
 def suites(found: Findings) -> str:
     """Whether the order of the robots carries over to other suites."""
     said = listed(f"{one.name} {order(one)}" for one in found.suites)
-    return f"The same people elsewhere: {said}. Absolute figures of different suites are not to be compared."
+    return f"The same people on other suites: {said}. Do not compare absolute figures of different suites."
 
 
 def kinds(found: Findings) -> str:
-    """Which kind of people fares worst, and whether the order of the robots holds for all."""
+    """Which kind of people succeeds least, and whether the order of the robots holds for all kinds."""
     worst = min(found.kinds, key=lambda one: one.figures.get("sr oracle") or 0.0)
     turned = [one.name for one in found.kinds if not (_kept(one, "sr") and _kept(one, "twsr"))]
     text = (
@@ -203,7 +203,7 @@ def quartiles(parts: Sequence[TimeSpent], pairs: Sequence[TimeDifference]) -> st
     each = listed(f"{CONDITION[one.condition]} {one.lower:.1f} s" for one in parts)
     rows = [one for one in pairs if one.statistic == "lower quartile"]
     worst = max(rows, key=lambda one: abs(one.value))
-    size = f"{abs(worst.value):.1f} s ({CONDITION[worst.a]} less {CONDITION[worst.b]}: {signed(worst.value)} s)"
+    size = f"{abs(worst.value):.1f} s ({CONDITION[worst.a]} minus {CONDITION[worst.b]}: {signed(worst.value)} s)"
     within = abs(worst.value) <= QUARTILE_S
     far = (
         "they are within 7 s of one another" if within else f"that is {abs(worst.value) - QUARTILE_S:.1f} s beyond 7 s"
@@ -217,9 +217,9 @@ def quartiles(parts: Sequence[TimeSpent], pairs: Sequence[TimeDifference]) -> st
 
 
 def minima(pairs: Sequence[TimeDifference]) -> str:
-    """Whether the shortest times are alike."""
+    """Whether the shortest times are similar."""
     each = (
-        f"{CONDITION[one.a]} less {CONDITION[one.b]} {signed(one.value)} s (groups of six {span(one.group)} s)"
+        f"{CONDITION[one.a]} minus {CONDITION[one.b]} {signed(one.value)} s (groups of six {span(one.group)} s)"
         for one in pairs
         if one.statistic == "minimum"
     )
@@ -233,11 +233,11 @@ def reach(parts: Sequence[MessageReach]) -> str:
         + ("" if one.confirmed is None else f", and accepted in {percent(one.confirmed)} % of those")
         for one in parts
     )
-    return f"Adoption is reach times acceptance. {_upper(each)}."
+    return f"Adoption is the share of trials with a message times the share of acceptance. {_upper(each)}."
 
 
 def trust(found: TrustFindings) -> list[str]:
-    """How trust changes over a session, and what is not claimed about it."""
+    """How trust changes over a session, and what the report does not claim about it."""
     curves = {curve.condition: curve for curve in found.curves}
     oracle, frontier = curves["oracle"], curves["frontier"]
     where = "above" if found.gap > 0 else "not above"
@@ -247,19 +247,19 @@ def trust(found: TrustFindings) -> list[str]:
     return [
         f"Mean trust in the oracle is {where} that in the frontier robot over the session: by {signed(found.gap, 2)} "
         f"(standard error {found.gap_se:.2f}), and at {found.above} of {len(oracle.mean)} trials.",
-        f"It {rises}: {signed(oracle.slope, 3)} points a trial (standard error {oracle.slope_se:.3f}); "
+        f"It {rises}: {signed(oracle.slope, 3)} points per trial (standard error {oracle.slope_se:.3f}); "
         f"trust in the frontier robot {signed(frontier.slope, 3)} ({frontier.slope_se:.3f}).",
         f"Of simulated groups of six, {percent(found.groups_above, 0)} % show the oracle above the frontier robot at "
         f"every trial, and {percent(found.groups_rising, 0)} % a rising trust in the oracle.",
-        f"That trust in the frontier robot converges is not claimed: its mean moves by {_mean(steps[:half]):.2f} a "
+        f"That trust in the frontier robot converges is not claimed: its mean moves by {_mean(steps[:half]):.2f} per "
         f"trial in the first half of the session and by {_mean(steps[half:]):.2f} in the second.",
     ]
 
 
 def simulated(found: Evidence) -> str:
-    """What the columns of section 3 are."""
+    """An explanation of the columns of section 3."""
     return (
-        f"Prior and posterior are predicted by the emulator; simulated are the medians and intervals of "
+        f"Prior and posterior are predicted by the emulator; simulated values are medians and intervals of "
         f"{found.simulated_studies} whole studies simulated with people of the posterior."
     )
 

@@ -1,8 +1,8 @@
-"""Study groups drawn from simulated people: what six of them would have shown.
+"""Study groups of six, drawn from simulated people.
 
 The published study had six people in each condition. A group consists of whole rounds of people, in which every task is
-done once, as in the study; as many of its trials are dropped as the study lost. Groups share people, so there are many
-more groups than people, but their spread is that of people drawn from one population.
+done once, as in the study; as many of its trials are dropped as the study lost. Groups share people, so there can be
+many more groups than people, but their spread is that of people drawn from one population.
 """
 
 import math
@@ -22,13 +22,13 @@ Array = np.ndarray
 PEOPLE = 6
 """People in a group."""
 DRAWS = 4000
-"""Groups that are drawn."""
+"""Number of groups that are drawn."""
 
 
 class StudyGroups(Struct, frozen=True, kw_only=True, eq=False):
-    """One condition's groups, G of them; arrays (G,), NaN where a group has no such value.
+    """The G groups of one condition; arrays (G,), NaN if a group has no such value.
 
-    ``trust`` is (G, T), the mean rating by trial; ``slope`` the mean over people of their slopes [points a trial].
+    ``trust`` is (G, T), the mean rating by trial; ``slope`` the mean over people of their slopes [points per trial].
     """
 
     sr: Array
@@ -58,7 +58,7 @@ def make_groups(
 ) -> dict[str, StudyGroups]:
     """Groups of every condition that was run: whole rounds of ``round_size`` people, who together do every task once.
 
-    Of a group's trials ``valid`` count, by condition, and adoption in ``counted``; the rest are dropped at random.
+    By condition, ``valid`` of a group's trials count, and ``counted`` for adoption; the rest are dropped at random.
 
     Raises:
         HthorError: when there are too few people for a group.
@@ -107,7 +107,7 @@ def _people(one: Table) -> Array:
 
 
 def _chosen(count: int, round_size: int, rng: np.random.Generator, draws: int) -> Array:
-    """(draws, 6) the people of each group: whole rounds where six people are whole rounds."""
+    """(draws, 6) the people of each group, in whole rounds if six people can be whole rounds."""
     size = round_size if PEOPLE % round_size == 0 else 1
     units, wanted = count // size, PEOPLE // size
     if units < wanted:
@@ -118,14 +118,14 @@ def _chosen(count: int, round_size: int, rng: np.random.Generator, draws: int) -
 
 
 def slopes(trust: Array) -> Array:
-    """Least-squares slope along the last axis [points a trial]."""
+    """Least-squares slope along the last axis [points per trial]."""
     steps = np.arange(trust.shape[-1]) - (trust.shape[-1] - 1) / 2.0
     found: Array = (trust * steps).sum(axis=-1) / max(1e-12, float((steps**2).sum()))
     return found
 
 
 def log_count(k: int, n: int, p: float, phi: float) -> float:
-    """Log rng [nats] of k of n clustered trials: beta-binomial, with ``phi`` times the binomial variance."""
+    """Log probability [nats] of k of n clustered trials: beta-binomial, with ``phi`` times the binomial variance."""
     p, rho = min(max(p, 0.005), 0.995), min(max((phi - 1.0) / (n - 1.0), 1e-4), 0.5)
     a, b = p * (1.0 - rho) / rho, (1.0 - p) * (1.0 - rho) / rho
     ways = math.lgamma(n + 1) - math.lgamma(k + 1) - math.lgamma(n - k + 1)

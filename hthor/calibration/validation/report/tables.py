@@ -26,7 +26,7 @@ from hthor.report.html.elements import Cell, Mark, mark
 
 Rows = list[list[Cell]]
 GATES = ("criterion", "asks", "found", "verdict")
-TABLE = ("figure [%]", "published", "median", "90 % interval", "all trials", "covered", "off by", "allowed", "close")
+TABLE = ("figure [%]", "published", "median", "90 % interval", "all trials", "covered", "error", "allowed", "close")
 COUNTS = ("count", "k / n", "%", "", "how it was found")
 PREDICTIVE = ("figure [%]", "published", "prior", "90 %", "posterior", "90 %", "simulated", "90 %", "design effect")
 HELD_OUT = ("held out", "figure", "published", "median", "80 % interval", "inside")
@@ -34,7 +34,7 @@ SCORES = ("held out", "fitted on", "log score", "prior", "gain over the prior")
 PARAMETERS = (
     "parameter",
     "",
-    "what it is",
+    "meaning",
     "prior 5 / 50 / 95 %",
     "posterior",
     "contraction",
@@ -44,7 +44,7 @@ PARAMETERS = (
 EMULATED = ("outcome", "condition", "z sd", "log score", "baseline", "gain")
 SPENT = ("condition", "trials", "minimum", "lower quartile", "median", "upper quartile", "maximum")
 DIFFERENCES = ("difference [s]", "all trials", "groups of six, median", "90 % interval")
-CURVES = ("condition", "people", "first trial", "last trial", "slope a trial")
+CURVES = ("condition", "people", "first trial", "last trial", "slope per trial")
 _MOODS = {phrases.IDENTIFIED: "good", phrases.WEAKLY: "quiet", phrases.NOT: "bad"}
 _VERDICTS = {"passed": "good", "failed": "bad", "not judged": "quiet"}
 
@@ -55,7 +55,7 @@ def gates(found: Sequence[Gate]) -> Rows:
 
 
 def table(rows: Sequence[FigurePrediction]) -> Rows:
-    """The eight published figures against simulated study groups [%]."""
+    """The eight published figures, each compared with simulated study groups [%]."""
     return [
         [
             phrases.figure(row.figure),
@@ -105,7 +105,7 @@ def predictive(rows: Sequence[PredictedFigure], published: dict[str, float]) -> 
 
 
 def held_out(parts: Sequence[HeldOutCondition]) -> Rows:
-    """Each figure of each condition that was left out [%]; what does not exist says so."""
+    """Each figure of each condition that was left out [%]; a missing figure is marked."""
     rows: Rows = []
     for part in parts:
         known = {row.figure: row for row in part.figures}
@@ -121,7 +121,7 @@ def held_out(parts: Sequence[HeldOutCondition]) -> Rows:
 
 
 def scores(parts: Sequence[HeldOutCondition], rivals: Sequence[str]) -> Rows:
-    """Log scores [nats] of each condition that was left out, and the gains."""
+    """Log scores [nats] of each condition that was left out, and the gains over other models."""
     return [
         [
             phrases.CONDITION[part.condition],
@@ -140,7 +140,7 @@ def _gain(part: HeldOutCondition, rival: str) -> str:
 
 
 def parameters(parts: Sequence[ParameterFinding]) -> Rows:
-    """What the published numbers say of each parameter."""
+    """What the published numbers say about each parameter."""
     return [
         [
             one.name,
@@ -197,7 +197,7 @@ def differences(parts: Sequence[TimeDifference]) -> Rows:
     """Differences of the time spent [s]."""
     return [
         [
-            f"{one.statistic}, {phrases.CONDITION[one.a]} less {phrases.CONDITION[one.b]}",
+            f"{one.statistic}, {phrases.CONDITION[one.a]} minus {phrases.CONDITION[one.b]}",
             phrases.signed(one.value),
             phrases.signed(one.group.median),
             phrases.span(one.group),
@@ -226,11 +226,11 @@ def models(parts: Sequence[ModelFigures]) -> Rows:
 
 
 MODELS = ("people", *(phrases.figure(name) for name in FIGURES), "trials")
-RANKINGS = ("suite", "draws", "trials a robot", "SR order [%]", "TWSR order [%]", "both [%]")
+RANKINGS = ("suite", "draws", "trials per robot", "SR order [%]", "TWSR order [%]", "both [%]")
 
 
 def rankings(parts: Sequence[RobotRanking]) -> Rows:
-    """How many of the posterior draws rank the robots oracle > frontier > none."""
+    """The share of posterior draws that rank the robots oracle > frontier > none."""
     return [
         [
             one.suite,
@@ -243,13 +243,13 @@ def rankings(parts: Sequence[RobotRanking]) -> Rows:
 
 
 def pairs(parts: Sequence[ParameterSwing]) -> list[tuple[str, str]]:
-    """The pairs of robots that swings are of, in words."""
+    """The pairs of robots of some swings, in words."""
     found = dict.fromkeys((one.better, one.worse) for one in parts)
     return [(phrases.CONDITION[better], phrases.CONDITION[worse]) for better, worse in found]
 
 
 def swings(parts: Sequence[ParameterSwing], known: Sequence[ParameterFinding]) -> Rows:
-    """What each parameter does to the gaps between robots [points], the parameters that are not identified first."""
+    """How each parameter changes the gaps between robots [points]; parameters that are not identified come first."""
     said = {one.name: phrases.identified(one) for one in known}
     names = sorted(dict.fromkeys(one.name for one in parts), key=lambda name: said.get(name) != phrases.NOT)
     rows: Rows = []

@@ -17,14 +17,14 @@ _STYLES = {"good": "green", "bad": "bold red", "quiet": "dim"}
 
 
 def figures_table(found: Findings) -> Table:
-    """The eight published figures against simulated study groups."""
+    """The eight published figures, each compared with simulated study groups."""
     setting = found.setting
     title = f"{found.subject.name} people: {setting.participants} in each condition on {setting.suite}, groups of six"
     return _table(title, tables.TABLE, tables.table(found.table), words={0})
 
 
 def gates_table(found: Findings) -> Table:
-    """Every criterion, what was found, and its verdict."""
+    """Every criterion, the finding, and the verdict."""
     rows = [[row[0], row[2], row[3]] for row in tables.gates(found.gates)]
     return _table("criteria", ("criterion", "found", "verdict"), rows, words=range(3))
 

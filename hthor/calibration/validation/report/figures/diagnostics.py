@@ -1,4 +1,4 @@
-"""Figures of how far the fit itself can be trusted: parameters, ranks, emulator."""
+"""Figures that show how reliable the fit itself is: parameters, ranks, emulator."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def contraction(parameters: Sequence[ParameterFinding]) -> Figure:
 
 
 def ranks(parameters: Sequence[ParameterFinding]) -> Figure:
-    """Ranks of the truth among posterior draws, for those parameters that have them; flat is right."""
+    """Ranks of the truth among posterior draws, for the parameters that have ranks; they should be flat."""
     shown = [one for one in parameters if one.ranks]
     rows = max(1, math.ceil(len(shown) / 5))
     columns = max(1, math.ceil(len(shown) / rows))
@@ -64,7 +64,7 @@ def ranks(parameters: Sequence[ParameterFinding]) -> Figure:
 def _histogram(axes: Axes, one: ParameterFinding) -> None:
     counts = np.asarray(one.ranks, dtype=float)
     mean = counts.mean()
-    # Normal limits of a binomial count: 95 of 100 bars of an honest posterior lie within them.
+    # Normal limits of a binomial count: 95 of 100 bars of a correct posterior lie within them.
     half = 1.96 * math.sqrt(mean * (1.0 - 1.0 / len(counts)))
     axes.axhspan(max(0.0, mean - half), mean + half, color=SHADE)
     axes.bar(np.arange(len(counts)), counts, width=0.9, color=ORACLE)
@@ -105,7 +105,7 @@ def reliability(parts: Sequence[EmulatorFit]) -> Figure:
 
 
 def swings(parts: Sequence[ParameterSwing]) -> Figure:
-    """What each parameter, moved over its prior, does to the gaps in success between the robots."""
+    """The change of the gaps in success between robots when each parameter moves over its prior."""
     pairs = list(dict.fromkeys((one.better, one.worse) for one in parts))
     widest: dict[str, float] = {}
     for one in parts:
@@ -122,7 +122,7 @@ def swings(parts: Sequence[ParameterSwing]) -> Figure:
                     ax.plot((100 * one.low, 100 * one.high), (y, y), color=LINE, lw=2.4, zorder=2)
                     ax.plot(100 * one.low, y, "o", mfc=PAPER, mec=ORACLE, mew=1.1, ms=4.2, zorder=3)
                     ax.plot(100 * one.high, y, "o", color=ORACLE, ms=4.6, zorder=4)
-            ax.set_title(f"SR, {CONDITION[better]} less {CONDITION[worse]} [points]")
+            ax.set_title(f"SR, {CONDITION[better]} minus {CONDITION[worse]} [points]")
             ax.set_yticks(range(len(names)), names, family="monospace", fontsize=7)
             matplotlib_svg.quiet_axes(ax)
         panels[0].set_ylim(len(names) - 0.4, -0.6)

@@ -27,7 +27,7 @@ CONDITION = {"none": "no robot", "frontier": "frontier", "oracle": "oracle"}
 
 
 def table(rows: Sequence[FigurePrediction]) -> Figure:
-    """The eight figures: published values, and what simulated study groups show."""
+    """The eight figures: published values, and intervals of simulated study groups."""
     with matplotlib_svg.style():
         made, panels = _panels(1.75, [row.band for row in rows])
         for row in rows:
@@ -64,7 +64,7 @@ def before_after(rows: Sequence[PredictedFigure], published: dict[str, float]) -
 
 
 def held_out(parts: Sequence[HeldOutCondition]) -> Figure:
-    """What the other two conditions predict of each, 80 % intervals."""
+    """Each condition as predicted from the other two, 80 % intervals."""
     with matplotlib_svg.style():
         made, panels = _panels(1.75, [row.band for part in parts for row in part.figures])
         for part in parts:
@@ -107,7 +107,7 @@ def scores(findings: Findings) -> Figure:
 
 
 def _panels(height: float, bands: Sequence[Band]) -> tuple[Figure, dict[str, Axes]]:
-    """Three axes that share a scale, from the ten below the lowest band on."""
+    """Three axes that share a scale, which begins at the multiple of ten below the lowest band."""
     first = 10 * int(10.0 * min([0.5, *(band.low for band in bands)]))
     made = matplotlib_svg.new_figure(height)
     panels = made.subplots(1, 3, sharey=True)
