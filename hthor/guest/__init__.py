@@ -11,7 +11,7 @@ Packages are named by the process that their files run in::
       `-- spare (client)                 forked and confined in advance, waits to become the next trial process
 
 `host` and `supervisor` do not import each other; `supervisor` imports `client` to run it in the processes that it
-forks. Below them are `protocol` (messages and pipes, docs/wire.md), `agent` (what an agent consists of),
+forks. Below them are `protocol` (messages and pipes, docs/wire.md), `agent` (an agent's files and arguments),
 `process_tools`, and `confinement` (levels of isolation, docs/isolation.md).
 """
 

@@ -1,1 +1,1 @@
-"""What a submitted agent consists of: its reference, files, arguments and manifest."""
+"""The parts of a submitted agent: its reference, files, arguments and manifest."""

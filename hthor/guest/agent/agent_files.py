@@ -32,7 +32,7 @@ _DEEPEST = 3
 def list_files(
     agent: AgentReference, inputs: AgentInputs, paths: AgentPaths, opened: Iterable[str]
 ) -> tuple[File, ...]:
-    """The files of an agent, with their hashes, sorted; ``opened`` are those that it has reported as opened.
+    """The files of an agent, with their hashes, sorted; ``opened`` are the files that it has reported as opened.
 
     Raises:
         AgentError: when a file cannot be read.
@@ -206,7 +206,7 @@ def _python(data: bytes) -> tuple[set[str], set[tuple[int, str]]]:
 
 
 def _modules(level: int, name: str, folder: str, paths: AgentPaths) -> Iterator[str]:
-    """Files that an import reads: those of the module and of its parent packages."""
+    """Files that an import reads: the files of the module and of its parent packages."""
     base = paths.root
     if level:
         base = folder

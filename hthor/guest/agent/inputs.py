@@ -1,4 +1,4 @@
-"""What a user gives an agent beyond its own folder: arguments, and files that it may read."""
+"""Inputs that a user gives an agent besides its own folder: arguments, and files that it may read."""
 
 import difflib
 import inspect

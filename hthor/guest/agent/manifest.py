@@ -1,4 +1,4 @@
-"""What an agent consists of: a list of files with hashes, and its arguments."""
+"""An agent's manifest: a list of its files with hashes, and its arguments."""
 
 import errno
 import hashlib

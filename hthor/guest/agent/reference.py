@@ -74,7 +74,7 @@ def is_served(text: str) -> bool:
 
 
 def parse_reference(text: str, cls: str | None = None) -> AgentReference:
-    """Parse what a user typed.
+    """Parse the text by which a user names an agent.
 
     Raises:
         UnknownName: when the text has none of the `FORMS`.

@@ -13,7 +13,7 @@ from typing import Any
 from hthor.guest.agent.agent_paths import AgentPaths
 
 BATCH_BYTES = 16 << 10
-"""Bytes of names in one message; the rest follow in later ones."""
+"""Most bytes of names in one message; the other names follow in later messages."""
 
 
 class UnprintableName(PermissionError):
@@ -43,11 +43,11 @@ class FileRecorder:
 
     @property
     def waiting(self) -> bool:
-        """Whether there are names that have not been taken."""
+        """Whether there are names that `take` has not returned yet."""
         return bool(self._fresh)
 
     def take(self) -> tuple[str, ...]:
-        """Names that have not been taken, as many as fit into a message."""
+        """Names that have not been returned yet, as many as fit into a message."""
         if not self._fresh:
             return ()
         size, count = 0, 0

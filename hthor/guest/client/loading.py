@@ -157,7 +157,7 @@ def _gpus(cls: type[Any], path: Path) -> float:
 
 
 def format_traceback(error: BaseException) -> str:
-    """The traceback without our own frames at the start; a long one is cut at the start."""
+    """The traceback without hthor's own frames at the start; a long traceback is cut at the start."""
     ours = (str(Path(__file__).parents[1]), importlib.__file__ or "", "<frozen importlib")
     trace = error.__traceback__
     while trace is not None and trace.tb_frame.f_code.co_filename.startswith(ours):

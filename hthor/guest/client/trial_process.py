@@ -34,7 +34,7 @@ def run_trials(awaited: Callable[[], GuestEnds | None], order: wire.Load, held: 
     Args:
         awaited: waits for the trial's pipes and returns them, or None when no trial follows. Before that, nothing is
             sent and none of the agent's files is read.
-        held: rules for files. first: whether to report how this process is confined, and what the agent is.
+        held: rules for files. first: whether to report the confinement of this process and the agent's description.
     """
     word = seccomp.new_token() if order.words and held is not None else b""
     try:
@@ -125,7 +125,7 @@ def exec_program(words: Sequence[str], folder: str, pipes: tuple[int, int], shar
     Args:
         words: the program and its arguments. folder: the working folder.
         pipes: from the host and to it. shared: the shared memory for pictures, -1 for none.
-        word: the token that the system call filter demands, empty where there is no filter.
+        word: the token that the system call filter demands, empty if there is no filter.
 
     Raises:
         Refused: when the program cannot be started.
@@ -154,7 +154,7 @@ def exec_program(words: Sequence[str], folder: str, pipes: tuple[int, int], shar
 def _has_compiled(folder: str) -> bool:
     """Whether the folder has compiled modules, which a Python program would use even if their sources have changed.
 
-    If so, the program is made to compile all its imports itself, which takes about a second for libraries.
+    If so, the program is made to compile all modules that it imports, which takes about a second for libraries.
     """
     for count, (_, inner, _) in enumerate(os.walk(folder)):
         if "__pycache__" in inner or count > _MOST_FOLDERS:

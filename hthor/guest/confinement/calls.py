@@ -1,4 +1,4 @@
-"""System calls of Linux on x86_64 by number: which ones a guest is denied, and which only seem to succeed.
+"""System calls of Linux on x86_64 by number: calls that a guest is denied, and calls that only seem to succeed.
 
 The filter in `seccomp` is assembled from these tables. Calls that are not listed are allowed; but of `fcntl` and
 `ioctl`, only the listed commands are.
@@ -16,7 +16,7 @@ DENIED = {
     # the network; a pair of connected streams is allowed, as asyncio needs one: see SOCKETPAIR
     **_numbers("socket 41, connect 42, accept 43, bind 49, listen 50, accept4 288"),
     # other processes: starting, signalling, inspecting or slowing them, and leaving the process group
-    # (timer_create sends any signal, and all processes of a user share one limit of how many there are)
+    # (timer_create sends any signal, and all processes of a user share one limit of their number)
     **_numbers(
         "fork 57, vfork 58, execveat 322, setsid 112, setpgid 109, tkill 200, rt_sigqueueinfo 129, "
         "rt_tgsigqueueinfo 297, pidfd_open 434, pidfd_getfd 438, pidfd_send_signal 424, ptrace 101, "

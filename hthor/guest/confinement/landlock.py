@@ -27,7 +27,7 @@ _SCOPES = 1 | 2
 
 
 def abi() -> int:
-    """Version of the kernel's Landlock ABI, 0 where there is none."""
+    """Version of the kernel's Landlock ABI, 0 if it has no Landlock."""
     try:
         return kernel.syscall("asking for Landlock", _CREATE, None, 0, _ASK_VERSION)
     except Refused:

@@ -59,7 +59,7 @@ def set_limits(memory_mb: int, disk_mb: int, *, processes: bool) -> None:
 
 
 def process_memory_mb(pid: int) -> float:
-    """All memory that a process takes [MB], with swapped pages and page tables.
+    """All memory that a process uses [MB], with swapped pages and page tables.
 
     The tables can be many times as large as the pages: a page that was only read takes no memory but a table entry.
     """
@@ -71,7 +71,7 @@ def process_memory_mb(pid: int) -> float:
 
 
 def written_mb(pid: int) -> float:
-    """What a process has written to disk so far [MB], deleted files included."""
+    """The amount that a process has written to disk so far [MB], deleted files included."""
     try:
         words = Path(f"/proc/{pid}/io").read_text().split()
         return int(words[words.index("write_bytes:") + 1]) / (1 << 20)

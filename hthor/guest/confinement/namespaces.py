@@ -1,7 +1,7 @@
 """Runs a guest in namespaces of its own, by bubblewrap.
 
 There it sees only its own processes, no network, not even the machine's loopback, and only the files that it may read.
-What it writes goes to memory of a fixed size and ends with it.
+Its files are in memory of a fixed size and end with it.
 """
 
 import shutil

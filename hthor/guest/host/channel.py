@@ -50,7 +50,7 @@ class PeerGone(Exception):
 
 
 class Transport(Protocol):
-    """What carries messages to a guest and back: a process's pipes, or a WebSocket."""
+    """Carries messages to a guest and back: a process's pipes, or a WebSocket."""
 
     @property
     def pid(self) -> int:

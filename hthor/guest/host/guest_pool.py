@@ -1,4 +1,4 @@
-"""What the guests of one worker share: idle processes, and isolation levels that did not start on this machine.
+"""Shared by the guests of one worker: idle processes, and isolation levels that did not start on this machine.
 
 Starting a process takes longer than many trials. An idle process is reused only for the same agent and settings, and
 only if each trial gets its own process anyway, so that nothing is carried over.

@@ -86,7 +86,7 @@ class GuestStartup:
         except AgentError:
             channel.close()
             raise
-        if known.gpus and not self._gpus and not agent.url:  # start again, with the GPUs that it asks for
+        if known.gpus and not self._gpus and not agent.url:  # start again, with the GPUs that it needs
             channel.close()
             self._gpus = known.gpus
             return self.start()
@@ -104,7 +104,7 @@ class GuestStartup:
         return left
 
     def _key(self, digest: str) -> Key:
-        """What two guests must share to be interchangeable."""
+        """Everything that two guests must share to be interchangeable."""
         config = self._config
         limits = config.isolation, config.hidden, self._memory_mb, self._disk_mb
         return self._agent.text, digest, *limits, tuple(config.inputs.args.items()), self._paths.readable

@@ -14,7 +14,7 @@ _SHELLS = 128
 
 
 def end_descendants(ancestor: int) -> None:
-    """End all descendants of a process, which adopts those that lose their parent."""
+    """End all descendants of a process, which adopts descendants that lose their parent."""
     for _ in range(20):
         below_each = children_by_parent()
         line, left = [ancestor], []

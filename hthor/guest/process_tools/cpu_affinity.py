@@ -1,6 +1,6 @@
 """Keeps an evaluation and its guest on one CPU.
 
-One of the two always waits. On a CPU of its own it would fall asleep between two steps, and waking it takes longer than
+One of the two always waits. On a separate CPU it would fall asleep between two steps, and waking it takes longer than
 everything else in a step. A guest with several threads is left alone, since they may run in parallel.
 """
 

@@ -50,7 +50,7 @@ class CpuMeter:
 
 
 def cpu_s(pid: int) -> float:
-    """Processor time of a process and its descendants, including those that have ended [s]; 0 where it is unknown."""
+    """Processor time of a process and its descendants, including those that have ended [s]; 0 if unknown."""
     total = 0
     for one in _family(pid):
         with contextlib.suppress(OSError, IndexError, ValueError):

@@ -62,7 +62,7 @@ class FrameWriter:
 
 
 def open_frames() -> FrameWriter | None:
-    """New memory; None where the system does not support it."""
+    """New memory; None if the system does not support it."""
     if sys.platform != "linux":
         return None
     try:

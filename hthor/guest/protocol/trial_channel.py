@@ -99,7 +99,7 @@ def receive_ends(line: socket.socket) -> GuestEnds | None:
 
 
 class HostPipe:
-    """Messages over pipes. Reads exactly one message at a time, so that a fork shares nothing half read."""
+    """Messages over pipes. Reads exactly one message at a time, so that a fork inherits no half-read message."""
 
     def __init__(self, read: int, write: int, shared: int = -1) -> None:
         self._read, self._write = read, write

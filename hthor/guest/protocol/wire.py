@@ -1,6 +1,6 @@
 """The messages between host and guest, as msgpack; described in docs/wire.md.
 
-Arrays are sent from host to guest only: as ``{"__nd__": dtype, "s": shape, "d": bytes}``, or, for a guest that asks for
+Arrays are sent from host to guest only: as ``{"__nd__": dtype, "s": shape, "d": bytes}``, or, for a guest that requests
 shared memory, with ``"at"``, the offset in it, instead of the bytes.
 """
 
@@ -28,7 +28,7 @@ TEXT_MAX = 8000
 PRIVILEGES = ("house_map", "ideal_detector", "object_poses")
 """Privileges that an agent may declare to get more information than its robot senses."""
 VERSION = 1
-"""Version of this protocol; guests with another one are refused."""
+"""Version of this protocol; guests with another version are refused."""
 FAULTS = ("raised", "timeout", "died", KILLED, "memory", "disk", "garbage", "wrong_type", "oversized", "not_finite")
 """Kinds of failure during a trial."""
 OWN_FAULTS = ("raised", "wrong_type", "garbage", "oversized")
@@ -50,10 +50,10 @@ class Load(Struct, tag="load", frozen=True, kw_only=True):
     """Host to supervisor: start this agent.
 
     Attributes:
-        path: its file, which is imported. cls: the class to take, empty for the only one.
+        path: its file, which is imported. cls: the class to use, empty for the only one.
         module: the name to import it by, from the folder ``root``; empty for a file that has none.
         words: a program and its arguments, started in ``root`` instead of importing anything.
-        args: keyword arguments of the class's constructor. paths: where the agent's own files lie.
+        args: keyword arguments of the class's constructor. paths: where the agent's own files are.
     """
 
     path: str

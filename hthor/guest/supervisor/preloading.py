@@ -22,9 +22,9 @@ _OURS = ("hthor.types", "hthor.navigation", "hthor.agents", "hthor.geometry", "h
 
 
 def preload(path: Path, module: str = "") -> None:
-    """Import what the file is going to import, and freeze it so that forks share its memory.
+    """Import the modules that the file will import, and freeze them so that forks share their memory.
 
-    Where the agent is imported by name, as ``module``, nothing of its own package is imported here.
+    If the agent is imported by name, as ``module``, nothing of its own package is imported here.
     """
     own = module.partition(".")[0]
     wanted = [one for one in _named(path) if one[0].partition(".")[0] != own or own == "hthor"]
