@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class LeastTimes(Protocol):
-    """The least time to meet a goal, as a function of where the person starts."""
+    """The least time to meet a goal, as a function of the person's start."""
 
     def __call__(self, starts: ArrayLike, /) -> NDArray[np.float64]:
         """(N,) least times [s] for ``starts`` (N, 2) [m], house frame; inf for a start from which it is impossible."""

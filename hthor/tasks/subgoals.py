@@ -86,7 +86,7 @@ class JobKind(TaskKind):
 
 
 def is_done(job: Job, state: ThingState | None, house: HouseSpec) -> bool:
-    """Whether the object rests where it belongs, in nobody's hands; a search is never done."""
+    """Whether the object rests at its destination, in nobody's hands; a search is never done."""
     if state is None or state.held_by or state.bearers or job.relation == "find":
         return False
     spare = TOGETHER_M if job.hands > 1 else PLACE_M
@@ -165,7 +165,7 @@ def _edge(mask: Bools) -> Bools:
 
 @functools.lru_cache(maxsize=64)
 def _way(house: HouseSpec, relation: str, destinations: tuple[str, ...], place: Vec3 | None) -> tuple[Bools, Walk]:
-    """Where the carrier of an object may stand when the job is done, and the walk there."""
+    """The cells where the carrier of an object may stand when the job is done, and the walk there."""
     ground = ReachableFloor.of(house)
     mask = np.zeros(ground.space.free.shape, dtype=bool)
     if relation == "at" and place is not None:

@@ -1,1 +1,1 @@
-"""Where a task's objects lie: surfaces, reach, sight and the scene priors. Begin with `target_arrangement`."""
+"""Places a task's objects: surfaces, reach, sight and the scene priors. Begin with `target_arrangement`."""

@@ -1,4 +1,4 @@
-"""Where common sense puts each target, as data: belongs, acceptable or out of place.
+"""Data on where each target belongs by common sense: belongs, acceptable or out of place.
 
 ``judgement.json`` has a row for each target and each kind of thing that can support it. The verdict follows from the
 row's ``share``: the kind's share of the target's "in" and "on" relations in the scene priors, or, if the priors do not

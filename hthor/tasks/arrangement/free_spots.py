@@ -1,4 +1,4 @@
-"""A free place for one object, on furniture or on the floor, that every body can reach."""
+"""Finds a free place for one object, on furniture or on the floor, that every body can reach."""
 
 import functools
 import math

@@ -1,4 +1,4 @@
-"""Where objects may rest in a house: exact poses on surfaces, clear of everything."""
+"""Places where objects may rest in a house: exact poses on surfaces, clear of everything."""
 
 from __future__ import annotations
 

@@ -56,7 +56,7 @@ class ReachableFloor:
     def seeing(
         self, placement: Placement, opened: frozenset[str] = frozenset(), reach_m: float = rules.FIND_RANGE_M
     ) -> Bools:
-        """Where the object is within ``reach_m`` [m] of the eyes (in space, not on the plan) and in sight.
+        """Cells from which the object is within ``reach_m`` [m] of the eyes (in space, not on the plan) and in sight.
 
         The range is to its centre. In sight means that no wall or furniture lies between the eyes and its centre or a
         point near its top.
@@ -71,15 +71,15 @@ class ReachableFloor:
         return mask
 
     def touching(self, placement: Placement) -> Bools:
-        """Where the object's centre is within reach."""
+        """The cells from which the object's centre is within reach."""
         return self._disc((placement.position[0], placement.position[1]), REACH_M + SLACK_M)
 
     def beside(self, thing: Thing) -> Bools:
-        """Where the nearest edge of the thing is within reach."""
+        """The cells from which the nearest edge of the thing is within reach."""
         return self._around(thing.centre[:2], thing.size[:2], thing.yaw)
 
     def serving(self, kind: str) -> Bools:
-        """Where the nearest point of any surface of any thing of this kind is within reach."""
+        """The cells from which the nearest point of any surface of any thing of this kind is within reach."""
         mask = np.zeros(self.space.free.shape, dtype=bool)
         for thing in self.house.things:
             if thing.kind == kind:
@@ -125,7 +125,7 @@ class Walk:
             self._fields[number] = ground.paths.field(edge, self._left(edge, number + 1))
 
     def lengths(self, starts: ArrayLike) -> Floats:
-        """(N,) [m] for ``starts`` (N, 2), less the grid's slack; inf where there is no such walk."""
+        """(N,) [m] for ``starts`` (N, 2), less the grid's slack; inf if there is no such walk."""
         slack = (2 * len(self._stops) - 1) * SLACK_M
         return np.maximum(self._left(np.asarray(starts, dtype=float).reshape(-1, 2), 0) - slack, 0.0)
 

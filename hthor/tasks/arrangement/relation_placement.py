@@ -24,8 +24,8 @@ class PlacementRequest(Struct, frozen=True, kw_only=True):
     """A target to be placed: its relation ``row``, the kind ``ban`` of things that it must not rest on or in, and
     ``waiting``, the ids of objects placed before that have to be near it.
 
-    ``careful`` adds rules: what is near is in the same room; nothing rests on a thing that can be picked up, unless the
-    relation says so, nor on such a thing that itself lies on a banned kind.
+    ``careful`` adds rules: near objects are in the same room; nothing rests on a thing that can be picked up, unless
+    the relation says so, nor on such a thing that itself lies on a banned kind.
     """
 
     row: Triplet
@@ -58,7 +58,7 @@ def find_placement(
 def _rests(
     house: HouseSpec, root: int, wish: PlacementRequest, done: Sequence[Placement], first: bool
 ) -> Iterator[tuple[SupportSurface, Thing | Placement | None, int]]:
-    """Surfaces to try, large ones more often, each with what the object must be near to, and the attempt's number.
+    """Surfaces to try, large ones more often, each with the thing that must be near, and the attempt's number.
 
     An object that only has to be near something rests where people put such objects, if there is such a place.
     """

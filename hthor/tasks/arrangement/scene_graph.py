@@ -26,7 +26,7 @@ def applicable_triplets(target: str, kinds: Set[str]) -> tuple[Triplet, ...]:
 
 
 def draw_triplet(target: str, kinds: Set[str], root: int) -> Triplet:
-    """One triplet of a target, by weight among those whose reference is among ``kinds``.
+    """One triplet of a target, drawn by weight from the triplets whose reference is among ``kinds``.
 
     Raises:
         UnknownName: when ``target`` is not one of the six.
@@ -58,7 +58,7 @@ def sample_graph(kinds: Set[str], root: int, fixed: Triplet | None = None) -> di
 def placement_order(graph: Mapping[str, Triplet], root: int) -> list[str]:
     """The targets in random order, but each after the target that it has to be near, if the graph allows that.
 
-    In a ring of targets that are near one another, one comes first, and the last has to be near both neighbours.
+    In a ring of targets that have to be near one another, the last target has to be near both its neighbours.
     """
     left = [catalog.TARGETS[number] for number in seeds.shuffled(len(catalog.TARGETS), root, "order")]
     done: list[str] = []

@@ -198,7 +198,7 @@ def _spread(house: HouseSpec, root: int, bans: Mapping[str, str], fixed: Triplet
 
 
 def _makeshift(house: HouseSpec, root: int, wish: PlacementRequest, done: Sequence[Placement]) -> tuple[Placement, ...]:
-    """Placements off the house's own surfaces, where a ban leaves no place on these; () if there are none either."""
+    """Placements off the house's own surfaces, when a ban leaves no place on these; () when none are found."""
     if not wish.ban or wish.row.reference in catalog.TARGETS:
         return ()
     both = on_brought(house, root, wish, done)

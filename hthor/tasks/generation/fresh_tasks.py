@@ -1,4 +1,4 @@
-"""New tasks like those of a suite: made by the same specification from another root, so nobody can know them."""
+"""New tasks like those of a suite, from the same specification but another root, so that nobody can know them."""
 
 from collections.abc import Callable, Iterator, Sequence
 

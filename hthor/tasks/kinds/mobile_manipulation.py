@@ -1,6 +1,6 @@
 """Pick an object and place it in or on a thing of a given kind: done when it rests there.
 
-The least time is that of a person who knows where everything is:
+The least time is the time of a person who knows all places:
 
 - a walk at `rules.PACE_M_S` along the shortest path of a body of the avatar's radius, from the start by way of a cell
   within the avatar's reach of the target (horizontally, to its centre) to a cell within reach of the nearest point of
@@ -26,7 +26,7 @@ TEMPLATES: dict[str, tuple[str, ...]] = {
     "remote_control": ("sofa", "tv_stand", "bed"),
     "mug": ("counter_top", "dining_table", "desk"),
 }
-"""The 19 task templates: where each target is to be placed."""
+"""The 19 task templates: the destinations of each target."""
 
 
 class MobileManipulation(TaskKind):

@@ -1,6 +1,6 @@
 """Find an object: done when the person has it in view from close by.
 
-The least time is that of a person who knows where everything is:
+The least time is the time of a person who knows all places:
 
 - a walk at `rules.PACE_M_S` along the shortest path of a body of the avatar's radius, from the start to the first
   standing cell from which the target is seen: its centre is at most `rules.FIND_RANGE_M` from the eyes, measured in

@@ -86,7 +86,7 @@ def _shuffled(house: HouseSpec, tidy: Sequence[Placement], moved: Sequence[str],
         if found is None or math.dist(found.position[:2], home.position[:2]) < MOVED_M:
             return ()
         there[id] = found
-    # the relations "near" of the priors no longer hold
+    # the relations "near" of the priors are no longer true
     return tuple(msgspec.structs.replace(there[one.id], near="") for one in tidy)
 
 

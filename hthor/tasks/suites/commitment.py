@@ -6,7 +6,7 @@ key, 128 bits for each purpose: knowing one root, or everything made from it, te
 or other roots.
 
 ``commitment.json`` fixes the salt and every file of the suite by hashes that reveal neither. It can be published before
-anybody is evaluated. ``revealed.json`` holds the salt, once the season is over.
+anybody is evaluated. ``revealed.json`` contains the salt; it is published when the season is over.
 """
 
 import hashlib
@@ -54,7 +54,7 @@ class Salt:
         return hashlib.sha256(_TO_COMMIT + self._bytes).hexdigest()
 
     def root(self, *purpose: Name) -> int:
-        """A root for the draws of one purpose, 128 bits, as `hthor.seeds` takes it."""
+        """A root for the draws of one purpose, 128 bits, for `hthor.seeds`."""
         return int.from_bytes(self._mac(purpose)[:16], "little", signed=True)
 
     def word(self, digits: int, *purpose: Name) -> str:

@@ -26,7 +26,7 @@ def load_suite(name_or_path: str | Path) -> Suite:
 
     Raises:
         UnknownName: when no suite has that name.
-        TaskError: when the file cannot be read, was changed after it was made, or holds a task that cannot be run.
+        TaskError: when the file cannot be read, was changed after it was made, or contains a task that cannot be run.
     """
     loaded = read_suite(name_or_path)
     path, shown = _locate(name_or_path)
@@ -58,7 +58,7 @@ def read_suite(name_or_path: str | Path) -> Suite:
 
 
 def find_task(id: str, name_or_path: str | Path | None = None) -> tuple[Suite, TaskSpec]:
-    """The task of that id, in one suite or in any that comes with hthor, and the suite it is in.
+    """The suite and the task with this id, in the given suite or in any suite that comes with hthor.
 
     Raises:
         UnknownName: when there is no such task; names similar ids.
