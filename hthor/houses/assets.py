@@ -22,7 +22,7 @@ class Assets:
     """Finds kind and size by asset id; reads an asset database only for a foreign id.
 
     Args:
-        beside: the house file, whose folder and parent folders are searched.
+        beside: the house file; its folder and parent folders are searched.
         given: a database, or a folder with a database, that takes precedence; None to search.
     """
 

@@ -44,7 +44,7 @@ class HouseFigures(Struct, frozen=True, kw_only=True):
 
 
 class RoomFigures(Struct, frozen=True, kw_only=True):
-    """One room: its kind, area [m2], doors, all its things, and those that stand on the floor or hang on a wall."""
+    """One room: its kind, area [m2], doors, all things, and only the things on the floor or a wall (``top``)."""
 
     kind: str
     area: float

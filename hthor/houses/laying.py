@@ -19,7 +19,7 @@ from hthor.houses.space.solids import Slab
 from hthor.types import HouseSpec, Thing, Vec3
 
 SUNK_M = 0.005
-"""How deep a small thing may be in another one and still count as free to move."""
+"""How deep a small thing may be in another thing and still count as free to move."""
 ROUNDING_M = 1e-4
 """A height within this distance of the surface's height is the same, rounded: the file's number is kept."""
 _SNAP_M = 0.30

@@ -68,10 +68,10 @@ OURS = HouseLibrary()
 
 
 def load(name_or_path: str | Path, assets: Path | None = None) -> HouseSpec:
-    """A house that comes with hthor, by name, or one from a file: `HouseLibrary.load` without a folder."""
+    """A house that comes with hthor, by name, or a house from a file: `HouseLibrary.load` without a folder."""
     return OURS.load(name_or_path, assets)
 
 
 def names(group: Literal["scenes", "unseen"] = "scenes") -> tuple[str, ...]:
-    """The houses that come with hthor: the benchmark's ten scenes, or the ten ``unseen`` ones."""
+    """The houses that come with hthor: the benchmark's ten scenes, or the ten ``unseen`` houses."""
     return tuple(sorted(path.stem for path in _OWN[group].glob("*.json")))

@@ -162,7 +162,7 @@ def split_worktop(thing: Thing, plan: str) -> tuple[Thing, ...]:
 
 
 def unit_below(place: Vec2, parts: Sequence[Thing]) -> Thing:
-    """The unit under a place [m] on the plan, or the nearest one."""
+    """The unit under a place [m] on the plan, or the nearest unit."""
     return min(parts, key=lambda one: distance_to_rectangle(place, one.centre[:2], one.size[:2], one.yaw))
 
 

@@ -136,7 +136,7 @@ def _objects(house: HouseSpec, space: FreeSpace, reached: Bools) -> Iterator[Fin
 
 
 def _opened(thing: Thing, support: Thing | None) -> Vec3:
-    """Where the thing is when its support is open: a thing in a drawer moves out with the drawer."""
+    """The thing's place when its support is open: a thing in a drawer moves out with the drawer."""
     below = boxes.surface_below(thing, support) if support is not None else None
     if support is None or below is None or not below[0].moves:
         return thing.centre

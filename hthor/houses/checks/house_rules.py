@@ -216,7 +216,7 @@ def check_supported(house: HouseSpec) -> Iterator[Finding]:
 
 
 def _off_wall(thing: Thing, house: HouseSpec) -> float:
-    """Distance [m] from the middle of a thing's back to the nearest wall's face; inf where there is no wall."""
+    """Distance [m] from the middle of a thing's back to the nearest wall's face; inf if there is no wall."""
     x, y = turn((0.0, -thing.size[1] / 2), thing.yaw)
     back = (thing.centre[0] + x, thing.centre[1] + y)
     lines = (polygons.distance_to_segment(back, wall.a, wall.b) for wall in house.walls)

@@ -19,7 +19,7 @@ OVERLAP_M2 = 0.01
 OUTSIDE_M = 1.0
 """How far the middle of an object may lie outside of every room, above the ceiling or below the floor.
 
-Things on walls reach a little beyond the floor, and foreign houses may have misplaced things; `house_checks` reports
+Things on walls reach slightly beyond the floor, and foreign houses may have misplaced things; `house_checks` reports
 those.
 """
 _SLACK_M = 0.02

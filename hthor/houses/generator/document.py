@@ -147,7 +147,7 @@ def names(pieces: Sequence[Piece]) -> Iterator[str]:
 
 
 def without(pieces: Sequence[Piece], gone: Set[str]) -> list[Piece]:
-    """The pieces without those with the ids ``gone``."""
+    """The pieces, without pieces whose ids are in ``gone``."""
     name, left = names(pieces), []
     for piece in pieces:
         stays = next(name) not in gone

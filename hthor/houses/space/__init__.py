@@ -1,1 +1,1 @@
-"""Where bodies fit, what they see and how far they walk in a house at rest."""
+"""The free space, lines of sight and walking distances of bodies in a house at rest."""

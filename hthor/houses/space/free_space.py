@@ -35,7 +35,7 @@ Floats = NDArray[np.float64]
 
 
 class FreeSpace:
-    """Where the axis of an upright cylinder may be.
+    """The places where the axis of an upright cylinder may be.
 
     A cell is free when a disc of ``radius`` about its centre touches no wall, no furniture that stands in the way of a
     body ``height`` tall, and stays inside the rooms. A place is free if its cell is free; a cell's edge belongs to both

@@ -53,15 +53,15 @@ class Geodesics:
         return DistanceField(self, points, first)
 
     def distance(self, a: Vec2, b: Vec2) -> float:
-        """Length [m] of the shortest path; inf where there is none."""
+        """Length [m] of the shortest path; inf if there is no path."""
         return float(self._from((float(a[0]), float(a[1]))).at([b])[0])
 
     def distances(self, a: Vec2, points: ArrayLike) -> Floats:
-        """(N,) [m] lengths of the shortest paths from ``a`` to each of ``points`` (N, 2); inf where there is none."""
+        """(N,) [m] lengths of the shortest paths from ``a`` to each of ``points`` (N, 2); inf if there is no path."""
         return self._from((float(a[0]), float(a[1]))).at(points)
 
     def path(self, a: Vec2, b: Vec2) -> tuple[Vec2, ...]:
-        """The way from ``a`` to ``b``, both included, with every bend between; empty where there is none."""
+        """The way from ``a`` to ``b``, both included, with every bend between; empty if there is no path."""
         return self._from((float(a[0]), float(a[1]))).path(b)
 
 
@@ -89,7 +89,7 @@ class DistanceField:
         return metres
 
     def path(self, point: Vec2) -> tuple[Vec2, ...]:
-        """The way from the best source to the point, both included; empty where there is none."""
+        """The way from the best source to the point, both included; empty if there is no path."""
         lengths, last = self._query([point])
         if not math.isfinite(lengths[0]):
             return ()

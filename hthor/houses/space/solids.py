@@ -76,9 +76,9 @@ def _pieces(wall: Wall, doorways: list[Opening]) -> Iterator[Slab]:
 
 
 def _cut(wall: Wall, along: Vec2, length: float, doorway: Opening) -> tuple[float, float, float, float] | None:
-    """The stretch (begin, end) [m] along the wall and the heights (low, high) that the doorway takes out of it.
+    """The stretch (begin, end) [m] along the wall and the heights (low, high) that the doorway cuts out of it.
 
-    A cut within a wall's thickness of the wall's end goes through the end.
+    A cut that reaches the wall's end also removes the half thickness beyond it.
     """
     places = []
     for x, y in (doorway.a, doorway.b):

@@ -137,7 +137,7 @@ def _seed(owner: Labels, dice: Dice) -> tuple[int, int] | None:
 
 
 def _run(owner: Labels, boxes: list[list[int]], due: Sequence[float], dice: Dice, *, whole: bool) -> None:
-    """Let parts grow in turn, larger ones more often, until none can."""
+    """Let parts grow in turn, larger parts more often, until none can grow."""
     weights = [1.0 if limit == float("inf") else limit for limit in due]
     alive = [True] * len(boxes)
     for step in range(400):

@@ -92,7 +92,7 @@ BATHROOM: dict[str, tuple[ClutterRule, ...]] = {
     "sink": _rules("soap 0.25 back"),
     "side_table": _rules("candle 0.5 x2, soap_bottle 0.6, toilet_paper 0.7, cloth 0.2"),
 }
-"""Rules that replace those above in bathrooms."""
+"""Rules for bathrooms, which replace the rules above."""
 MAX_COUNT = {"coffee_machine": 1, "microwave": 1, "toaster": 1, "kettle": 1, "paper_roll": 1, "laptop": 3, "pan": 1}
 """The greatest number of things of a kind in a house."""
 USUAL_PLACES: dict[str, tuple[str, ...]] = {

@@ -35,7 +35,7 @@ _SWING_M = 0.13
 
 
 class RoomSpace:
-    """A room, what stands in it, and what must stay free.
+    """A room, the things in it, and the floor that must stay free.
 
     Attributes:
         pieces: the placed pieces, in order. solids, keeps: (N, 6) rectangles.

@@ -25,7 +25,7 @@ _PICTURE_M = 1.58
 """Height of a picture's middle."""
 _STEP_M = 0.1
 _COUNTS = {KITCHEN: (0.05, 0.5, 0.45), LIVING: (0.0, 0.3, 0.7), BEDROOM: (0.0, 0.5, 0.5), BATHROOM: (0.55, 0.45, 0.0)}
-"""Shares of rooms with no, one and two windows."""
+"""Shares of rooms with 0, 1 and 2 windows."""
 _EXTRA_M = {"tv_stand": 0.85, "counter_top": 0.1}
 """Height added to a thing in front of a window, for small things that will stand on it."""
 
