@@ -3,7 +3,7 @@
 Comments, docstrings, annotations of functions, white space, and the names and places of modules do not count; every
 other change does. A module or package that cannot affect a trial says so in a line of its own:
 ``CODE_PART = "pictures"`` (camera images) or ``CODE_PART = "tools"`` (all else: processes, proofs, file formats);
-a package's line holds for everything in it. Modules in which trials begin say ``CODE_ROOT = "trial"``, those that make
+a package's line holds for all in it. Modules in which trials begin say ``CODE_ROOT = "trial"``, modules that make
 houses and tasks ``CODE_ROOT = "makers"``. Each hash says which parts it covers.
 """
 

@@ -60,7 +60,7 @@ def roots(of: str) -> list[str]:
 def modules_sha256(names: Sequence[str], parts: Sequence[str] = (SIMULATION,)) -> str:
     """Hash of modules of hthor and of all that they import, as `Sources.sha256`.
 
-    It is cached by the bytes of all source files, as computing it takes a second.
+    The hash is cached under the bytes of all source files, as computing it takes a second.
     """
     place = installation.cache() / "code" / jsonio.sha256([installation.sha256(), sorted(set(names)), sorted(parts)])
     try:

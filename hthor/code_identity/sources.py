@@ -11,7 +11,7 @@ PACKAGE = Path(__file__).resolve().parents[1]
 
 
 class Sources:
-    """The modules of the package in folder ``root`` by name, read when they are asked for."""
+    """The modules of the package in folder ``root`` by name; each is read when it is first needed."""
 
     def __init__(self, root: Path = PACKAGE) -> None:
         self._root = root

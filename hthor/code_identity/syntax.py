@@ -23,7 +23,7 @@ class Module(Struct, frozen=True, kw_only=True):
         tokens: its syntax, with a ``Bound`` for each name that an import from the package binds.
         imports: the modules of the package that it imports anywhere, except for type checkers only.
         data: hashes of the data files in its folder, if it uses its own ``__file__``.
-        part: its ``CODE_PART``, and ``root`` its ``CODE_ROOT``; empty where it has none.
+        part: its ``CODE_PART``, and ``root`` its ``CODE_ROOT``; empty if it has none.
     """
 
     name: str
@@ -140,7 +140,7 @@ class _Reader:
         return (isinstance(node, ast.arg) and field == "annotation") or field == "returns"
 
     def _foreign(self, node: ast.Import | ast.ImportFrom) -> None:
-        """An import from elsewhere; one from the package counts by the names that it binds."""
+        """Add an import from outside; imports from the package count by the names that they bind."""
         module = getattr(node, "module", None) or ""
         for alias in node.names:
             if (alias.asname or alias.name.partition(".")[0]) not in self.bound:
