@@ -1,4 +1,4 @@
-"""Runs and trials as lists, for people who look through them: the runs below a folder, and one run with its trials."""
+"""Lists for people who look through results: the runs below a folder, and one run with its trials."""
 
 import datetime
 import os
@@ -24,7 +24,7 @@ _DEPTH = 6
 
 
 class RunSummary(Struct, frozen=True, kw_only=True):
-    """A run as it lies in its folder.
+    """A run, as the files in its folder describe it.
 
     ``folder`` is relative to the folder that was searched, ``name`` is the user's or the agents', ``agents`` and
     ``bodies`` describe the robots in the order of their seats. ``success`` is the share of the trials played so far in
@@ -49,7 +49,7 @@ class RunSummary(Struct, frozen=True, kw_only=True):
 
 
 class RunList(Struct, frozen=True, kw_only=True):
-    """The document of `hthor runs list`: all runs below a folder, the one that changed last first."""
+    """The document of `hthor runs list`: all runs below a folder, sorted by last change, latest first."""
 
     schema: str = LIST_SCHEMA
     runs: tuple[RunSummary, ...]

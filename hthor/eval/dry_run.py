@@ -1,4 +1,4 @@
-"""`hthor eval --dry-run`: what a command would do: its runs, how far each is, and how long they would take.
+"""`hthor eval --dry-run`: the runs of a command, how far each one is, and how long they would take.
 
 The time of a trial is taken from a similar finished run, or measured on a few trials.
 """
@@ -89,7 +89,7 @@ class CostSampler:
         return self._costs[same]
 
     def _end_times(self, run: ScheduledRun, folder: Path) -> list[float]:
-        """When each trial was over, in seconds after the start."""
+        """The time [s] from the start to the end of each trial."""
         houses = run_options.own_houses(self._options)
         for name, data in houses.items():
             (folder / name).write_bytes(data)
@@ -167,7 +167,7 @@ class Setting(Struct, frozen=True, kw_only=True):
 
 
 class Forecast(Struct, frozen=True, kw_only=True):
-    """All that would be done, and how submitted agents would be isolated."""
+    """All runs that would be played, and how submitted agents would be isolated."""
 
     schema: str = SCHEMA
     settings: tuple[Setting, ...]
@@ -181,7 +181,7 @@ class Forecast(Struct, frozen=True, kw_only=True):
 def make_forecast(
     options: RunOptions, resolved: ResolvedRuns, origins: Mapping[str, str], say: Callable[[str], None] | None = None
 ) -> Forecast:
-    """Forecast what some options would do.
+    """Forecast the runs that some options stand for.
 
     Args:
         resolved: the runs that the options stand for.

@@ -1,1 +1,1 @@
-"""`hthor agent check`: does an agent keep to the contract?"""
+"""`hthor agent check`: checks whether an agent follows its contract."""

@@ -1,1 +1,1 @@
-"""Runs against each other: paired differences, rankings, populations, sample sizes."""
+"""Comparing runs: paired differences, rankings, populations, sample sizes."""

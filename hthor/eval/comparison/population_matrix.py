@@ -75,7 +75,7 @@ class Cell(Struct, frozen=True, kw_only=True):
 
 
 class WorstPopulation(Struct, frozen=True, kw_only=True):
-    """The populations with which an agent succeeds least, several if they are equal.
+    """The population with which an agent succeeds least; several populations if they are equal.
 
     ``behind`` is how much less [fraction] it succeeds than with the first population, ``base``.
     """

@@ -45,8 +45,8 @@ def rank_agents(outcomes: np.ndarray, tasks: np.ndarray, people: np.ndarray) -> 
 
     The interval begins at 1 plus the number of agents that are surely better, and ends at the number of agents minus
     those that are surely worse: this agent's differences from all others are judged simultaneously at 95 %. The level
-    that this takes is found from samples of tasks and people, the same for all agents ("pigeonhole" bootstrap of the
-    largest deviation); the intervals then follow the same formula as everywhere else.
+    that this needs is estimated from samples of tasks and people, the same for all agents ("pigeonhole" bootstrap of
+    the largest deviation); the intervals then follow the same formula as everywhere else.
 
     Args:
         outcomes: (A, N), shares from 0 to 1, such as successes. tasks, people: (N,) indices from 0.

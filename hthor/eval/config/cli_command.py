@@ -47,7 +47,7 @@ def resume_command(folder: Path, config: RunConfig, out: Path | None = None) -> 
 
 
 def _listed_files(agent: Manifest) -> set[str]:
-    """Files outside an agent's folder that need no option: arguments, and the words of a command."""
+    """Files outside an agent's folder that need no --readable, as arguments or the words of a command name them."""
     words = shlex.split(agent.source[len("cmd:") :]) if agent.source.startswith("cmd:") else []
     return {*(value.removeprefix("../") for value in agent.args.values()), *words}
 

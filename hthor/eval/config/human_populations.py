@@ -26,12 +26,12 @@ class HumanModelRef(Struct, frozen=True, kw_only=True):
     """The human participants of a run.
 
     Attributes:
-        name: what to call them.
-        source: how the user asked for them, with paths cut to the file's name.
+        name: their name in tables and sentences.
+        source: the user's word for them on the command line, with paths cut to the file's name.
         model: the human model.
         kind: the kind of people that the population was changed into, empty for the population itself.
-        population: what participants are drawn from, empty where they replay a log; ``population_sha256`` is its hash.
-        sha256: hash of all of this, the population included.
+        population: the name of their distribution, empty where they replay a log; ``population_sha256`` is its hash.
+        sha256: hash of everything that defines them, the population included.
         valid: whether the population is used where it was calibrated; ``notes`` say what differs.
     """
 
@@ -82,7 +82,7 @@ def robot_settings(robot: str | RobotInfo, detector: str) -> dict[str, str | flo
 
 
 def human_model_ref(population: ParticipantSource, suite: Suite, team: RobotTeam) -> HumanModelRef:
-    """The population as `run.json` has it, with whether it was calibrated for this suite, world and robots."""
+    """The population's entry in `run.json`, which says whether it was calibrated for this suite, world and robots."""
     drawn = not population.source
     notes = tuple(_differences(population, suite, team)) if drawn else ()
     return HumanModelRef(

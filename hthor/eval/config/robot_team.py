@@ -1,4 +1,4 @@
-"""The robots of a run: bodies and agents, resolved from what the user typed."""
+"""The robots of a run: bodies and agents, resolved from the user's options."""
 
 import re
 from collections.abc import Sequence
@@ -17,7 +17,7 @@ from hthor.types.detector_specs import OWN
 ALIASES = {"tall": "tender", "small": "puck"}
 """Other names for robots, from the figure of the HumanTHOR paper."""
 NO_ROBOT_AGENT, NO_ROBOT = "none", "no robot"
-"""The agent that stands for having no robot, and what tables and sentences call it."""
+"""The agent that stands for having no robot, and its name in tables and sentences."""
 _EXAMPLE = "--robots tall:oracle,small:frontier"
 
 
@@ -28,7 +28,7 @@ class AgentInfo(Struct, frozen=True, kw_only=True):
         ref: its identity, part of every trial's key; it has no path, so that a run is the same wherever the file is.
         path: the agent as `hthor.guest.agent.reference` reads it, empty for a built-in agent.
         robots: the robots that it is made for; empty for any.
-        absent: there is no robot in the world at all.
+        absent: whether it means that there is no robot in the world at all.
         gpus: how much of a GPU it needs; for engines and isolation.
         manifest: its files, None for a built-in agent.
     """
@@ -88,7 +88,7 @@ class RobotTeam(Struct, frozen=True, kw_only=True):
 
     @property
     def agent_paths(self) -> dict[str, str]:
-        """Where the submitted agents are, by seat."""
+        """The paths of the submitted agents, by seat."""
         return {seat: agent.path for seat, (_, agent) in self._by_seat if agent.path}
 
     @property
@@ -118,7 +118,7 @@ class RobotTeam(Struct, frozen=True, kw_only=True):
 
 
 def step_limit_of(team: RobotTeam, seconds: float | None) -> float | msgspec.UnsetType:
-    """The deadline of each action [s] as a trial states it: unset for the default, and without submitted agents."""
+    """The deadline of each action [s] as a trial states it: unset for the default or without submitted agents."""
     return float(seconds) if seconds is not None and team.agent_paths else msgspec.UNSET
 
 
@@ -164,12 +164,12 @@ def parse_teams(
     *,
     guests: GuestConfig | None = None,
 ) -> list[RobotTeam]:
-    """The teams that ``--robots`` stands for: one, or, where a robot comes without an agent, one for each agent.
+    """The teams that ``--robots`` stands for: one or, if a robot comes without an agent, one for each agent.
 
     Args:
         robots: ROBOT:AGENT or ROBOT, separated by commas: "tall:oracle,small:my_agent.py:Careful". A comma within an
             agent is written as a backslash and a comma.
-        agents: the agents for robots that come without one.
+        agents: the agents for robots that are given without an agent.
         guests: as in `load_agent_info`.
 
     Raises:
@@ -241,7 +241,7 @@ def load_agent_info(agent: str, guests: GuestConfig | None = None) -> AgentInfo:
 
 
 def display_name(name: str, robots: Sequence[RobotSeat]) -> str:
-    """What tables and sentences call a run: its name, or "no robot" for an unnamed run without one."""
+    """The name of a run in tables and sentences: its own name, or "no robot" for an unnamed run without a robot."""
     robotless = not any(robot.seat for robot in robots)
     return NO_ROBOT if robotless and name in (NO_ROBOT_AGENT, *(robot.agent.name for robot in robots)) else name
 

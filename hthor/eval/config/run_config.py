@@ -42,7 +42,7 @@ PROCEDURAL = "procedural"
 
 
 class AssetsRef(Struct, frozen=True, kw_only=True):
-    """What robots' pictures show: our own furniture or a pack, and the hash of that and of the code that draws it.
+    """The furniture in robots' pictures: our own or a pack, and the hash of it and of the code that draws it.
 
     ``sha256`` is empty where no picture can affect what a robot does: where all agents are built in and neither a
     camera nor a pack was chosen.
@@ -66,13 +66,13 @@ class RunConfig(Struct, frozen=True, kw_only=True):
         title: the user's name for the run; it changes no trial, and runs that differ only in it are the same run.
         robots: every robot with its agent and detector; an agent that needs no robot is listed without a seat.
         agents: the files of every submitted agent.
-        kind: the task kind that the suite was narrowed to, None for all its tasks; ``kinds`` are those of the tasks.
+        kind: the task kind that the suite was narrowed to, None for all its tasks; ``kinds``: the kinds of the tasks.
         trials: how many trials the whole run has.
         realtime: whether agents' thinking takes time of the trials.
-        limit: how many tasks were chosen from the suite, where not all were.
+        limit: how many tasks were chosen from the suite, if not all.
         houses: the houses, and ``difficulty`` the difficulty, that the suite was narrowed to.
         step_limit_s: the submitted agents' deadline for each action [s], where it is not the default.
-        shard: which share this is of a run that was divided among machines.
+        shard: the share that this run is, if a run was divided among machines.
     """
 
     schema: str = SCHEMA
@@ -104,7 +104,7 @@ class RunConfig(Struct, frozen=True, kw_only=True):
 
     @property
     def untitled(self) -> RunConfig:
-        """The configuration without its title: all that decides the records."""
+        """The configuration without its title: everything that decides the records."""
         return msgspec.structs.replace(self, title=msgspec.UNSET)
 
     @property
@@ -129,17 +129,17 @@ class RunConfig(Struct, frozen=True, kw_only=True):
 
     @property
     def name(self) -> str:
-        """What to call the run: the user's name for it, or its team's."""
+        """The run's name: the user's name for it, or else its team's."""
         return self.title or self.team_name
 
     @property
     def label(self) -> str:
-        """What tables and sentences call the run."""
+        """The run's name in tables and sentences."""
         return robot_team.display_name(self.name, self.robots)
 
     @property
     def team_name(self) -> str:
-        """What to call the robots and their agents."""
+        """The name of the robots and their agents."""
         return team_name(self.robots)
 
     @property
@@ -188,8 +188,8 @@ def build_config(
     """The configuration of a run, with every default resolved.
 
     Args:
-        human: the human population, or what `hthor.humans.population.resolve` finds it by.
-        participants: how many people; None for as many as let every task be done once.
+        human: the human population, or the word by which `hthor.humans.population.resolve` finds it.
+        participants: how many people; None for the number that is needed to do every task once.
         assets: the furniture pack that pictures show, with its own hash; None for our own furniture.
         realtime, step_limit_s: as in `RunConfig`; without a robot, or submitted agents, they make no difference.
         limit, houses, difficulty: how ``suite`` was narrowed; empty or None where it was not.
@@ -238,7 +238,7 @@ def shard_config(config: RunConfig, shard: Shard, tasks: int) -> RunConfig:
 
 
 def check_title(title: str) -> str:
-    """The user's name for a run; raises HthorError unless it can also be a folder's."""
+    """The user's name for a run; raises HthorError unless it can also be a folder's name."""
     if not _TITLE.fullmatch(title):
         raise HthorError(
             f"--name '{title}': a run's name has 1 to 60 letters, digits, '.', '_', '+' or '-', and begins with a "
@@ -248,7 +248,7 @@ def check_title(title: str) -> str:
 
 
 def differences(there: RunConfig, here: RunConfig) -> list[str]:
-    """What differs between two configurations, in words."""
+    """The differences between two configurations, in words."""
     before, after = _flat(msgspec.to_builtins(there)), _flat(msgspec.to_builtins(here))
     names = [name for name in {**before, **after} if before.get(name) != after.get(name)]
     return [f"{name} is {_shortened(before.get(name))} there and {_shortened(after.get(name))} here" for name in names]

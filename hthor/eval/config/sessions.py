@@ -52,13 +52,13 @@ def make_sessions(
     """The sessions of a run.
 
     Which tasks a participant does depends on suite, seed and participant alone, never on the robots, so that all robots
-    meet the same people at the same tasks.
+    meet the same people with the same tasks.
 
     Args:
         agent: a built-in agent's name or an agent file, in the body ``robot`` with the detector ``detector`` as
             `hthor.types.detector_specs.canonical_name` spells it; or a team, which includes bodies and detector.
-        human: the human population, or what `hthor.humans.population.resolve` finds it by.
-        participants: how many; by default as many as let every task be done exactly once.
+        human: the human population, or the word by which `hthor.humans.population.resolve` finds it.
+        participants: how many; by default the number that is needed to do every task exactly once.
         assets_sha256: hash of the robots' pictures, as `robot_team.team_pictures_sha256`; None: of our own furniture.
         step_limit_s: seconds that submitted agents have for each action; None for the usual deadline.
     """

@@ -33,7 +33,7 @@ class TaskSelection(Struct, frozen=True, kw_only=True):
         suite: the tasks, under the name of the suite that they are from.
         kind: the task kind that the suite was narrowed to, None for all of them.
         kind_path: the file of a user's own kind.
-        generated: the tasks were generated for this run.
+        generated: whether the tasks were generated for this run.
         robots: the robots that all task kinds are made for; empty when the kinds differ.
         notes: sentences for the user.
         limit: how many tasks were chosen, None for all.
@@ -83,7 +83,7 @@ def checked_suite(name_or_path: str) -> Suite:
 
     Raises:
         UnknownName: when no suite has that name.
-        TaskError: as `hthor.tasks.suite`, or naming the tasks that cannot be run.
+        TaskError: as in `hthor.tasks.suite`, or names the tasks that cannot be run.
     """
     if name_or_path in tasks.suite_names() or not Path(name_or_path).exists():
         return tasks.load_suite(name_or_path)
@@ -202,7 +202,7 @@ def _whole_suite(suite: Suite) -> TaskSelection:
 
 
 def _from_user_kind(path: str, suite: str) -> TaskSelection:
-    """The tasks of a user's kind: those of a suite, or one in each of the houses that ship with hthor."""
+    """The tasks of a user's kind: those of a suite, or one task in each of the houses that ship with hthor."""
     kind = _load_user_kind(path)
     chosen, missing = (_only_kind(checked_suite(suite), kind.name), ()) if suite else _generated_tasks(kind, path)
     return TaskSelection(

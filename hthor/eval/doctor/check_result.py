@@ -11,7 +11,7 @@ SCHEMA = "hthor.doctor/1"
 class CheckResult(Struct, frozen=True, kw_only=True):
     """One check: ``fail`` if evaluations do not work or cannot be trusted, ``warn`` if something is unusual.
 
-    ``fix`` is what to do about it, a command wherever there is one; empty where all is well.
+    ``fix`` says what to do about it, if possible as a command; it is empty where all is well.
     """
 
     name: str

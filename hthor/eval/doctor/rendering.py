@@ -23,7 +23,7 @@ class RenderingProbe(Struct, frozen=True, kw_only=True):
 
 
 def check_rendering(drawn: RenderingProbe | str) -> list[CheckResult]:
-    """The checks of what the process rendered."""
+    """Check the frames that the process rendered."""
     if isinstance(drawn, str):
         says = f"the process that draws a frame failed: {drawn}"
         return [CheckResult(name="pictures", status="fail", says=says, fix=f"{_CURE}; or MUJOCO_GL=osmesa")]

@@ -1,4 +1,4 @@
-"""Joining the shards of a run in one folder: each record once, and what is still missing."""
+"""Joining the shards of a run in one folder: each record once; also lists missing trials."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -39,7 +39,7 @@ class MissingTrials(Struct, frozen=True, kw_only=True):
 
 
 class MergeResult(Struct, frozen=True, kw_only=True):
-    """What a merge did: how many trials there are now, how many of them are new; the result when none is missing."""
+    """The result of a merge: the numbers of trials now and of new trials; the run's result when none is missing."""
 
     folder: str
     plan: RunConfig
@@ -66,14 +66,14 @@ def merge_shards(folders: Sequence[Path], out: Path, *, dry: bool = False) -> Me
     """Join shards, all or some of them, in a folder that is then like an undivided run's.
 
     Shards may overlap and come from different divisions, such as thirds and halves. Records are written in the order of
-    participants and their trials. Trials that ``out`` has already stay, so merging again adds what is new.
+    participants and their trials. Trials that ``out`` has already stay, so merging again adds only new trials.
 
     Args:
         dry: only count; nothing is written.
 
     Raises:
-        RunError: when a folder is no shard, the shards belong to different runs, a record is damaged, or a trial occurs
-            twice with different records.
+        RunError: when a folder is not a shard, the shards belong to different runs, a record is damaged, or a trial
+            occurs twice with different records.
         RunLocked: when another process writes ``out``.
     """
     folders = list({folder.resolve(): folder for folder in folders}.values())  # each folder counts once
@@ -180,7 +180,7 @@ def _gaps(shards: Sequence[_ShardLog], out: Path, missing: int) -> tuple[Missing
     """The missing trials of each shard. Of several folders of one shard, the one with most trials is continued."""
     first = shards[0]
     of, base = first.shard.of, whole_folder(first.folder.path)
-    if any(shard.shard.of != of for shard in shards):  # the undivided command runs just what is missing
+    if any(shard.shard.of != of for shard in shards):  # the undivided command runs only missing trials
         command = cli_command.resume_command(out, first.config.whole)
         return (MissingTrials(number=1, of=1, trials=missing, command=command),)
     gaps = []

@@ -49,14 +49,14 @@ class Metric(Struct, frozen=True):
 
     Attributes:
         name: its key in `trials.jsonl` and `result.json`.
-        title: how tables name it. short: the same for narrow columns. abbreviation: as in papers, such as TWSR.
+        title: its name in tables. short: a shorter title for narrow columns. abbreviation: as in papers, such as TWSR.
         formula: the function that computes a trial's value; its docstring is the metric's documentation.
-        unit: what it is shown in. decimals: how many of them in a report.
-        better: "higher" or "lower"; empty where neither is.
+        unit: the unit in which values are shown. decimals: the number of decimals in a report.
+        better: "higher" or "lower"; empty where neither is better.
         rank: the place in tables, the lowest first.
         main: whether every table and comparison has it; others are counted in detail (`hthor score --all`).
         section: the part of a report that has it, "messages" or "bodies"; every metric that is not main has one.
-        part_of: the metric whose parts this one counts, which tables show indented below it.
+        part_of: the metric of which this metric counts a part; tables show this one indented below it.
         by_seat: whether a trial has several values, by name of a seat or of a pair of seats.
         needs_robot: whether it has no value in a trial without a robot.
         optional: whether tables leave it out where no trial has a value.

@@ -1,4 +1,4 @@
-"""The values of all metrics in one trial, and as columns over several."""
+"""The values of all metrics in one trial, and as columns over several trials."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class MetricValues(Struct, frozen=True, kw_only=True):
         return value
 
     def number(self, metric: str) -> float:
-        """The value of a metric that every trial has; raises ValueError when this one has none."""
+        """The value of a metric that every trial has; raises ValueError when this trial has none."""
         value = self[metric]
         if value is None:
             raise ValueError(f"this trial has no value for '{metric}'")

@@ -1,6 +1,6 @@
 """Files that agents opened only during trials: joined over a run's trials, and compared with the disk.
 
-`run.json` lists what an agent consists of before the first trial; each trial's record lists what it opened later.
+`run.json` lists an agent's files before the first trial; each trial's record lists files that it opened later.
 """
 
 from collections.abc import Iterable, Mapping, Sequence

@@ -1,7 +1,7 @@
 """The platforms that ran a run's trials, kept in `platform.json`.
 
 Several commands on several machines may work on one run, so the file is a list. It is not part of the run's
-configuration: equal platforms give equal bytes, different ones may not.
+configuration: equal platforms give equal bytes, different platforms may not.
 """
 
 import platform
@@ -33,7 +33,7 @@ def this_platform() -> Platform:
 
 
 def platform_differences(there: Platform, here: Platform) -> list[str]:
-    """What differs between two platforms, in words."""
+    """The differences between two platforms, in words."""
     names = [name for name in sorted({*there, *here}) if there.get(name) != here.get(name)]
     return [f"{name} {here.get(name, 'unknown')} here, {there.get(name, 'unknown')} there" for name in names]
 
@@ -49,6 +49,6 @@ def join(out: Path, folders: Iterable[Path], more: Iterable[Platform] = ()) -> N
 
 
 def load(folder: Path) -> tuple[Platform, ...]:
-    """The platforms of the run in a folder; empty where they were not noted. Raises RunError for a damaged file."""
+    """The platforms of the run in a folder; empty if no platform was noted. Raises RunError for a damaged file."""
     hint = "delete the file; the run is then of unknown platforms"
     return documents.read_or_none(folder / NAME, tuple[Platform, ...], RunError, hint=hint) or ()

@@ -18,7 +18,7 @@ from hthor.eval.records.trial_record import TrialRecord
 from hthor.guest import Isolation
 
 _WRITTEN_FIRST = (".lock", trial_log.NAME, ".run.json.*", "control")
-"""What a command that was killed before it wrote `run.json` may leave."""
+"""Files that a command may leave if it is killed before it writes `run.json`."""
 
 
 class RunFolder:
@@ -127,7 +127,7 @@ class RunFolder:
         """Check that a run can be written here: the folder is absent, empty, or holds a part of the same run.
 
         Raises:
-            RunError: when the folder holds another run, naming what differs, or other files.
+            RunError: when the folder holds other files or another run; names the differences.
         """
         if not self.path.exists():
             return

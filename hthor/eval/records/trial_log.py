@@ -84,7 +84,7 @@ class TrialLog:
 
     Raises:
         RunLocked: when another process is writing this run.
-        RunError: when a line is damaged; later, when one cannot be written.
+        RunError: when a line is damaged; later, when a line cannot be written.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -126,7 +126,7 @@ class TrialLog:
         try:
             while written < len(line):
                 written += os.write(self._file, line[written:])
-        except OSError as error:  # a full disk; if the cut fails, the next command does it
+        except OSError as error:  # a full disk; if this fails, the next command cuts
             with contextlib.suppress(OSError):
                 os.ftruncate(self._file, self._size)
             raise self._unwritten(error) from None
@@ -143,7 +143,7 @@ class TrialLog:
             return
         try:
             os.fdatasync(self._file)
-        except OSError as error:  # some file systems learn only now that there is no room
+        except OSError as error:  # some file systems report only now that the disk is full
             raise self._unwritten(error) from None
         self._dirty_since = None
 
@@ -180,7 +180,7 @@ def lock(folder: Path) -> int:
 
 
 def cut_torn_lines(path: Path) -> int:
-    """Cut what a killed writer or machine left after the last whole line; returns the number of bytes cut.
+    """Cut the bytes that a killed writer or machine left after the last whole line; returns the number of bytes cut.
 
     A loss of power may leave a hole of zeros where blocks did not reach the disk, with later lines after it; no record
     has a zero byte. Trials that are cut are run again.

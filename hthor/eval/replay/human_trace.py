@@ -1,4 +1,4 @@
-"""What the human model thought in a logged trial; used by `hthor replay --mind`.
+"""Finds out the human model's thoughts in a logged trial, for `hthor replay --mind`.
 
 The log has no thoughts. But sessions are deterministic, so the trials up to the one in question are simulated again,
 and in that one the model reports its thoughts. Reporting changes nothing, which is checked: the record of the trial

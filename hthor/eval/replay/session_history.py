@@ -27,7 +27,7 @@ Choose = Callable[[RunFolder, RobotSeat, Sequence[AgentInfo]], AgentInfo]
 
 
 class RunFiles(Struct, frozen=True, kw_only=True):
-    """The user's files that a trial needs and a run's folder does not hold, as the user typed them.
+    """Files of the user's that a trial needs and that a run's folder lacks, as the user typed them.
 
     Attributes:
         agents: the submitted agents.
@@ -122,7 +122,7 @@ def replay_sources(
 
 
 def same_agent(folder: RunFolder, seat: RobotSeat, given: Sequence[AgentInfo]) -> AgentInfo:
-    """The agent that the run was run with, unchanged.
+    """The agent of the run, unchanged.
 
     Raises:
         HthorError: when it is not among the given agents; says which of its files changed.

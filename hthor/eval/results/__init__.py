@@ -1,1 +1,1 @@
-"""From a run's records to its result."""
+"""Computes a run's result from its records."""

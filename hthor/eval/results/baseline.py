@@ -53,7 +53,7 @@ def find_baseline(folder: Path, plan: RunConfig) -> tuple[RunConfig, list[TrialR
 
 
 def baseline_folder(folder: Path, plan: RunConfig) -> Path | None:
-    """The folder of a run's baseline: in its own folder, next to it, or wherever runs usually are."""
+    """The folder of a run's baseline: in the run's folder, next to it, or in the usual places of runs."""
     return next((candidate for candidate, _, _ in _whole(folder, plan, _anywhere(folder))), None)
 
 

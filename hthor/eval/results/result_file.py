@@ -99,7 +99,7 @@ class StoredUplift(Uplift, frozen=True, kw_only=True):
 
 
 class Effort(Struct, frozen=True, kw_only=True):
-    """What the command that finished the run spent: wall-clock time, CPU time, and trials.
+    """The cost of the command that finished the run: wall-clock time, CPU time, and trials.
 
     ``replays`` counts sessions that began again because a worker or an agent's process was ended from outside.
     """
@@ -153,7 +153,7 @@ def load_result(folder: Path) -> RunResult | None:
 
 
 def load_current(folder: Path) -> RunResult | None:
-    """The stored result of a run as by `load_result`; None also for one in another version of the format."""
+    """The stored result of a run as by `load_result`; None also for a result in another version of the format."""
     return None if is_outdated(folder / "result.json") else load_result(folder)
 
 

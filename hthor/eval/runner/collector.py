@@ -27,7 +27,7 @@ class Unfinished(RunError):
 
 
 class InternalFailure(HthorError):
-    """A trial failed because of a bug of ours."""
+    """A trial failed because of a bug in hthor."""
 
     exit_code = 1
 

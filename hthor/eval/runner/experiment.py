@@ -50,14 +50,14 @@ def run_experiment(
     resolved = run_options.resolve_options(options)
     for scheduled in (*resolved.runs, *resolved.baseline_of.values()):
         scheduled.folder.check_free(scheduled.config)
-        _engine(options, scheduled)  # raises if there is no such engine
+        _engine(options, scheduled)  # raises if the engine does not exist
         _weakest_isolation(options, scheduled)
     if confirm(resolved):
         yield from _Experiment(options, make_watcher).run(resolved)
 
 
 class _Experiment:
-    """Runs what some options stand for; remembers which notes were given and which runs ended incomplete."""
+    """Plays the runs that some options stand for; remembers which notes were given and which runs ended incomplete."""
 
     def __init__(self, options: RunOptions, make_watcher: Callable[[str], Watcher]) -> None:
         self._options, self._make_watcher = options, make_watcher

@@ -1,7 +1,7 @@
-"""How an agent came to fail, for its author; no score depends on it.
+"""Reports of agents' failures for their authors; no score depends on them.
 
-The trial's record has the fault itself. A fault report adds what the agent printed last, what it was given and what it
-did. A run keeps the first reports of each kind of fault as `faults/KEY.json`, so that many faults fill no disk.
+The trial's record has the fault itself. A fault report adds the agent's last output, observations and actions. A run
+keeps the first reports of each kind of fault as `faults/KEY.json`, so that many faults cannot fill the disk.
 """
 
 from __future__ import annotations
@@ -69,12 +69,12 @@ class RecordedAgent:
 
     @property
     def output(self) -> str:
-        """The end of what it printed."""
+        """The end of the agent's output."""
         return str(getattr(self.mind, "log", ""))
 
 
 class Look(Struct, frozen=True, kw_only=True):
-    """One step of the agent: what it could read at once, and its action; null when it failed there."""
+    """One step of the agent: the observation without its sensors, and its action; null if it failed there."""
 
     tick: int
     observation: dict[str, Any]

@@ -1,4 +1,4 @@
-"""What workers and engines report of sessions."""
+"""Messages of workers and engines about sessions."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ class TrialDone(Struct, frozen=True, kw_only=True):
 
     Attributes:
         line: its record as a line of the log.
-        met: the goal was met.
-        faulty: an agent failed in it; ``fault_report`` says how, where that is known.
-        killed: an agent's process was killed, apparently from outside; its session may be restarted.
+        met: whether the goal was met.
+        faulty: whether an agent failed in it; ``fault_report`` says how, if that is known.
+        killed: whether an agent's process was killed, apparently from outside; its session may be restarted.
     """
 
     key: str
@@ -57,7 +57,7 @@ class SessionAbandoned(Struct, frozen=True, kw_only=True):
 
     Attributes:
         detail: the traceback of a bug, otherwise empty.
-        killed: an agent's process was killed, apparently from outside, before it could say what it is.
+        killed: whether an agent's process was killed, apparently from outside, before the agent was known.
     """
 
     participant: int

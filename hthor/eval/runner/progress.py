@@ -24,7 +24,7 @@ class Watcher:
         """Some time passed; called at least every `hthor.eval.records.trial_log.BEAT_S`."""
 
     def note(self, text: str) -> None:
-        """Something that the user should read."""
+        """Show a text that the user should read."""
 
     def close(self) -> None:
         """The run is over."""

@@ -1,4 +1,4 @@
-"""One run as a job: its configuration, team, humans, tasks, and where everything lies that a worker needs."""
+"""One run as a job: its configuration, team, humans, tasks, and the paths of everything that a worker needs."""
 
 import functools
 from pathlib import Path
@@ -75,7 +75,7 @@ class ScheduledRun(RunJob, frozen=True, kw_only=True):
     """A run that a command will run or resume, and where it is written.
 
     Attributes:
-        title: what progress messages call it.
+        title: the run's name in progress messages.
         isolation: how its submitted agents are isolated on this machine; None where all agents are built in.
     """
 

@@ -256,7 +256,7 @@ def parse_max_faults(text: str) -> Callable[[int], float]:
     """How many of a number of trials may have a fault, for a text such as "3" or "5%".
 
     Raises:
-        HthorError: when it is neither a number nor a share of trials.
+        HthorError: when the text is neither a number nor a share of trials.
     """
     number, percent = text.strip().removesuffix("%"), text.strip().endswith("%")
     try:

@@ -43,7 +43,7 @@ def load_pack(assets: str) -> Pack | None:
 
 
 class Sources(Struct, frozen=True, kw_only=True):
-    """Where the parts of a trial are that do not ship with hthor.
+    """The places of those parts of a trial that do not ship with hthor.
 
     Attributes:
         agent_paths: the submitted agents, by seat; ``manifests`` lists their files, by seat.
@@ -69,8 +69,8 @@ class TrialRunner:
     """Runs trials, and keeps worlds for the next trial in the same house.
 
     Args:
-        sources: where everything is that does not ship with hthor.
-        pool: idle processes of submitted agents to use and to leave; without one they end with their session.
+        sources: the places of everything that does not ship with hthor.
+        pool: keeps idle processes of submitted agents for later sessions; without it they end with their session.
     """
 
     def __init__(self, sources: Sources | None = None, pool: GuestPool | None = None) -> None:
@@ -244,7 +244,7 @@ class Participants:
         return dict(self.agents)
 
     def finish_trial(self) -> None:
-        """The trial is over: agents that clean up for the next one may do so now."""
+        """The trial is over: agents that clean up for the next trial may do so now."""
         for agent in self.agents.values():
             if (finish := getattr(agent, "finish", None)) is not None:
                 finish()

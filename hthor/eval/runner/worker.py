@@ -1,4 +1,4 @@
-"""A worker process: takes sessions, and sends back what happened in them, trial by trial."""
+"""A worker process: takes sessions, and sends back their results, trial by trial."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def run_worker(pipe: Connection, make: RunnerFactory, parent: int) -> None:
         parent: id of the process that started this one; this one ends with it.
     """
     end_with_parent(parent)
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole group; the parent decides what it means
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches the whole group; the parent handles it
     signal.signal(signal.SIGTERM, lambda *_: None)  # likewise; SIG_IGN would also hold for the processes that it starts
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     player = SessionPlayer(make)

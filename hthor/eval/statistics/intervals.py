@@ -1,4 +1,4 @@
-"""Means with honest intervals."""
+"""Means with intervals that allow for trials that share tasks and people."""
 
 import math
 from collections.abc import Sequence

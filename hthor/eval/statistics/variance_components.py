@@ -1,6 +1,6 @@
 """How far a mean may be from the truth when trials share tasks and people.
 
-A trial's value is taken as the sum of a mean, what its task adds, what its person adds, and the rest. The variances of
+A trial's value is modelled as the sum of a mean, a part of its task, a part of its person, and a rest. The variances of
 the three are estimated from sums of squares by their expectations (Henderson's first method), for any design: everyone
 does everything, every task is done once, or anything between.
 """

@@ -1,4 +1,4 @@
-"""A person who knows where everything is and does a task alone, in the real world.
+"""A person who knows where everything is and does a task alone, in the simulated world.
 
 The walk is the shortest there is, at `PACE_M_S`, which is slow; turning and handling take as long as the avatar's body
 needs, and nothing else takes any time. So a person can be quicker only by walking faster, and the least time is never
@@ -59,7 +59,7 @@ def solve(world: World, task: TaskSpec, *, limit_s: float | None = None) -> Solu
     """Do a task from its start to its end.
 
     Args:
-        world: of the task's house, with its objects; it is reset here. Robots in it stand still.
+        world: the world of the task's house, with its objects; it is reset here. Robots in it stand still.
         limit_s: how long it may take [s]; the task's own limit when None.
     """
     return _Performance(world, task, task.time_limit if limit_s is None else limit_s).run()

@@ -1,4 +1,4 @@
-"""What became of the robots' messages, and how good they were as a channel."""
+"""Metrics of the robots' messages: their outcomes, and how good they were as a channel."""
 
 import functools
 
@@ -56,7 +56,7 @@ def precision(trial: Trial) -> float | None:
 
 
 def first_useful(trial: Trial) -> float | None:
-    """Seconds until a robot sent the first true claim that the human accepted; only trials with one."""
+    """Seconds until a robot sent the first true claim that the human accepted; only trials with such a claim."""
     accepted = _true_claims(trial.log) & _accepted(trial.log)
     ticks = [event.tick for event in _sent(trial.log) if event.data.get("message") in accepted]
     return min(ticks) * rules.TICK_S if ticks else None
@@ -78,13 +78,13 @@ def useful(trial: Trial) -> int:
 
 
 def usefulness(trial: Trial) -> float | None:
-    """Share of the accepted messages that were `useful`; only trials with an accepted one."""
+    """Share of the accepted messages that were `useful`; only trials with an accepted message."""
     accepted = len(_accepted(trial.log) & _robot_messages(trial.log))
     return useful(trial) / accepted if accepted else None
 
 
 def _sent(log: EpisodeLog) -> list[Event]:
-    """The messages of robots."""
+    """The events that robots sent messages."""
     return [event for event in log.events if event.kind == "sent" and event.seat != HUMAN]
 
 

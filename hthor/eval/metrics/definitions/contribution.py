@@ -1,4 +1,4 @@
-"""Which seat did how much of what was achieved in a trial."""
+"""The metric of contribution: each seat's share of what was achieved in a trial."""
 
 from collections.abc import Iterator, Sequence
 
@@ -69,7 +69,7 @@ def _take_back(ledger: list[tuple[float, Credit]], fall: float) -> None:
 
 
 def _credit(spec: TrialSpec, log: EpisodeLog, tick: int) -> Credit:
-    """The seats that brought about what was achieved at ``tick``; empty when nobody had acted before."""
+    """The seats' credit for the progress made at ``tick``; empty when nobody had acted before."""
     past = [event for event in log.events if event.tick <= tick]
     if all(job.relation == "find" for job in spec.task.goal.todo):
         parts = [(HUMAN,), *_openers(past, [_start(spec, job.target) for job in spec.task.goal.todo])]
@@ -112,7 +112,7 @@ def _openers(past: Sequence[Event], things: Sequence[str]) -> list[tuple[str, ..
 
 
 def _start(spec: TrialSpec, object_: str) -> str:
-    """What the object rests on or in when the trial begins."""
+    """The furniture that the object rests on or in when the trial begins."""
     return next((placed.support for placed in spec.task.objects if placed.id == object_), "")
 
 

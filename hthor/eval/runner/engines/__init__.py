@@ -1,4 +1,4 @@
-"""Engines run sessions on one machine or many: one file for each engine, and here what they share.
+"""Engines run sessions on one machine or many: one file per engine; this file has their common parts.
 
 An engine reports every trial at least once. A trial depends only on its specification, so one that is run again gives
 the same record, and the listener keeps it once. Engines read and write no files.
@@ -29,9 +29,9 @@ LOCAL = "local"
 ATTEMPTS = 3
 """How many workers a session may end before it is given up. Our choice."""
 LIMIT_S = 600.0
-"""How long [s] a worker may take for a trial: a hundred times what one takes, as the first also builds a world."""
+"""How long [s] a worker may take for a trial: a hundred times the usual time, as the first also builds a world."""
 _GUEST_S, _GUEST_STEP_S, _SLACK_S = 300.0, 5.0, 1.0
-"""What a submitted agent adds [s]: for its start, for each step (its default deadline), and a margin for each step."""
+"""Time of a submitted agent [s]: for its start, for each step (its default deadline), and a margin for each step."""
 _LEAP_S = 1.0
 """If a clock is not read for longer than this [s], the process is assumed to have been stopped."""
 

@@ -126,7 +126,7 @@ class _Worker:
 
     @property
     def cause(self) -> str:
-        """What ended a dead worker."""
+        """The reason why a dead worker ended."""
         code = self.process.exitcode
         if self._stuck:
             return self._stuck
@@ -147,7 +147,7 @@ class _Worker:
 
 @contextmanager
 def _quiet_environment() -> Iterator[None]:
-    """What new workers inherit: one thread per library, compiled code of this version only, and no Ctrl-C for now."""
+    """Set what new workers get: one thread per library, compiled code of this version only, and no Ctrl-C for now."""
     before = dict(os.environ)
     mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     os.environ.update(ONE_THREAD, PYTHONHASHSEED="0")
