@@ -59,9 +59,9 @@ def calibrate(
 ) -> None:
     """Fit the human proxies to published results, or to logs of sessions.
 
-    Everything that was simulated is kept: the same command resumes an interrupted calibration, and a larger one goes on
-    from a smaller. The folder holds the population (population.npz and .json), the evidence for it, and the tables of
-    simulated trials. Exit code 1 when a gate was not passed.
+    Everything that was simulated is kept: the same command resumes an interrupted calibration, and a larger calibration
+    continues a smaller one. The folder holds the population (population.npz and .json), the evidence for it, and the
+    tables of simulated trials. Exit code 1 when a gate was not passed.
     """
     targets = tuple(target or ("paper",))
     if all(_is_log(word) for word in targets):

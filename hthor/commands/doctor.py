@@ -28,9 +28,9 @@ def doctor(
 ) -> None:
     """Check that this machine can run evaluations, and say how to fix what does not work.
 
-    Starts a guest on each level of isolation, draws a frame, plays a trial and compares it with the one that ships, and
-    looks at versions, extras, disk, memory, cores and environment. Writes nothing and uses no network. Exit code 5 when
-    something that is needed does not work; a warning is not a failure.
+    Starts a guest on each level of isolation, draws a frame, plays a trial and compares it with the reference that
+    ships, and looks at versions, extras, disk, memory, cores and environment. Writes nothing and uses no network. Exit
+    code 5 when something that is needed does not work; a warning is not a failure.
     """
     if write_reference:
         _renew(json)

@@ -204,7 +204,7 @@ def _put_findings(findings: Sequence[Finding]) -> None:
 
 
 def _made(seed: int, rooms: int | None, count: int) -> Iterable[ValidHome]:
-    """The homes of ``count`` seeds one by one, with progress on standard error where somebody watches."""
+    """The homes of ``count`` seeds one by one, with progress on standard error if it is a terminal."""
     from tqdm import tqdm
 
     from hthor.world.validation import house_soundness

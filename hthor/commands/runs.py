@@ -1,4 +1,4 @@
-"""`hthor runs`: the runs that lie in folders."""
+"""`hthor runs`: lists of runs, and single runs."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def list_runs(
 ) -> None:
     """List the runs below a folder, latest first: agents, people, progress and success.
 
-    A run that cannot be read is listed with what is wrong with it.
+    A run that cannot be read is listed with the reason.
     """
     from hthor.errors import RunError
     from hthor.eval import browse
@@ -82,7 +82,7 @@ def view_run(
 ) -> None:
     """Show a run's result, faults and trials, and the next commands.
 
-    Any option that chooses trials lists those that fit. CSV has the trials alone.
+    Any option that chooses trials also lists the trials that fit. CSV has only the trials.
     """
     from hthor.eval import browse
     from hthor.report.terminal import result_tables

@@ -161,7 +161,7 @@ def _proof() -> Proof:
 
 
 def _each(jobs: int | None, total: int) -> MapHouses:
-    """A function that makes houses in several processes, with progress on standard error where somebody watches."""
+    """A function that makes houses in several processes, with progress on standard error if it is a terminal."""
     import functools
     import os
     from concurrent.futures import ProcessPoolExecutor

@@ -157,7 +157,7 @@ def _verdict_row(suite: Suite, verdicts: Sequence[TaskVerdict]) -> dict[str, Any
 
 @contextmanager
 def _watched(name: str, total: int, quiet: bool, unit: str = "tasks") -> Iterator[Callable[[bool], None]]:
-    """Progress on standard error: a bar where somebody watches, a line now and then where nobody does."""
+    """Progress on standard error: a bar on a terminal, otherwise a line now and then."""
     done, bad, said = 0, 0, time.monotonic()
     first: tuple[int, float] | None = None
     bar = None
