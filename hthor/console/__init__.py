@@ -1,1 +1,1 @@
-"""What all commands share: output, tables, help texts, completion and exit codes."""
+"""Parts that all commands share: output, tables, help texts, completion and exit codes."""

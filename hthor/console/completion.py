@@ -1,4 +1,4 @@
-"""What the shell offers for a value when the user presses the tab key: names of what ships, and folders of runs.
+"""The values that the shell offers when the user presses the tab key: built-in names, and folders of runs.
 
 Names are read from file names, and nothing heavy is imported, so that the tab key answers at once. Where no name fits,
 the shell offers files, as most values may be files too.
@@ -110,7 +110,7 @@ OFFERS: dict[str, list[str] | Callable[..., list[str]]] = {
 
 
 def attach(app: typer.Typer, group: str = "") -> None:
-    """Have every command of the tree offer values for the parameters that have some."""
+    """Have every command of the app offer values for those parameters that have offers."""
     for command in app.registered_commands:
         if command.callback is None:
             continue

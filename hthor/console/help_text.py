@@ -1,4 +1,4 @@
-"""`--help`: what a person types on the left, what it means on the right, readable in 80 columns."""
+"""`--help`: words to type on the left, their meaning on the right, readable in 80 columns."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 _BREAK = re.compile(r"(?<!\n)\n(?!\n)")
 _LEFT = 26
-"""Columns for names; a longer one stands on a line of its own, so that at 80 columns 50 are left for what it means."""
+"""Columns for names; a longer name has a line of its own, so that of 80 columns 50 are left for the meaning."""
 _PLAIN: Any = {"highlight": False, "soft_wrap": True}
 _AT_LEAST = re.compile(r"\bx>=(\S+?)(?=[\];])")
 _TYPES = {"str": None, "int": "N", "int range": "N", "float": "X", "float range": "X", "path": "PATH"}
@@ -31,7 +31,7 @@ def unbroken(text: str) -> str:
 
 
 def attach(app: typer.Typer) -> None:
-    """Give every command of the tree this help."""
+    """Give every command of the app this help."""
     app.info.cls = HelpGroup
     for command in app.registered_commands:
         text = command.help or (command.callback and command.callback.__doc__) or ""

@@ -1,4 +1,4 @@
-"""Printing: data go to standard output, talk to standard error."""
+"""Printing: data go to standard output, messages to standard error."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def say(text: str, to: Console | None = None) -> None:
 
 
 def live() -> bool:
-    """Whether somebody watches standard error on a terminal that can be redrawn."""
+    """Whether standard error is a terminal that can be redrawn, and this is not a CI job."""
     return sys.stderr.isatty() and os.environ.get("TERM") != "dumb" and not os.environ.get("CI")
 
 

@@ -1,4 +1,4 @@
-"""Tables on narrow screens: no number or name is split; columns are dropped, and at last rows become lists."""
+"""Tables on narrow screens: no number or name is split; columns are dropped, and as a last step rows become lists."""
 
 import copy
 import re

@@ -46,7 +46,7 @@ def shown(arguments: Sequence[str], groups: Collection[str] = ()) -> Iterator[No
 
 
 class _Notice:
-    """Watches what is written, and writes a notice when nothing is."""
+    """Watches the command's output, and writes a notice when there is none."""
 
     def __init__(self, name: str, *, live: bool) -> None:
         self._name, self._live = name, live
@@ -67,7 +67,7 @@ class _Notice:
             self._wipe()
 
     def hear(self, step: str) -> None:
-        """Note what the command is doing now."""
+        """Note the command's current step."""
         self._step = step
 
     def write(self, stream: Any, text: str) -> Any:
@@ -96,7 +96,7 @@ class _Notice:
         try:
             self._stream.write(text)
             self._stream.flush()
-        except (OSError, ValueError):  # the reader has gone
+        except (OSError, ValueError):  # the reader of the output has gone
             self._over.set()
 
     def _wipe(self) -> None:
