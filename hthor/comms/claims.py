@@ -17,7 +17,7 @@ def claim_error(send: Send, position: Vec3 | None, snapshot: Snapshot, house: Ho
     A message claims something when it names an ``object`` and a ``position``: that the thing of this id, or a thing of
     this kind, is there. ``off`` is the distance from there to the nearest such thing: to the centre of an object that
     can be carried, the outline on the plan of furniture in its place, a room's edge (0 within) or a body's axis. It is
-    None when there is no such thing at all; naming that is a false claim even without a position.
+    None when there is no such thing at all; naming it is then a false claim, even without a position.
 
     Args:
         position: of the claim [m], as the mailbox parsed it. snapshot: the true state when the message is sent.

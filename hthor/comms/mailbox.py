@@ -1,7 +1,7 @@
 """The mailbox of a trial: robots send messages, the person accepts or declines them.
 
-A message is first "sent", then "shown" to the person, and ends as "confirmed" (accepted), "declined" or "covered"; one
-that is never answered stays sent or shown. At most one message is open: a new one, from any robot, covers it.
+A message is first "sent", then "shown" to the person, and ends as "confirmed" (accepted), "declined" or "covered"; a
+message that is never answered stays sent or shown. At most one message is open: a new one, from any robot, covers it.
 """
 
 import math
@@ -15,13 +15,13 @@ from hthor.types.observations import ImageSource
 
 _OPEN = ("sent", "shown")
 _NAME_MAX = 80
-"""Characters of the name of an object that a message may be about."""
+"""How many characters the name of a message's object may have."""
 _READ_FACTOR = 8
-"""A text is read only up to this many times the limit, so that a very long one costs no more."""
+"""A text is read only up to this many times the limit, so that a very long text costs no more."""
 
 
 class Mailbox:
-    """Keeps every message of a trial that the seats of ``robots`` send.
+    """Keeps every message that the seats ``robots`` send in a trial.
 
     It never raises: an invalid message or reply is refused, with a reason.
     """
