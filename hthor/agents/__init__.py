@@ -1,9 +1,9 @@
 """Built-in agents, one file each, and the template for a new one. Begin with `frontier`.
 
 An agent file defines ``class Agent`` with ``begin(briefing)`` and ``act(observation) -> Action``, see
-`hthor.types.Mind`. Optional class attributes: ``privileges`` (of "ideal_detector", "object_poses", "house_map"; they
-are printed with every result), ``robots`` (names of the bodies it is made for; empty: any), ``absent`` (True: there is
-no robot at all).
+`hthor.types.Mind`. Optional class attributes: ``privileges`` (some of "ideal_detector", "object_poses", "house_map";
+they are printed with every result), ``robots`` (names of the bodies it is made for; empty: any), ``absent`` (True:
+there is no robot at all).
 """
 
 from pathlib import Path

@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 class Agent:
     """Frontier exploration with an ideal detector within 1.5 m.
 
-    When it sees the target it says once where that is, and once more ten seconds after the message was declined. Then
-    it watches the target from a place where it blocks nobody.
+    When it sees the target, it tells the person once where that is, and again ten seconds after a declined message.
+    Then it watches the target from a place where it blocks nobody.
     """
 
     privileges = ("ideal_detector",)

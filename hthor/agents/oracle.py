@@ -15,8 +15,8 @@ class Agent:
     """Walks the shortest way to the target and speaks only when it is close enough to detect it.
 
     It cannot detect a target behind a closed door; then it speaks in front of that door. When the person has the target
-    in hand it goes on to the destination, and tells where that is. With an arm it does what it can of the task itself,
-    and leaves objects to others who are nearer to them.
+    in hand, the robot goes to the destination and tells where that is. With an arm it does what it can of the task
+    itself, and leaves objects to others who are nearer to them.
     """
 
     privileges = ("house_map", "ideal_detector", "object_poses")

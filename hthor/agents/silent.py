@@ -10,7 +10,7 @@ class Agent:
     privileges: tuple[str, ...] = ()
 
     def begin(self, briefing: Briefing) -> None:
-        """Nothing to prepare."""
+        """Do nothing."""
 
     def act(self, observation: Observation) -> Action:  # noqa: ARG002
         """Stand still, if there is a body."""

@@ -1,1 +1,1 @@
-"""What built-in agents share: exploring, moving, carrying, telling the person, sharing out jobs, making way."""
+"""Skills that built-in agents share: exploring, moving, carrying, telling the person, sharing out jobs, making way."""

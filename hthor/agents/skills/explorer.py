@@ -1,4 +1,4 @@
-"""Exploration of an unknown house with a map that grows."""
+"""Explores an unknown house with a map that grows."""
 
 import math
 from collections.abc import Sequence
@@ -77,7 +77,7 @@ class Explorer:
         self.follower.take(retreat(self.grid, self.planner, (pose.x, pose.y), point, apart_m))
 
     def drop(self) -> None:
-        """Forget where it was going."""
+        """Forget the current goal."""
         self._place = None
         self.follower.take(None)
 
@@ -187,7 +187,7 @@ def exploring_pitch(body: BodySpec) -> float:
 
 
 def _turning(pose: Pose, point: Vec2) -> float:
-    """What turning towards a point costs, in metres."""
+    """The cost of turning towards a point [m]."""
     return _TURN_M_RAD * abs(wrap(math.atan2(point[1] - pose.y, point[0] - pose.x) - pose.yaw))
 
 

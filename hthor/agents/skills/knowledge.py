@@ -1,4 +1,4 @@
-"""What a robot knows about objects and furniture, and which jobs are done."""
+"""A robot's knowledge about objects and furniture, and about jobs that are done."""
 
 import math
 from collections.abc import Iterable, Mapping
@@ -46,7 +46,7 @@ class Knowledge:
         return thing.id in job.destinations or thing.kind in job.destinations
 
     def is_shut(self, id: str) -> bool:
-        """Whether this is a thing with a door in front of what lies in it, and the door is closed."""
+        """Whether this is a thing whose content is behind a door, and the door is closed."""
         thing, state = self.things.get(id), self.states.get(id)
         return thing is not None and has_door(thing) and (state is None or not state.open)
 
@@ -66,7 +66,7 @@ class ObservedKnowledge(Knowledge):
         self.states = self._known
 
     def note(self, observation: Observation) -> None:
-        """Update from what is in view."""
+        """Update from the things in view."""
         for seen in observation.detections:
             if seen.family == "object":
                 self._known[seen.id] = ThingState(

@@ -15,7 +15,7 @@ from hthor.navigation.path_follower import Follower, face
 from hthor.types import BodySpec, Job, Motion, Observation, Open, Pick, Place, Thing, Vec2, Vec3, Wait
 
 AGAIN_S = 10.0
-"""How long an object that failed several times is left alone [s]."""
+"""How long an object is left alone after several failures [s]."""
 _REACHES = ((0.85, 0.12), (0.985, 0.045))
 """Shares of the arm's length, and the grid [m] of spots to consider: close first, then at full reach."""
 _TRIES = 6
@@ -41,7 +41,7 @@ class ManipulationGoal(Struct, frozen=True):
 
 
 class Manipulator:
-    """Carries one object after the other; leaves objects that failed several times alone for a while.
+    """Carries one object after the other; leaves an object alone for a while after several failures.
 
     ``follower`` has its current path.
     """
@@ -78,7 +78,7 @@ class Manipulator:
         return self.pursue(observation, ManipulationGoal(thing.id, ((x, y, z),), Open(thing=thing.id), thing))
 
     def drop(self) -> None:
-        """Forget where it was going."""
+        """Forget the current goal."""
         self._goal_name = ""
         self.follower.take(None)
 
@@ -123,7 +123,7 @@ class Manipulator:
         return _between(thing, inset_m, self.body.reach_low, self.body.reach_high - 0.1)
 
     def _room_for(self, job: Job, thing: Thing, knowledge: Knowledge) -> tuple[Vec3, ...]:
-        """Where on the thing the object fits next to what is known to lie there; anywhere if it fits nowhere."""
+        """Points [m] on the thing where the object fits next to objects known to lie there, or else all points."""
         states = knowledge.states
         wide = _wide(states[job.target].kind)
         points = self._in_reach(thing, wide)
@@ -170,7 +170,7 @@ class Manipulator:
         return True
 
     def _is_taken(self, observation: Observation) -> bool:
-        """Whether the body that it ran into stands where it wants to stand."""
+        """Whether the body that this body ran into stands at the spot that this body wants."""
         spot = self.follower.goal
         return spot is None or self.yielding.is_taken(observation, spot)
 

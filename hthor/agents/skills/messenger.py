@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from hthor.navigation.path_follower import Follower
 
 _LOOKS = 3
-"""Places to look from before saying that the target must be in there: a low camera cannot see into a sink."""
+"""How many places to look from before saying that the target must be in it: a low camera cannot see into a sink."""
 _MOST = {"target": 3, "destination": 1, "help": 4, "done": 1}
 _UNANSWERED_S, _CONFIRMED_S = 8.0, 20.0
 """How long to stay with an object after a message [s]: without an answer, and once the person has accepted."""
@@ -36,8 +36,7 @@ _UNANSWERED_S, _CONFIRMED_S = 8.0, 20.0
 class Messenger:
     """Tells the person about one job at a time: about the object, and once they hold it, about its destination.
 
-    It speaks only when close enough to detect the thing; for a thing behind a closed door it speaks in front of the
-    door.
+    It speaks only when close enough to detect the thing; for a thing behind a closed door, at the door.
     """
 
     def __init__(
@@ -103,7 +102,7 @@ class Messenger:
         return self.timing(job, "target").sent >= _MOST["target"]
 
     def topic(self, job: Job) -> tuple[str, Vec3]:
-        """What to show now, the target or the destination, and where it is [m]."""
+        """The topic to show now, "target" or "destination", and its position [m]."""
         target = self.knowledge.states[job.target]
         if target.held_by == HUMAN:
             where = self._belongs(job, target)
@@ -145,7 +144,7 @@ class Messenger:
         return self._note(observation, job, "target", message)
 
     def ask_for_help(self, observation: Observation, job: Job) -> Send | None:
-        """A request to take the other end of a thing that is too heavy for one."""
+        """A request to take the other end of a thing that is too heavy for one body."""
         state = self.knowledge.states[job.target]
         if not self.is_due(observation, job, "help"):
             return None
@@ -241,7 +240,7 @@ class Messenger:
         self.follower.take((via, *self.routes.to_view(via, where, self.misses)))
 
     def stand_aside(self, observation: Observation, where: Vec3, topic: str) -> Motion:
-        """Go, once, where it blocks nobody."""
+        """Go to a spot where the robot blocks nobody, once."""
         if self.aside == topic:
             return Wait(seconds=0.5)
         self.aside = topic

@@ -103,12 +103,12 @@ class MultiObjectFrontier:
         return can_do(self.briefing.body, state.kind, job, shut) and (job.hands > 1 or bool(self.seen.bearers(job)))
 
     def _waits(self, job: Job) -> ThingState | None:
-        """The object, when it was seen, nobody holds it, and it is not where it belongs."""
+        """The job's object, if it was seen, nobody holds it, and it is not where it belongs."""
         state = self.seen.states.get(job.target)
         return None if state is None or state.held_by or self.seen.is_done(job) else state
 
     def _look_back(self, observation: Observation) -> None:
-        """After the last motion: leave alone what was misplaced, and forget what was not there."""
+        """After the last motion: leave a misplaced object alone, and forget an object that was not there."""
         job, outcome, placed = self.mine, observation.outcome, self.placing
         if job is None or outcome is None:
             return

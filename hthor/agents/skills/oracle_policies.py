@@ -23,7 +23,7 @@ _PATIENCE_S = 25.0
 
 
 class SingleTaskOracle:
-    """One robot's policy for one trial; what differs with several jobs or robots is overridden by `TeamOracle`.
+    """One robot's policy for one trial; `TeamOracle` overrides the parts that differ with several jobs or robots.
 
     Attributes:
         mine: the job that this robot does itself now. done: the job that it has just finished.

@@ -59,7 +59,7 @@ class HouseRoutes:
         return self.geodesics.path(self.space.nearest_free(*here), spot)
 
     def broad(self, here: Vec2, spot: Vec2) -> tuple[Vec2, ...]:
-        """A short path with room to pull something broad along, or else the shortest path; () for none."""
+        """A short path that is broad enough to pull something along, or else the shortest path; () for none."""
         space = FreeSpace.of(self.house, max(self.body.radius, _BROAD_M), self.body.height)
         a, b = space.nearest_free(*here), space.nearest_free(*spot)
         if max(math.dist(a, here), math.dist(b, spot)) < _BROAD_M:

@@ -56,7 +56,8 @@ class TaskAllocation:
     def share(self, jobs: Sequence[Job], knowledge: Knowledge) -> dict[str, Job]:
         """The next job of each seat: shortest paths first, one job per seat, as many seats per job as it needs.
 
-        Seats that hold something get none. Recomputed when jobs or hands have changed, and every two seconds.
+        Seats that hold something get no job. Shares are computed again when jobs or hands have changed, and every two
+        seconds.
         """
         busy = {state.held_by for state in knowledge.states.values()}
         moment = (tuple(job.target for job in jobs), frozenset(busy), self.tick // self._period)
@@ -80,8 +81,8 @@ class TaskAllocation:
     def reserved(self, jobs: Sequence[Job], knowledge: Knowledge) -> str:
         """The object that is left to the person where a robot without an arm can tell them about it; "" for none.
 
-        It is the one with the shortest way to its destination; behind a door it counts as nearer, since the person can
-        open doors. All robots that know where everything is get the same answer.
+        It is the object with the shortest way to its destination; an object behind a door counts as nearer, since the
+        person can open doors. All robots that know where everything is get the same answer.
         """
         tellers = [seat for seat in self.seats if seat != HUMAN and "pick" not in self.bodies[seat].capabilities]
         todo = [job for job in jobs if job.hands == 1 and job.relation != "find"]

@@ -119,7 +119,7 @@ def nearest_point(points: Sequence[Vec3], spot: Vec2) -> Vec3:
 
 
 def _few(points: Sequence[Vec3], plan: Floats, spot: Vec2) -> Sequence[Vec3]:
-    """The points that may be nearest to a spot; ``plan`` (N, 2) is their plan: comparing all exactly is slow."""
+    """The points that may be nearest to a spot; ``plan`` (N, 2) has their x and y. Comparing all exactly is slow."""
     apart = np.hypot(plan[:, 0] - spot[0], plan[:, 1] - spot[1])
     return list(itertools.compress(points, (apart <= apart.min() + 10.0 * _SLACK_M).tolist()))
 

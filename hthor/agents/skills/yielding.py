@@ -22,9 +22,9 @@ _DIRECTIONS = 16
 
 
 class Yielding:
-    """What to do after running into a robot: one of the two makes room, the other goes round it.
+    """Behaviour after running into a robot: one of the two makes room, the other goes round it.
 
-    A robot with an arm goes first, and of equals the one whose seat comes first. For the person see
+    A robot with an arm goes first; of equal robots, the one whose seat comes first. For the person see
     `hthor.navigation.path_follower`.
     """
 
@@ -40,7 +40,7 @@ class Yielding:
         self._waited = -1.0
 
     def note(self, observation: Observation, motion: Motion) -> None:
-        """Note the motion that begins now; it tells where an unseen body stands that the robot runs into."""
+        """Note the motion that begins now: its direction tells where an unseen body is if the robot runs into it."""
         if isinstance(motion, Move):
             self._along = turn((motion.forward, motion.left), observation.pose.yaw)
 
@@ -63,7 +63,7 @@ class Yielding:
         """After running into the person repeatedly: leave the passage and wait; None to carry on."""
         seconds = observation.tick * self.tick_s
         if seconds < self._waited and seat_bumped(observation):
-            self._follower.take(None)  # no way out: stand still until they are past
+            self._follower.take(None)  # no way out: stand still until the person is past
         elif seat_bumped(observation) == HUMAN:
             self._bumps = [when for when in self._bumps if seconds - when < _OFTEN_S] + [seconds]
         if len(self._bumps) >= _BUMPS and seconds >= self._waited:
@@ -136,7 +136,7 @@ class Yielding:
         return other is not None and math.dist(other, spot) < self._touching(by)
 
     def _aside(self, here: Vec2, other: Vec2) -> Vec2 | None:
-        """The spot a step away that leaves the other most room, rather to the side than back; None if none does."""
+        """The spot a step away that leaves the other most room, preferably to the side; None if no spot does."""
         apart = max(math.dist(here, other), 1e-6)
         ux, uy = (here[0] - other[0]) / apart, (here[1] - other[1]) / apart
         best, most = None, apart + 0.05
