@@ -1,4 +1,4 @@
-"""Reporting what a long operation is doing to a listener, if there is one."""
+"""Reports the current step of a long operation to a listener, if there is one."""
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager

@@ -78,7 +78,7 @@ def root(
 
 
 def _open_streams() -> None:
-    """Give a process that was started without standard streams, as some job runners do, empty ones."""
+    """Open empty standard streams in a process that was started without them, as some job runners do."""
     for handle, name, mode in ((0, "stdin", "r"), (1, "stdout", "w"), (2, "stderr", "w")):
         if getattr(sys, name) is None:
             if (null := os.open(os.devnull, os.O_RDWR)) != handle:

@@ -23,7 +23,7 @@ class Unreadable(ValueError):
     """Bytes that are not the expected JSON document.
 
     Args:
-        field: where, such as ``tasks[3].goal``; ``$`` for the document as a whole.
+        field: the place, such as ``tasks[3].goal``; ``$`` for the document as a whole.
         problem: what is wrong there.
     """
 
@@ -45,7 +45,7 @@ def read(
         kind: the record's type, as msgspec takes it.
         error: class of the error that is raised when the file cannot be used.
         schema: the required ``schema`` of the document; empty for any.
-        shown: what to call the file in the error, by default its path.
+        shown: the file's name in the error, by default its path.
         hint: what to do next; ends the error.
 
     Raises:
@@ -61,7 +61,7 @@ def read(
 
 
 def read_or_none(path: Path, kind: type[_T], error: type[HthorError], *, schema: str = "", hint: str = "") -> _T | None:
-    """The record in a JSON file, as by `read`; None where there is no such file."""
+    """The record in a JSON file, as by `read`; None if the file does not exist."""
     return read(path, kind, error, schema=schema, hint=hint) if path.is_file() else None
 
 

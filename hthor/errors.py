@@ -78,7 +78,7 @@ class AgentError(HthorError):
 
 
 KILLED = "killed"
-"""The fault of an agent whose process was killed from outside; the first time in a run its session is run again."""
+"""The fault of an agent whose process was killed from outside; the first time in a run, the session is run again."""
 
 
 class AgentKilled(AgentError):

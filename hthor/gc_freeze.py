@@ -8,7 +8,7 @@ from contextlib import contextmanager
 
 @contextmanager
 def collection_paused() -> Iterator[None]:
-    """Collect no garbage in the block: with several worlds in memory, that would take a third of building another."""
+    """Collect no garbage in the block: with several worlds in memory, it would take a third of the time of a build."""
     was = gc.isenabled()
     gc.disable()
     try:

@@ -37,7 +37,7 @@ def is_text(value: str) -> bool:
 
 
 def write(path: Path, data: bytes) -> None:
-    """Replace a file in one step: a reader sees the old content or the new, never a part."""
+    """Replace a file in one step: a reader sees the old content or the new content, never a part."""
     make_folder(path.parent)
     handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
     try:

@@ -45,7 +45,7 @@ def names(sort: str) -> tuple[str, ...]:
 
 
 def plugin_name(sort: str, file: str) -> str:
-    """The name of the plug-in in a file of this name; mostly the same."""
+    """The name of the plug-in in a file of this name; usually both names are the same."""
     return next((name for (one, name), stem in _FILES.items() if (one, stem) == (sort, file)), file)
 
 
@@ -86,7 +86,7 @@ def load(sort: str, name: str) -> Any:
         name: its name, or the path of a Python file that defines one.
 
     Raises:
-        UnknownName: when no file has that name.
+        UnknownName: when no plug-in has that name.
         HthorError: when the file does not define that name, or does not load.
     """
     known, attribute = names(sort), _PACKAGES[sort][1]
@@ -105,7 +105,7 @@ def load(sort: str, name: str) -> Any:
 
 
 def loaded(sort: str, name: str) -> ModuleType | None:
-    """The plug-in's module if it was loaded before, from wherever it lies."""
+    """The plug-in's module if it was loaded before, built in or from a file."""
     return sys.modules.get(module_name(sort, name))
 
 
