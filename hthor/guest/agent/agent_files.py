@@ -97,7 +97,7 @@ def change_message(path: str, what: str) -> str:
 
 
 def _first(agent: AgentReference) -> list[Path]:
-    """The files that the agent's reference itself names."""
+    """The files that the agent's reference names."""
     if agent.words:
         return reference.own_files(agent.words) or [Path(agent.words[0])]
     return [Path(agent.path)]

@@ -183,7 +183,7 @@ def _guess(text: str) -> str:
 def _parse_command(text: str) -> tuple[str, ...]:
     """The words of a command as it will be started, with absolute paths of the program and of files.
 
-    A script that names its interpreter by ``env`` gets the interpreter in front: a confined program cannot start it.
+    For a script that names its interpreter by ``env``, the interpreter comes first: a confined program cannot start it.
     """
     try:
         words = shlex.split(text)

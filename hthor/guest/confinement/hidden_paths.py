@@ -13,7 +13,7 @@ from pathlib import Path
 
 _NEVER = (".git", "runs")
 _RUN = ("run.json", "trials.jsonl", "sessions.jsonl")
-"""Any of these files, if it is hthor's, marks a folder that is hidden with everything in it."""
+"""A folder with one of these files, written by hthor, is hidden with everything in it."""
 _FAULTS = "faults"
 _OURS = re.compile(rb'"schema":\s?"hthor\.|"floorPolygon"|"sha256":\s?"[0-9a-f]{64}",\s?"version":\s?\d+,\s?"tasks":')
 """Marks of hthor's documents: a schema, the rooms of a house, the head of a suite."""

@@ -76,8 +76,8 @@ class Policy(Struct, frozen=True, kw_only=True):
         scratch: the folder that it may write to; emptied after each trial.
         memory_mb: memory that it may use. disk_mb: how much it may write in a trial.
         execute: whether it is a program, started after confinement; it may then execute readable files.
-        devices: devices beyond the common ones, such as GPUs.
-        compiled: folder where the supervisor keeps compiled code, which agents may only read; may be empty.
+        devices: devices besides `paths.DEVICES`, such as GPUs.
+        compiled: folder where the supervisor keeps compiled code, which agents may only read; empty for no folder.
     """
 
     level: str

@@ -13,7 +13,7 @@ PR_SET_NO_NEW_PRIVS = 38
 
 
 class Refused(Exception):
-    """The kernel refuses a request; the message says which and why."""
+    """The kernel refuses a request; the message names the request and the reason."""
 
 
 def syscall(what: str, number: int, *values: Any) -> int:
@@ -43,5 +43,5 @@ def _library() -> Any:
 
 
 def _wide(value: Any) -> Any:
-    """Numbers as wide as a register: a bare Python int would be passed as 32 bits."""
+    """The value as wide as a register: ctypes would pass a Python int as 32 bits."""
     return ctypes.c_ulong(value) if isinstance(value, int) else value

@@ -61,7 +61,7 @@ def set_limits(memory_mb: int, disk_mb: int, *, processes: bool) -> None:
 def process_memory_mb(pid: int) -> float:
     """All memory that a process uses [MB], with swapped pages and page tables.
 
-    The tables can be many times as large as the pages: a page that was only read takes no memory but a table entry.
+    The tables can be many times as large as the pages: a page that was only read needs a table entry but no memory.
     """
     with contextlib.suppress(OSError, ValueError, IndexError):
         lines = Path(f"/proc/{pid}/status").read_text().splitlines()

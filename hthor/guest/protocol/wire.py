@@ -101,7 +101,7 @@ class Confined(Struct, tag="confined", frozen=True, kw_only=True):
 
 
 class Ready(Struct, tag="ready", frozen=True, kw_only=True):
-    """Guest: loaded; the agent's description of itself.
+    """Guest: the agent is loaded; its description of itself.
 
     ``version`` distinguishes versions of a served agent; ``ahead`` says that it accepts sensor data before it asks;
     ``gpus`` is the share of a GPU it needs; ``files`` are its own files that it has opened, relative to its folder;

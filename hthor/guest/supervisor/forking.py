@@ -25,7 +25,7 @@ def fork_trial(ends: GuestEnds, tell: int, order: wire.Load, held: Ruleset | Non
 
 
 class SpareProcess:
-    """A child process, already confined, that waits for its trial; this saves the time to fork and confine one then.
+    """A child process, already confined, that waits for its trial; this saves time when a trial begins.
 
     It has read nothing of the agent, so nothing can pass from one trial to the next through it; nor does it have the
     pipes of the trial that is ``playing`` while it waits.
