@@ -48,7 +48,7 @@ class TaskKind(ABC):
 
     @abstractmethod
     def goals(self, house: HouseSpec) -> tuple[Goal, ...]:
-        """The goals of this kind that make sense in the house, in a fixed order; empty when there are none."""
+        """The goals of this kind that are possible in the house, in a fixed order; empty when there are none."""
 
     @abstractmethod
     def objection(self, goal: Goal, house: HouseSpec) -> str:

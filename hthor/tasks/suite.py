@@ -44,6 +44,6 @@ def encode_suite(suite: Suite) -> bytes:
 
 
 def in_turn(columns: Sequence[Sequence[TaskSpec]]) -> Iterable[TaskSpec]:
-    """The tasks of several houses, one of each house in turn, so that successive tasks are in different houses."""
+    """The tasks of several houses in turns, one per house, so that successive tasks are in different houses."""
     rows = itertools.zip_longest(*columns)
     return (task for row in rows for task in row if task is not None)

@@ -66,6 +66,6 @@ def usual_places(target: str) -> tuple[str, ...]:
 
 
 def is_misplaced(target: str, kind: str) -> bool:
-    """Whether the target is out of place on or in a thing of that kind, by evidence from either source."""
+    """Whether one of the sources shows that the target is out of place on or in a thing of this kind."""
     row = places_of(target).get(kind)
     return row is not None and row.verdict == "out" and row.basis != "none"

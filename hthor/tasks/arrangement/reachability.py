@@ -89,7 +89,7 @@ class ReachableFloor:
         return mask
 
     def walk(self, stops: Sequence[Bools]) -> Walk:
-        """The shortest walk through one cell of each mask in turn."""
+        """The shortest walk through one cell of each mask, in this order."""
         return Walk(self, stops)
 
     def _disc(self, centre: Vec2, radius: float) -> Bools:
@@ -115,7 +115,7 @@ class ReachableFloor:
 
 
 class Walk:
-    """The shortest walk from anywhere through one cell of each of several masks in turn."""
+    """The shortest walk from any place through one cell of each mask, in the masks' order."""
 
     def __init__(self, ground: ReachableFloor, stops: Sequence[Bools]) -> None:
         self._space, self._stops = ground.space, tuple(stops)

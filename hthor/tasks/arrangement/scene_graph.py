@@ -39,7 +39,7 @@ def draw_triplet(target: str, kinds: Set[str], root: int) -> Triplet:
 
 
 def triplets_in_random_order(target: str, kinds: Set[str], root: int) -> Iterator[Triplet]:
-    """The triplets of a target, drawn by weight without replacement: the first is the sample, the rest fallbacks."""
+    """The triplets of a target, drawn by weight without replacement: the first is the sample, the others fallbacks."""
     rows, weights = _rows(target), {edge: weight for edge, weight in priors.weights(target).items() if weight > 0.0}
     while weights:
         edges = list(weights)
@@ -88,7 +88,7 @@ def _waits_for(row: Triplet) -> str:
 
 
 def _ring(graph: Mapping[str, Triplet], left: list[str]) -> list[str]:
-    """The targets of a ring, the earliest of ``left`` first; each of ``left`` waits for another of them."""
+    """The targets of a ring, the first of ``left`` first; each target in ``left`` waits for another target in it."""
     seen = [left[0]]
     while (following := _waits_for(graph[seen[-1]])) not in seen:
         seen.append(following)

@@ -1,4 +1,4 @@
-"""Spreading the six targets over a house as the scene priors say.
+"""Places the six targets in a house by the scene priors.
 
 If a house has no place for a relation, the task adds a thing or uses the floor. For example, a tomato has to be on a
 plate and its destination is the dining table, where the house's only plate is: the task adds another plate, elsewhere.

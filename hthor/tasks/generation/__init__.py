@@ -1,1 +1,1 @@
-"""Making tasks: goals, arrangements, starts and their difficulty."""
+"""Makes tasks: goals, arrangements, starts and their difficulty."""

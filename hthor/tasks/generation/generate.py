@@ -1,4 +1,4 @@
-"""Making tasks and suites of them: goals, arrangements and starts, drawn by name.
+"""Makes tasks and suites: goals, arrangements and starts, drawn by name.
 
 ``python -m hthor.tasks.generation.generate smoke`` writes ``suites/data/smoke.json`` again, with the same bytes as long
 as the houses, the catalogue, the rules and this code stay the same. A second argument names another file to write.

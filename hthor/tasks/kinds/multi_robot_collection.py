@@ -1,4 +1,4 @@
-"""Gather three apples in one place: more than one person can carry in time.
+"""Gather three apples in one place, too much for one person to carry in time.
 
 The goal has one job for each of ``apple``, ``apple_2`` and ``apple_3``::
 

@@ -144,7 +144,7 @@ class Commitment(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Revealed(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The salt of a suite, published."""
+    """The published salt of a suite."""
 
     schema: str = _PUBLISHED
     name: str
