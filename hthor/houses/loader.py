@@ -90,7 +90,7 @@ def _wall(row: WallRow) -> Wall:
     material = row.material if row.material is not None else schema.Material()
     color = material.color
     rgb: Vec3 | None = None if color is None else (color.r, color.g, color.b)
-    # ProcTHOR gives the outer face of an outer wall the id of the room behind it; only the wall's own id shows it.
+    # ProcTHOR gives the outer face of an outer wall the id of the room behind it; only the wall's own id differs.
     room = EXTERIOR if row.id.startswith(f"wall|{EXTERIOR}|") else row.room_id
     return Wall(id=row.id, room=room, a=a, b=b, height=high - low, material=material.name, rgb=rgb)
 

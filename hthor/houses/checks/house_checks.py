@@ -114,7 +114,7 @@ def _present(house: HouseSpec) -> Iterator[Finding]:
 
 
 def _objects(house: HouseSpec, space: FreeSpace, reached: Bools) -> Iterator[Finding]:
-    """``object-visible``: every small thing must be visible from some floor within `rules.FIND_RANGE_M` of it.
+    """``object-visible``: every small thing must be visible from some place within `rules.FIND_RANGE_M` of it.
 
     The range is measured on the plan; for the benchmark's target kinds from the eyes, as a search requires.
     """
