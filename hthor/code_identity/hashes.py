@@ -94,7 +94,7 @@ def compiled() -> Path:
 def keep_compiled() -> None:
     """Make this process and its children cache compiled functions in `compiled`, unless the user chose a folder.
 
-    To be called before trials are run: without it every process, the agents' too, compiles for 20 s.
+    Call it before trials run: without it every process, also of an agent, compiles for 20 s.
     """
     if "NUMBA_CACHE_DIR" not in os.environ:
         os.environ["NUMBA_CACHE_DIR"] = str(compiled())

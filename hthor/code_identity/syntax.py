@@ -21,7 +21,7 @@ class Module(Struct, frozen=True, kw_only=True):
 
     Attributes:
         tokens: its syntax, with a ``Bound`` for each name that an import from the package binds.
-        imports: the modules of the package that it imports anywhere, except for type checkers only.
+        imports: the modules of the package that it imports anywhere, without imports for type checkers only.
         data: hashes of the data files in its folder, if it uses its own ``__file__``.
         part: its ``CODE_PART``, and ``root`` its ``CODE_ROOT``; empty if it has none.
     """
