@@ -108,7 +108,7 @@ class ParameterFinding(Struct, frozen=True, kw_only=True):
 
 
 class CoverageFinding(Struct, frozen=True, kw_only=True):
-    """The share of 90 % intervals of simulated studies with the truth; ``low``, ``high``: over parameters."""
+    """Share of simulated studies whose 90 % interval has the truth; ``low``, ``high``: the range over parameters."""
 
     studies: int
     mean: float

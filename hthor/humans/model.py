@@ -20,7 +20,7 @@ from typing import Protocol
 from hthor.types import Action, Briefing, Observation
 
 State = Mapping[str, bool | int | float | str | None]
-"""What carries over between trials, as plain JSON values."""
+"""Plain JSON values that carry over between trials."""
 
 
 class HumanModel(Protocol):
@@ -41,9 +41,9 @@ class HumanModel(Protocol):
         """Decide what to do and say now; called when the body is free and whenever a message comes.
 
         Args:
-            observation: what a headset's wearer perceives: the pose in the house frame (x, y [m], yaw and pitch [rad],
-                yaw counter-clockwise, pitch up), detections in view, the room, what is in hand, how the last motion
-                ended, and the messages shown. Never the true state of the world.
+            observation: the perceptions of a person in a headset: the pose in the house frame (x, y [m], yaw and pitch
+                [rad], yaw counter-clockwise, pitch up), detections in view, the room, the object in hand, how the last
+                motion ended, and the messages shown. It never has the true state of the world.
 
         Returns:
             A motion, which is carried out only when ``observation.idle``, and at most one answer to a message.
@@ -66,5 +66,5 @@ class HumanModel(Protocol):
         ...
 
     def state(self) -> State:
-        """What carries over to the next trial, such as trust and practice; never what was learnt about a house."""
+        """Values that carry over to the next trial, such as trust and practice; never knowledge of a house."""
         ...

@@ -63,7 +63,7 @@ def judge_calibration(found: QualityFigures, *, quick: bool) -> tuple[Gate, ...]
     bounds = QUICK if quick else FULL
     full = () if quick else (_shift(found, bounds), _share("medians close", f"medians, {CLOSE}", found.close, 1.0))
     return (
-        _between("coverage", "90 % intervals hold {} to {} of the truths", found.coverage, bounds.coverage),
+        _between("coverage", "90 % intervals contain {} to {} of the truths", found.coverage, bounds.coverage),
         _least("simulated studies", "at least {:.0f}", found.studies, bounds.studies),
         _between("emulator", "sd of standardised errors from {} to {}", found.z_sd, bounds.z_sd),
         _least("effective points", "at least {:.0f}", found.effective, bounds.effective),

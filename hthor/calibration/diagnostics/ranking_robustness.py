@@ -14,7 +14,7 @@ from hthor.calibration.targets import CONDITIONS
 Array = np.ndarray[Any, Any]
 
 PAIRS = (("oracle", "frontier"), ("frontier", "none"))
-"""Better robot, worse robot."""
+"""Pairs of a better and a worse robot."""
 METRICS = ("sr", "twsr")
 TRIALS = 600
 """Trials with each robot from which an order is judged. Our choice."""

@@ -89,7 +89,7 @@ def fit_emulator(table: Table, t_star: Array, seed: int = 0, members: int = MEMB
     """An emulator fitted to the trials of a table. The points may have any density in the prior.
 
     Args:
-        table: sessions, each best at a different point.
+        table: sessions, preferably each at a different point.
         t_star: T* [s] by task.
         seed: seed of the networks.
 

@@ -42,7 +42,7 @@ def read_sessions(paths: Sequence[Path]) -> Sessions:
     """The trials in some logs, each trial once.
 
     Args:
-        paths: runs' folders, or files like their ``trials.jsonl``.
+        paths: folders of runs, or log files such as their ``trials.jsonl``.
 
     Raises:
         RunError: when a log cannot be read; it names file, line and field.

@@ -94,7 +94,7 @@ def run_calibration(options: CalibrationOptions, progress: ProgressReporter) -> 
         MissingExtra: without scikit-learn.
         UnknownName: when there is no such target, suite or stage.
         RunError: when the folder has sessions simulated in another world or with another human model.
-        Interrupted: on Ctrl-C or SIGTERM; what was simulated is kept.
+        Interrupted: on Ctrl-C or SIGTERM; simulated sessions are kept.
     """
     _require_libraries()
     if options.until and options.until not in SIMULATED:

@@ -1,7 +1,7 @@
 """Going to the place that a robot's message names, and looking there from several sides.
 
-The map in the headset shows the place all the time, so there is no error of 20 to 40 degrees, as there is when people
-point from memory. Reading the map has two costs: a slower pace (``k_map``), and paths that end at a wall.
+The map in the headset shows the place all the time, so people do not make the error of 20 to 40 degrees that they make
+when they point from memory. Reading the map has two costs: a slower pace (``k_map``), and paths that end at a wall.
 """
 
 import math

@@ -1,7 +1,7 @@
 """The journal of a trial: what a headset's recorder stores in addition to the paths.
 
 The trial's log has what the system sees: poses (x, y and yaw at 5 Hz), messages, picks and places, the rating. The
-journal adds what a recorder at the participant's side sees, as events of these kinds:
+journal adds what a recorder in the headset sees, as events of these kinds:
 
 - ``stick``, once per trial: ``full`` [m/s], the speed at full deflection of the stick, and ``runs``, a flat list of
   pairs (tick, deflection from that tick on in thousandths of ``full``). The direction is in the path.

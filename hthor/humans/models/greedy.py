@@ -66,7 +66,7 @@ class NearestFirst:
         return min(range(len(options)), key=lambda k: (options[k].exposure > _VISITED, options[k].metres, k))
 
     def answer(self, offer: Offer) -> Answer:  # noqa: ARG002  always the same
-        """Confirm."""
+        """Confirm every message."""
         return "confirm"
 
 

@@ -22,7 +22,7 @@ from hthor.types import Action, Briefing, Event, Motion, Observation, Reply, Vec
 _RESTARTS = 2
 """[count] Behaviours that may end without a motion in one decision. Our choice."""
 _PAUSE_S = 0.5
-"""[s] Pause before the next decision after so many behaviours without a motion. Our choice."""
+"""[s] Pause before the next decision after `_RESTARTS` behaviours without a motion. Our choice."""
 _BUSY = ("fetch", "deliver", "haul")
 """Activities in which something is in hand, or about to be."""
 

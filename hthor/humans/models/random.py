@@ -32,5 +32,5 @@ class RandomPolicy:
         return luck.index(max(luck))
 
     def answer(self, offer: Offer) -> Answer:  # noqa: ARG002  always the same
-        """Decline."""
+        """Decline every message."""
         return "decline"

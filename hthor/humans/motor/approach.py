@@ -89,7 +89,7 @@ def _usable(spots: Sequence[Vec2], place: KnownPlace, walker: Walker) -> list[Ve
 
 
 def has_free_line(spot: Vec2, place: KnownPlace, walker: Walker) -> bool:
-    """Whether nothing on the map, above all no wall, is between a spot and the nearest edge of the place."""
+    """Whether the map shows no wall or other obstacle between a spot and the nearest edge of the place."""
     return not walker.grid.meets(spot, _edge(spot, place), walker.margin)
 
 
@@ -183,6 +183,6 @@ class Approach:
 
 
 def _off_line(spot: Vec2, point: Vec3, seen_from: Vec2) -> float:
-    """Angle [rad] between the directions from the object to a spot and to where it was seen from."""
+    """Angle [rad] at the object between a spot and the point ``seen_from``."""
     a = math.atan2(spot[1] - point[1], spot[0] - point[0])
     return abs(wrap(a - math.atan2(seen_from[1] - point[1], seen_from[0] - point[0])))

@@ -1,1 +1,1 @@
-"""What a participant notices of what is in view. Begin with `perception.Eyes`."""
+"""Which of the things in view a participant notices. Begin with `perception.Eyes`."""

@@ -1,4 +1,4 @@
-"""How fast a participant notices what is in view.
+"""How fast a participant notices things in view.
 
 The rate is lam0 / (1 + (a50 / angle)^2) * exp(-(ecc / ecc_sd)^2 / 2) * share * exp(-clutter * beside). Independent
 glimpses at a rate make the time to notice exponential (Koopman 1956). Studies of visual search agree that the time is

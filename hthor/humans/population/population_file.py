@@ -1,4 +1,4 @@
-"""Populations in files: NAME.npz has the draws, NAME.json beside it describes them.
+"""Populations in files: NAME.npz has the draws, NAME.json next to it describes them.
 
 Equal populations give equal bytes.
 """

@@ -106,7 +106,7 @@ def resolve_humans(word: str) -> ParticipantSource:
 
 
 def _split(word: str) -> tuple[str, Population | None]:
-    """The word before the last @ and the population after it, None where there is none."""
+    """The word before the last @ and the population after it, None without an @."""
     left, at, right = word.rpartition("@")
     if not at or Path(word).exists() or not (right in population_file.names() or right.endswith((".npz", ".json"))):
         if at and not Path(word).exists():
@@ -153,7 +153,7 @@ def _purpose(left: str, model: str, population: Population, kind: PopulationKind
 
 
 def _ingredients(model: str, source: str) -> Any:
-    """What else decides how a model behaves, by its own `ingredients`; see `hthor.humans.model`."""
+    """Everything else that decides how a model behaves, from its `ingredients`; see `hthor.humans.model`."""
     if model == PROXY:
         return {}
     plugins.load(_SORT, model)

@@ -86,7 +86,7 @@ def features(
     knowledge: Sequence[float],
     uniform: Sequence[float],
 ) -> dict[str, Any]:
-    """The choice as the journal holds it: `FEATURES` of each option, and the index of the chosen one.
+    """The choice as the journal records it: `FEATURES` of each option, and the index of the chosen one.
 
     Of more than `MAX_RECORDED` options the chosen one and an equally likely sample of the others are kept: a
     conditional logit fitted to such samples is consistent (McFadden 1978).

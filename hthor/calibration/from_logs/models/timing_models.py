@@ -60,7 +60,7 @@ def fit_log_normal(
     Args:
         middle: the logarithm of the median, in the first trial.
         effect: the spread between people in units of ``sigma``, 0 without spread.
-        noise: a guess of the sd of one number's logarithm. noise_sd: the sd of that guess's own logarithm.
+        noise: a guess of the sd of a number's logarithm. noise_sd: the sd of the logarithm of this guess.
         practice: 1 when numbers grow with practice, -1 when they shrink, 0 when they do not change.
         learn: the size of the change by practice: a number, or a `Term` to fit.
     """

@@ -14,7 +14,7 @@ def predictive(found: Findings) -> list[str]:
     """Section 3: prior and posterior predictive."""
     evidence = found.evidence
     if evidence is None or not evidence.predictive:
-        return _without(found, "there is no before and after")
+        return _without(found, "there is no comparison before and after a fit")
     return [
         elements.paragraph(
             "The figures of study groups of six whose population is drawn from the prior, and from the posterior. "
@@ -102,7 +102,7 @@ def coverage(found: Findings) -> list[str]:
     drawn = elements.figure(
         matplotlib_svg.to_svg(diagnostics.ranks(ranked), "ranks", "Ranks of the true values among posterior draws"),
         "Simulation-based calibration: ranks of the truth among posterior draws. They should be flat; 95 of 100 bars "
-        "of a correct posterior end in the shaded band. Peak in the middle: intervals too wide; at both ends: narrow.",
+        "of a correct posterior end in the shaded band. Peak inside: intervals too wide; at the ends: too narrow.",
     )
     return [elements.paragraph(phrases.coverage(evidence.coverage)), drawn if ranked else ""]
 

@@ -152,7 +152,7 @@ def _figures(found: Findings) -> list[str]:
         elif not row.close:
             sentences.append(
                 f"The median {phrases.figure(row.figure)} is {phrases.signed(off)} points from the published figure, "
-                f"more than the {100.0 * row.tolerance:.0f} allowed, though the interval holds it."
+                f"more than the {100.0 * row.tolerance:.0f} allowed, though the interval contains it."
             )
     return sentences
 

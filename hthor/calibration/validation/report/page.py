@@ -155,5 +155,5 @@ def _sessions(found: Findings) -> list[str]:
 
 def _foot(found: Findings) -> str:
     versions = ", ".join(f"{name} {version}" for name, version in sorted(found.setting.versions.items()))
-    said = f"Every number on this page is in the JSON beside it, schema {found.schema}. {versions}."
+    said = f"Every number on this page is in the JSON file next to it, schema {found.schema}. {versions}."
     return f"<footer>{escape(said)}</footer>"

@@ -110,9 +110,9 @@ def parameters(parts: Sequence[ParameterFinding]) -> list[str]:
 
 
 def coverage(found: CoverageFinding) -> str:
-    """How often the intervals hold the truth."""
+    """How often the intervals contain the truth."""
     return (
-        f"Over {found.studies} simulated studies the 90 % intervals held the true value in {percent(found.mean)} % "
+        f"Over {found.studies} simulated studies the 90 % intervals had the true value in {percent(found.mean)} % "
         f"of the cases; the parameters range from {percent(found.low)} to {percent(found.high)} %."
     )
 
