@@ -1,4 +1,4 @@
-"""The criteria that a calibration has to meet before its population is worth using.
+"""The criteria that a calibration has to meet before its population may be used.
 
 A small calibration has wider bounds: with ten studies, a coverage of .90 is estimated as anything from .7 to 1, its
 emulator has seen a thirtieth of the trials, and there are too few studies for the ABC check.

@@ -157,7 +157,7 @@ def compare_posteriors(
 
 
 def _median(truth: Array, offset: Array) -> float:
-    """Median of the truth where the summaries' offset is 0, in the unit interval."""
+    """Median of the true values at an ``offset`` of 0 from the published summary, in the unit interval."""
     reach = max(float(np.quantile(np.abs(offset), KEPT)), 1e-9)
     weight = np.maximum(0.0, 1.0 - (offset / reach) ** 2)
     near = weight > 0.0

@@ -1,4 +1,4 @@
-"""Sessions simulated by several worker processes, resumed where an earlier command ended."""
+"""Simulates sessions with several worker processes, and resumes where an earlier command ended."""
 
 import functools
 from collections.abc import Mapping, Sequence

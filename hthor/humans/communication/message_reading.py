@@ -57,7 +57,7 @@ class MessageReader:
         self._refused: list[Message] = []
 
     def receive(self, tick: int, inbox: tuple[Message, ...]) -> None:
-        """Look at the inbox, whose last message is shown."""
+        """Look at the ``inbox``; its last message is on display."""
         message, now = inbox[-1] if inbox else None, self.now
         if message is None:
             self.now = None

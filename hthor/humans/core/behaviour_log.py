@@ -29,7 +29,7 @@ from hthor.types import HUMAN, BodySpec, Event, Motion, Move
 _THOUSAND = 1000
 """[count] Steps per full deflection of the stick, and per radian of pitch. Our choice."""
 _DONE = {"pick": "picked", "place": "placed", "open": "opened", "close": "closed", "drop": "dropped"}
-"""The event of the trial's log for each attempt that succeeds."""
+"""The kind of event in the trial's log for each kind of attempt that succeeds."""
 
 
 class BehaviourRecorder:

@@ -10,7 +10,7 @@ rules apply, which no real person would follow:
 - If a robot blocks the path, the replay stands and tries again every half second, and never goes around it. Afterwards
   it catches up as fast as stick and body allow. Hand actions happen at their places, so they come later too.
 - If anything else blocks the path (a door that was shut), that part of the path is skipped after three tries.
-- After the end of the log it stands still. The rating is the logged one.
+- After the end of the log it stands still. The rating is the logged rating.
 """
 
 from __future__ import annotations

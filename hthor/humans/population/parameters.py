@@ -126,7 +126,7 @@ def parameter_names() -> tuple[str, ...]:
 
 
 def range_problem(name: str, value: float) -> str:
-    """What is wrong with a value, empty if nothing is."""
+    """The problem of a value in words, empty if it is valid."""
     low, high = parameter_range(name)
     if math.isfinite(value) and low <= value <= high:
         return ""

@@ -1,7 +1,7 @@
 """A population: weighted draws of participants' mean parameters, and how far participants differ.
 
 The draws express the uncertainty of the mean, the random effects how participants differ from it. A participant is one
-draw, picked by weight, plus random effects. Both depend only on names, so all robots meet the same participants.
+draw, picked by weight, plus random effects. Neither depends on the robots: all robots meet the same participants.
 """
 
 from __future__ import annotations
@@ -248,7 +248,7 @@ def encode_npz(arrays: Mapping[str, NDArray[Any]], compression: int = zipfile.ZI
 
 
 def array_problem(names: Sequence[str], draws: Floats, log_weight: Floats) -> tuple[str, str] | None:
-    """What is wrong with a population's arrays: the field and the problem; None if nothing is."""
+    """The problem of a population's arrays: the field and a description; None if they are valid."""
     if draws.ndim != 2 or draws.shape[1] != len(names) or not len(draws):
         return "draws", f"the shape is {draws.shape}; expected one row or more of {len(names)} columns"
     if log_weight.shape != (len(draws),):
