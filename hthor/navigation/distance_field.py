@@ -1,4 +1,4 @@
-"""Shortest paths from one place of a map, computed only as far as they are asked for."""
+"""Shortest paths from one place of a map, computed only as far as needed."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -11,16 +11,16 @@ from hthor.navigation.search_window import ESCAPE_CELLS, SearchWindow, path_cost
 from hthor.types import Vec2
 
 Pull = Callable[[SearchWindow, int, Vec2 | None], tuple[Vec2, ...]]
-"""The path [m] to a cell of the window, by its flat index, pulled tight; it ends at the point [m] if one is given."""
+"""Returns the smoothed path [m] to a cell of the window, given by its flat index, and on to a point [m] if given."""
 
 
 class Field:
-    """Shortest paths from one place to everywhere in a window, as the map stood when it was made.
+    """Shortest paths from one place to everywhere in a window, on the map as it was when this object was made.
 
     Args:
         grid: the map.
-        window: the search from that place; None when no place to stand is near.
-        pull: makes a path of the cells that the search came by.
+        window: the search from that place; None when the body can stand nowhere near it.
+        pull: makes a smoothed path from the cells on the search's way.
     """
 
     def __init__(self, grid: GridMap, window: SearchWindow | None, pull: Pull) -> None:
@@ -28,15 +28,15 @@ class Field:
         self._frame = (grid.left, grid.bottom, *grid.cells.shape)
 
     def distance(self, b: Vec2, within: float = 0.0) -> float:
-        """Walking distance [m] to ``b``, or to the nearest place within ``within`` metres of it; infinite if none.
+        """Walking distance [m] to ``b``, or to the nearest place within ``within`` [m] of it; infinite without a path.
 
-        Without ``within``, a place that the body cannot stand on counts as the nearest one within 0.7 m.
+        Without ``within``, a place where the body cannot stand is replaced by the nearest free place within 0.7 m.
         """
         flat = self._best(b, within)
         return math.inf if flat < 0 else self.metres(flat)
 
     def distances(self, points: Sequence[Vec2], most: float = math.inf) -> tuple[float, ...]:
-        """Walking distance [m] to each point, as `distance`; those beyond ``most`` count as infinite."""
+        """Walking distance [m] to each point, as from `distance`; infinite if it is more than ``most`` [m]."""
         window = self.window
         if window is None:
             return (math.inf,) * len(points)
@@ -54,9 +54,9 @@ class Field:
         return tuple(found)
 
     def nearest(self, groups: Sequence[Sequence[Vec2]]) -> tuple[tuple[float, int], ...]:
-        """For each group of points the walking distance [m] to the nearest, as `distance`, and which of them it is.
+        """For each group, the walking distance [m] to its nearest point, as from `distance`, and that point's index.
 
-        Infinite and -1 where there is no way to any.
+        Infinity and -1 for a group without a path to any of its points.
         """
         window = self.window
         if window is None:
@@ -67,7 +67,7 @@ class Field:
             window.watch(spot)
         missing = [number for number, group in enumerate(cells) if group]
         while missing:
-            found = window.spread(len(missing))  # each of them needs one more watched cell at least
+            found = window.spread(len(missing))  # each missing group needs at least one more watched cell
             if found < 0:
                 break
             left = [number for number in missing if not any(map(window.settled, cells[number]))]
@@ -78,14 +78,14 @@ class Field:
         return tuple(self._nearest(group, cells) for group, cells in zip(groups, spots, strict=True))
 
     def _nearest(self, points: Sequence[Vec2], spots: Sequence[int]) -> tuple[float, int]:
-        """The nearest of the ``spots`` of these points that was reached; points without a spot if none was."""
+        """The nearest of the ``spots`` of these points that was reached, else by `distance`: distance [m] and index."""
         assert self.window is not None
         reached = [(self.metres(spot), k) for k, spot in enumerate(spots) if spot >= 0 and self.window.settled(spot)]
         least = min(reached or ((self.distance(point), k) for k, point in enumerate(points)), default=(math.inf, -1))
         return least if math.isfinite(least[0]) else (math.inf, -1)
 
     def path(self, b: Vec2, within: float = 0.0) -> tuple[Vec2, ...] | None:
-        """Way points [m] as from `Planner.path`; None when there is no path, or the map has grown since."""
+        """Way points [m] as from `Planner.path`; None if there is no path, or if the map has become larger since."""
         flat, grid = self._best(b, within), self._grid
         if flat < 0 or self.window is None or self._frame != (grid.left, grid.bottom, *grid.cells.shape):
             return None
@@ -93,17 +93,17 @@ class Field:
         return self._pull(self.window, flat, exact)
 
     def metres(self, flat: int) -> float:
-        """Length [m] of the path to a cell of the window that was reached."""
+        """Length [m] of the path to a cell that the search has reached."""
         assert self.window is not None
         return int(self.window.cost[flat]) / grid_search_kernel.STEP * CELL_M
 
     @property
     def reached(self) -> float:
-        """Everything closer than this was reached [m]."""
+        """All cells at a smaller path length [m] than this have been reached."""
         return 0.0 if self.window is None else self.window.reached / grid_search_kernel.STEP * CELL_M
 
     def _cell(self, b: Vec2) -> tuple[int, int]:
-        """Row and column of a point."""
+        """Row and column of the cell at a point."""
         return math.floor(b[1] / CELL_M) - self._frame[1], math.floor(b[0] / CELL_M) - self._frame[0]
 
     def _index(self, b: Vec2) -> int:
@@ -112,7 +112,7 @@ class Field:
         return self.window.flat(row, column) if self.window.holds(row, column) else -1
 
     def _spot(self, b: Vec2) -> int:
-        """The cell where `distance` ends if there is a path to it; -1 when none is close by."""
+        """The cell where the path of `distance` ends, if there is a path; -1 when no free cell is close by."""
         assert self.window is not None
         flat = self._index(b)
         if flat >= 0 and self.window.open(flat):
@@ -120,7 +120,7 @@ class Field:
         return self._pick(b, 0.0, False)
 
     def _best(self, b: Vec2, within: float) -> int:
-        """The reached cell for ``b``: the cheapest within reach, or else the nearest to it; -1 for none."""
+        """The reached cell for ``b``: the cheapest within ``within``, or else the nearest to ``b``; -1 for none."""
         window = self.window
         if window is None:
             return -1
@@ -131,7 +131,7 @@ class Field:
         return self._pick(b, within, True)
 
     def _pick(self, b: Vec2, within: float, reached: bool) -> int:
-        """Of the cells that were ``reached``, or could be, the cheapest within reach, or else the nearest; -1: none."""
+        """The cell for ``b``, as in `_best`, among cells that were ``reached``, or else that may be; -1 for none."""
         assert self.window is not None
         window, (row, column), (left, bottom, _, _) = self.window, self._cell(b), self._frame
         x0, x1, y0, y1 = window.edges

@@ -1,4 +1,4 @@
-"""Frontiers: where a map could be extended, and furniture that was never seen from close by."""
+"""Finds frontiers, where a map could be extended, and furniture that was never seen from close by."""
 
 import heapq
 import math
@@ -19,12 +19,12 @@ _EDGE, _UNVISITED = 1, 2
 
 
 class Frontier(Struct, frozen=True, kw_only=True):
-    """A group of neighbouring cells worth going to.
+    """A group of neighbouring cells that are worth a visit.
 
     Attributes:
-        centre: the cell nearest to the group's mean [m], where the body can stand.
+        centre: the cell of the group nearest to the group's mean [m]; the body can stand there.
         size: number of cells times their width [m]. distance: length of the path to the nearest cell [m].
-        is_edge: whether these are free cells next to unknown ones; else they lie along furniture that was never
+        is_edge: True for free cells next to unknown cells, False for free cells along furniture that was never
             looked at from close by, see `GridMap.near`.
     """
 
@@ -35,7 +35,7 @@ class Frontier(Struct, frozen=True, kw_only=True):
 
 
 class _Group(Struct, frozen=True):
-    """A group before it is known whether it can be reached; ``cell`` is its centre's row and column."""
+    """A group that may not be reachable; ``cell`` is the row and column of its centre."""
 
     cell: tuple[int, int]
     size: int
@@ -43,10 +43,10 @@ class _Group(Struct, frozen=True):
 
 
 class Survey:
-    """All groups of cells worth going to, with paths there, by one search that goes only as far as necessary."""
+    """All groups of cells worth a visit, with paths to them, found by one search that goes only as far as needed."""
 
     def __init__(self, grid: GridMap, planner: Planner, pose: Pose, least: float = 0.2) -> None:
-        """Only groups of at least ``least`` [m] are listed."""
+        """Prepare the search; groups with a size below ``least`` [m] are left out."""
         self._field = _known(planner, pose)
         self._frame = (grid.left, grid.bottom)
         self._groups: list[_Group] = []
@@ -92,7 +92,7 @@ class Survey:
                 return
 
     def path(self, place: Frontier) -> tuple[Vec2, ...] | None:
-        """The path [m] to a group through cells known to be free; None when the map has grown since."""
+        """The path [m] to a group through cells known to be free; None if the map has become larger since."""
         window = self._field.window
         if window is not None:
             column, row = (round(metres / CELL_M - 0.5) for metres in place.centre)
@@ -104,7 +104,7 @@ class Survey:
     def _gather(
         self, grid: GridMap, mask: NDArray[np.uint8], marked: NDArray[np.int32], bit: int, least: float
     ) -> None:
-        """List the groups of marked cells that are large enough, and let the search stop at them."""
+        """Add the groups of marked cells that are large enough, and let the search stop at them."""
         window = self._field.window
         assert window is not None
         out: NDArray[np.int64] = np.empty((_MOST, 4), dtype=np.int64)
@@ -119,7 +119,7 @@ class Survey:
             self._groups.append(_Group((row, column), last - first, bit == _EDGE))
 
     def _reach(self, goal: int = -1) -> bool:
-        """Search on to the next group, or to the cell ``goal``; False when no more can be reached."""
+        """Continue the search to the next group, or to the cell ``goal``; False if nothing more can be reached."""
         window = self._field.window
         if window is None:
             return False
@@ -160,7 +160,7 @@ def unvisited(grid: GridMap, planner: Planner, pose: Pose, least: float = 0.3) -
 
 
 def _known(planner: Planner, pose: Pose) -> Field:
-    """Paths through cells known to be free, also for an optimistic planner."""
+    """Paths through cells known to be free, even if the planner is optimistic."""
     hopeful, planner.optimistic = planner.optimistic, False
     try:
         return planner.field((pose.x, pose.y))

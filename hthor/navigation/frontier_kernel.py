@@ -1,4 +1,4 @@
-"""Compiled: cells worth a visit, and groups of them (see `marching`, `searching`)."""
+"""Compiled: cells worth a visit, and groups of them (see `scan_kernel`, `grid_search_kernel`)."""
 
 from typing import Any
 
@@ -8,18 +8,18 @@ import numpy as np
 from hthor.navigation.grid_search_kernel import _DX, _DY, FAR, WATCHED, spread
 
 _STRETCH = 32
-"""Number of cells that are checked for marks at once; few are marked."""
+"""Number of cells that are checked for marks in one step, because few cells are marked."""
 
 
 @numba.njit(
     "int64(uint8[:,::1], uint8[:,::1], uint8[:,::1], uint8[:,::1], int64[::1], uint8[:,::1], int32[::1])", cache=True
 )
 def mark_cells(cells: Any, level: Any, beside: Any, near: Any, bounds: Any, mask: Any, marked: Any) -> int:
-    """Mark free cells where a body has room: 1 those next to the unknown, 2 those along furniture never seen close.
+    """Mark free cells where a body has room: 1 next to unknown cells, 2 along furniture never seen from close by.
 
     Args:
-        bounds: those of the known map, see `GridMap`.
-        mask: all zero outside them, and out. marked: out, flat indices of all cells marked, in order.
+        bounds: of the known map, see `GridMap`.
+        mask: output, zero outside ``bounds`` before. marked: output, flat indices of all marked cells, in order.
 
     Returns:
         How many cells are marked.
@@ -51,10 +51,10 @@ def mark_cells(cells: Any, level: Any, beside: Any, near: Any, bounds: Any, mask
 
 @numba.njit("int64(uint8[:,::1], int32[::1], uint8, int32[::1], int64[:,::1])", cache=True)
 def group_cells(mask: Any, marked: Any, bit: int, members: Any, out: Any) -> int:
-    """Group the ``marked`` cells with ``bit`` in the mask; returns how many groups, in the order of their first cells.
+    """Group the ``marked`` cells that have ``bit`` in the mask, ordered by first cell; returns the number of groups.
 
-    The bit is used up. Every row of ``out`` is row, column, first and last + 1 index of the group's ``members``, which
-    are flat. The cell given is the member nearest to the middle of its group.
+    The bit is cleared. Each row of ``out`` has a group's centre cell (row, column), which is the member nearest to its
+    middle, and the first and last + 1 index of its cells in ``members``, which are flat indices.
     """
     nx = mask.shape[1]
     groups, done = 0, 0
@@ -111,10 +111,10 @@ def watch_groups(
     """Let a search stop at the members of the large groups, whose numbers are written to ``names``.
 
     Args:
-        groups: as `clusters` gives them, ``count`` of them; the large ones move to the front.
-        cell, least: a group is large when its number of members times ``cell`` is at least ``least``.
+        groups: ``count`` groups from `group_cells`; the large groups are moved to the front.
+        cell, least: a group is large if its number of members times ``cell`` is at least ``least``.
         width: columns of the map. columns: of the search's window. offset: of the map's cell 0 in the window.
-        number: of the last group before.
+        number: the number of the last group before these.
 
     Returns:
         How many groups are large.
@@ -153,7 +153,7 @@ def reach_group(
     item: Any,
     memo: Any,
 ) -> int:
-    """Spread (see `grid_search_kernel.spread`) to the cell ``goal`` or one of a group not ``known``; -1 for none."""
+    """Spread (see `grid_search_kernel.spread`) to the cell ``goal`` or a cell of a group not ``known``; -1 for none."""
     while True:
         here = spread(state, cost, came, width, 1, FAR, heads, chain, item, memo)
         if here < 0 or here == goal or not (known[names[0, here]] and known[names[1, here]]):

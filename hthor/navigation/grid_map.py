@@ -12,7 +12,7 @@ from hthor.types import Scan, Vec2
 CELL_M = 0.05
 UNKNOWN, FREE, OCCUPIED = 0, 1, 2
 LOW_M = 2.1
-"""Obstacles lower than this are furniture, with things on or in them; the others are walls [m]."""
+"""[m] Obstacles lower than this are furniture, with things on or in them; higher obstacles are walls."""
 _BESIDE_CELLS = 8
 _CHUNK = 64
 
@@ -22,9 +22,9 @@ class GridMap:
 
     Attributes:
         cells: (ny, nx) uint8, row = y. Replaced by a larger array when the map grows.
-        near: (ny, nx) uint8, 1 where a free cell was looked at from close by (see `integrate`).
+        near: (ny, nx) uint8, 1 for free cells that were looked at from close by (see `integrate`).
         beside: (ny, nx) uint8, 1 within 0.4 m of furniture; for scans without ``tops``, of any obstacle.
-        left, bottom: lattice index of column 0 and row 0; cell (row, column) has its centre at
+        left, bottom: lattice indices of column 0 and row 0; cell (row, column) has its centre at
             ``((left + column + 0.5) * 0.05, (bottom + row + 0.5) * 0.05)`` metres.
         bounds: (4,) int64, first and last known column, first and last known row.
         version: grows with every change.
@@ -47,16 +47,16 @@ class GridMap:
 
     @property
     def obstacles(self) -> NDArray[np.int32]:
-        """(N, 3) x and y index of the occupied cells in order of detection, and 1 for furniture; only appended to."""
+        """(N, 3) x and y index of occupied cells, and 1 for furniture, else 0; new cells are appended at the end."""
         return self._obstacles[: self._count]
 
     def integrate(self, scan: Scan, look_m: float = 1.1, look_rad: float = math.pi) -> None:
         """Add a range scan.
 
         Args:
-            scan: with increasing bearings.
-            look_m: free cells within this distance [m] count as looked at from close by,
-            look_rad: if they are within this angle [rad] of the heading.
+            scan: its bearings must increase.
+            look_m, look_rad: free cells within this distance [m] and within this angle [rad] of the heading count as
+                looked at from close by.
         """
         origin, margin = scan.origin, scan.limit + 0.2
         self._cover(origin.x - margin, origin.y - margin, origin.x + margin, origin.y + margin)
@@ -108,7 +108,7 @@ class GridMap:
         return bool(scan_kernel.along(self.cells, *line, 0, count, 1.0, float(count), FREE, True))
 
     def meets(self, a: Vec2, b: Vec2, margin: float) -> bool:
-        """Whether an occupied cell is on the line from ``a`` [m] to ``margin`` [m] before ``b``, after the first cell.
+        """Whether a cell on the line from ``a`` to ``margin`` before ``b`` [m], except the first cell, is occupied.
 
         One cell every 5 cm is checked.
         """
@@ -128,7 +128,7 @@ class GridMap:
         self.near[:] = 0
 
     def _as_bearings(self, bearings: Any) -> NDArray[np.float64]:
-        """The bearings as an array for compiled loops; cached, since a sensor always has the same ones."""
+        """The bearings as an array for compiled loops; cached, because a sensor always has the same bearings."""
         if bearings is not self._given:
             self._given, self._bearings = bearings, np.array(bearings, dtype=np.float64)
         return self._bearings
@@ -143,7 +143,7 @@ class GridMap:
             self._obstacles = larger
 
     def _cover(self, x0: float, y0: float, x1: float, y1: float) -> None:
-        """Grow by whole chunks until the rectangle [m] lies inside, one cell of border included."""
+        """Grow the map by whole chunks until it contains the rectangle [m] and a border of one cell."""
         ny, nx = self.cells.shape
         left, bottom = self.left, self.bottom
         column0, row0 = math.floor(x0 / CELL_M) - left, math.floor(y0 / CELL_M) - bottom

@@ -1,8 +1,8 @@
 """Compiled: shortest paths on a grid of cells and levels (see `scan_kernel`).
 
-Costs are whole numbers, 100 for a step of one clear cell, so that paths do not depend on rounding. A search works on a
-window of the map with a closed border of one cell, laid out flat, so that no step has to look where the map ends.
-Indices are unsigned in the inner loops, so that none has to be looked at for whether it counts from the end.
+Costs are integers, 100 for a step of one clear cell, so that paths do not depend on rounding. A search works on a flat
+copy of a window of the map with a closed border of one cell, so that no step has to check for the map's end. Indices
+are unsigned in the inner loops, which saves numba's check for negative indices.
 """
 
 import math
@@ -19,21 +19,21 @@ _LAST = BUCKETS - 1
 _SLACK = 108.24
 """Largest cost of a path along the lattice per cell of the straight distance."""
 CLOSED, CLEAR, CLOSE, WATCHED = 0, 1, 2, 4
-"""States of a window's cells: impassable or done, else the level plus one; and a flag to stop there."""
+"""States of a window's cells: impassable or settled, else the level plus one; and a flag at cells to stop at."""
 
 _DX = np.array([1, 0, -1, 0, 1, -1, -1, 1], dtype=np.int64)
 _DY = np.array([0, 1, 0, -1, 1, 1, -1, -1], dtype=np.int64)
 
 
 def rank(columns: int, rows: int, within: float) -> int:
-    """The least cost to within ``within`` cells of a goal so many columns and rows away."""
+    """The least cost of a path to within ``within`` cells of a goal that is ``columns`` and ``rows`` away."""
     slack = math.ceil(within * _SLACK) if within > 0.0 else 0
     return max(0, STEP * max(columns, rows) + (DIAGONAL - STEP) * min(columns, rows) - slack)
 
 
 @numba.njit("int64[::1](int64)", cache=True)
 def _offsets(width: int) -> Any:
-    """Where the neighbours of a cell are in a flat window, in the order of `_DX` and `_DY`."""
+    """Index offsets of a cell's neighbours in a flat window, in the order of `_DX` and `_DY`."""
     return np.array([1, width, -1, -width, width + 1, width - 1, -width - 1, 1 - width], dtype=np.int64)
 
 
@@ -78,18 +78,18 @@ def prepare(
     memo: Any,
     key: int,
 ) -> None:
-    """Lay a window out flat, border included, and put its cell ``start`` in the queue, in bucket ``key``.
+    """Copy a window into flat arrays with a border, and put its cell ``start`` in the queue, in bucket ``key``.
 
     Args:
         window: first and last column, first and last row that may be used.
-        state, cost, came: out, one entry a cell of the bordered window.
-        heads, chain, item: out, the queue: `BUCKETS` entries, and eight a cell. memo: out, (3,) the queue's numbers.
+        state, cost, came: output, one entry per cell of the bordered window.
+        heads, chain, item: output, the queue: `BUCKETS` entries, and eight per cell. memo: output, (3,) queue counters.
     """
     x0, x1, y0, y1 = window[0], window[1], window[2], window[3]
     width = x1 - x0 + 3
     cost[:] = FAR
     state[:] = CLOSED
-    for j in range(y0, y1 + 1):  # loops that a compiler can turn into vector instructions
+    for j in range(y0, y1 + 1):  # loops that compile to vector instructions
         row = state[(j - y0 + 1) * width + 1 : (j - y0 + 2) * width - 1]
         tight, known = level[j, x0 : x1 + 1], cells[j, x0 : x1 + 1]
         if optimistic:
@@ -126,12 +126,12 @@ def seek(
     item: Any,
     memo: Any,
 ) -> int:
-    """The cheapest way to within ``within`` cells of a goal (A*); the cell where it ends, -1 when there is none.
+    """Search the cheapest path to within ``within`` cells of a goal (A*); returns its last cell, -1 without a path.
 
     Args:
         width: of the bordered window. left, bottom: the map's column and row of the window's cell 0.
         goal_x, goal_y: the goal [cells of the map].
-        most: give up where any way costs more.
+        most: give up when every path costs more.
     """
     offsets = _offsets(width)
     slack = math.ceil(within * _SLACK) if within > 0.0 else 0
@@ -187,15 +187,15 @@ def seek(
 def spread(
     state: Any, cost: Any, came: Any, width: int, watched: int, most: int, heads: Any, chain: Any, item: Any, memo: Any
 ) -> int:
-    """Cheapest ways to ever farther cells (Dijkstra), until ``watched`` more of the watched cells are reached.
+    """Search paths to cells of increasing cost (Dijkstra) until ``watched`` more of the watched cells are reached.
 
-    Call it again to go on. Cells that are `CLOSED` and cheaper than `FAR` are settled: no way to them is cheaper.
+    Another call continues the search. Cells that are `CLOSED` and cheaper than `FAR` have their least cost.
 
     Args:
-        most: stop before a cell that costs more.
+        most: stop before the first cell that costs more.
 
     Returns:
-        The watched cell reached last; -1 when the search ended before so many were reached.
+        The watched cell reached last; -1 if the search ended before ``watched`` cells were reached.
     """
     offsets = _offsets(width)
     key, used, waiting = memo[0], memo[1], memo[2]
@@ -244,7 +244,7 @@ def spread(
 
 @numba.njit("int64(int8[::1], int64, int64, int64, int64)", cache=True)
 def steps(came: Any, width: int, start: int, end: int, most: int) -> int:
-    """How many cells there are on the way from ``start`` to ``end``, at most ``most``."""
+    """The number of cells on the path from ``start`` to ``end``, at most ``most``."""
     offsets = _offsets(width)
     here, count = end, 1
     while here != start and count < most:
@@ -255,7 +255,7 @@ def steps(came: Any, width: int, start: int, end: int, most: int) -> int:
 
 @numba.njit("void(int8[::1], int32[::1], int64, int64, int64, int64, float64[:,::1], float64[::1])", cache=True)
 def trace(came: Any, cost: Any, width: int, end: int, left: int, bottom: int, points: Any, costs: Any) -> None:
-    """The last cells of the way to ``end``, as many as ``points`` holds, as
+    """Write the last cells of the path to ``end``, as many as ``points`` has rows; see
     `hthor.navigation.search_window.SearchWindow.trace`.
     """
     offsets = _offsets(width)

@@ -1,4 +1,4 @@
-"""Turns a path into motions of a body, and makes way for the person."""
+"""Turns a path into motions of a body, and makes room for the person."""
 
 import math
 from collections.abc import Callable, Sequence
@@ -7,12 +7,12 @@ from hthor.geometry.plane import turn, wrap
 from hthor.types import HUMAN, BodySpec, Detection, Motion, Move, Observation, Pose, Rotate, Vec2, Vec3, Wait
 
 TURN_RAD = math.radians(25.0)
-"""Heading error above which a body turns before it moves [rad]."""
+"""[rad] Heading error above which a body turns before it moves."""
 _ARRIVED_M = 0.04
 NEAR_M = 0.9
-"""A person in front closer than this has the right of way [m]."""
+"""[m] A person in front who is closer than this has the right of way."""
 PATIENCE_S = 2.0
-"""How long to stand aside before going on [s]."""
+"""[s] How long to stand aside before going on."""
 _PAUSE_S = 0.5
 _STEP_M = 0.5
 _FRONT_RAD = math.radians(70.0)
@@ -48,11 +48,11 @@ class Follower:
 
     @property
     def ahead(self) -> Vec2 | None:
-        """The way point [m] that it is heading for."""
+        """The way point [m] that the body is heading for."""
         return None if self.done else self.path[self._next]
 
     def next(self, pose: Pose) -> Motion | None:
-        """The next motion from ``pose``, or None when the path is done."""
+        """The next motion from ``pose``, or None when the whole path was walked."""
         while not self.done and math.dist(self.path[self._next], (pose.x, pose.y)) <= self.arrived_m:
             self._next += 1
         if self.done:
@@ -96,7 +96,7 @@ def face(pose: Pose, point: Vec3, eye_height: float, pitch_limit: float = math.p
 
 
 class Courtesy:
-    """Makes room when the person is in the way, for up to two seconds at a time, then goes on.
+    """Makes room when the person is in the way, for up to `PATIENCE_S` at a time, then lets the body go on.
 
     Args:
         fits: ``fits(a, b)`` says whether the body can go straight from ``a`` to ``b`` [m].
@@ -109,7 +109,7 @@ class Courtesy:
         self._rest = -1.0
 
     def motion(self, observation: Observation, seconds: float) -> Motion | None:
-        """A motion that makes room, or None to carry on.
+        """A motion that makes room, or None if the body can go on.
 
         Args:
             observation: of this body; its detections are read.
@@ -132,7 +132,7 @@ class Courtesy:
         return self._make_room(observation, person)
 
     def _make_room(self, observation: Observation, person: Vec2 | None) -> Motion:
-        """A step away while the person is near or has not been seen yet; else wait.
+        """A step away while the person is near or has not been seen yet; else a wait.
 
         In a passage it steps back ahead of a person who follows, until there is room to pass.
         """
@@ -142,7 +142,7 @@ class Courtesy:
         return Wait(seconds=_PAUSE_S) if aside is None else shift(pose, aside, _STEP_M)
 
     def _look(self, observation: Observation) -> Vec2 | None:
-        """Where the nearest person close by is [m]; None when none is."""
+        """Position [m] of the nearest person close by; None when nobody is near."""
         nearest, best = None, NEAR_M + self.body.radius
         for seen in observation.detections:
             if seen.family == "person" and _apart(observation, seen) < best:
@@ -156,7 +156,7 @@ class Courtesy:
         return abs(wrap(math.atan2(person[1] - pose.y, person[0] - pose.x) - pose.yaw)) < _FRONT_RAD
 
     def _aside(self, here: Vec2, person: Vec2 | None) -> Vec2 | None:
-        """A spot half a metre away that the body can go straight to and that leaves the person most room."""
+        """The place, half a metre straight away, that leaves the person most room; None if the body can go to none."""
         best, most = None, 0.0 if person is None else math.dist(here, person) + 0.05
         for k in range(_DIRECTIONS):
             angle = 2.0 * math.pi * k / _DIRECTIONS
@@ -169,7 +169,7 @@ class Courtesy:
         return best
 
     def _room(self, here: Vec2, angle: float) -> float:
-        """How far [m] the body can go that way, up to 1.5 m."""
+        """How far [m] the body can go in the direction ``angle``, up to 1.5 m."""
         for k in (3, 2, 1):
             spot = (here[0] + 0.5 * k * math.cos(angle), here[1] + 0.5 * k * math.sin(angle))
             if self.fits(here, spot):

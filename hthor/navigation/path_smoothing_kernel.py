@@ -13,7 +13,7 @@ from hthor.navigation.grid_search_kernel import STEP, TIGHT
     "float64(uint8[:,::1], uint8[:,::1], boolean, float64, float64, float64, float64)", cache=True, error_model="numpy"
 )
 def line_cost(cells: Any, level: Any, optimistic: bool, ax: float, ay: float, bx: float, by: float) -> float:
-    """Cost of the straight line between two points [cells]; negative when the body does not fit on it."""
+    """Cost of the straight line between two points [cells]; negative if the body does not fit on the line."""
     ny, nx = cells.shape
     length = math.hypot(bx - ax, by - ay)
     n = int(length * 2.0) + 1
@@ -37,9 +37,9 @@ def line_cost(cells: Any, level: Any, optimistic: bool, ax: float, ay: float, bx
     error_model="numpy",
 )
 def pull_string(cells: Any, level: Any, optimistic: bool, points: Any, cost: Any, keep: Any) -> int:
-    """Pull the string tight: indices of the points to keep; a shortcut is taken when it costs no more.
+    """Straighten a path by shortcuts that cost no more; ``keep`` is set to the indices of the remaining points.
 
-    ``points`` (N, 2) [cells], ``cost`` (N,) the cost up to each, ``keep`` out; returns how many are kept.
+    ``points`` (N, 2) [cells] is the path, ``cost`` (N,) the cost up to each point; returns how many points remain.
     """
     n = len(points)
     keep[0] = 0
@@ -48,7 +48,7 @@ def pull_string(cells: Any, level: Any, optimistic: bool, points: Any, cost: Any
         best, misses = here + 1, 0
         for k in range(here + 2, n):
             line = line_cost(cells, level, optimistic, points[here, 0], points[here, 1], points[k, 0], points[k, 1])
-            spare = 100.0 if here == 0 or k == n - 1 else 30.0  # the ends lie anywhere in their cells
+            spare = 100.0 if here == 0 or k == n - 1 else 30.0  # the ends may lie anywhere in their cells
             if line >= 0.0 and line <= cost[k] - cost[here] + spare:
                 best, misses = k, 0
             else:
@@ -67,12 +67,12 @@ def pull_string(cells: Any, level: Any, optimistic: bool, points: Any, cost: Any
     error_model="numpy",
 )
 def straighten(cells: Any, level: Any, optimistic: bool, points: Any, cost: Any, keep: Any) -> int:
-    """Pull the string from both ends, and take the cheapest path over the bends of both; like `pull_string`."""
+    """Like `pull_string`, but from both ends; the result is the cheapest path over the bends of both."""
     n = len(points)
     forth, back = np.empty(n, dtype=np.int64), np.empty(n, dtype=np.int64)
     n_forth = pull_string(cells, level, optimistic, points, cost, forth)
     n_back = pull_string(cells, level, optimistic, points[::-1].copy(), cost[n - 1] - cost[::-1], back)
-    bends = np.zeros(n, dtype=np.int64)  # bit 1: a bend of either; bit 2: of the way forth
+    bends = np.zeros(n, dtype=np.int64)  # bit 1: a bend of either path; bit 2: a bend of the forward path
     for k in range(n_back):
         bends[n - 1 - back[k]] = 1
     for k in range(n_forth):
@@ -81,7 +81,7 @@ def straighten(cells: Any, level: Any, optimistic: bool, points: Any, cost: Any,
     m = len(nodes)
     best, before = np.full(m, 1e18), np.zeros(m, dtype=np.int64)
     best[0] = 0.0
-    last = 0  # the latest bend of the way forth, which always leads on
+    last = 0  # the latest bend of the forward path, from which the path always continues
     for b in range(1, m):
         j = nodes[b]
         for a in range(max(0, b - 12), b):
@@ -107,9 +107,9 @@ def straighten(cells: Any, level: Any, optimistic: bool, points: Any, cost: Any,
 
 @numba.njit("int64(uint8[:,::1], uint8[:,::1], boolean, float64[:,::1], int64)", cache=True)
 def tighten(cells: Any, level: Any, optimistic: bool, points: Any, n: int) -> int:
-    """Move every bend of a path towards the line between its neighbours while that costs less; drop needless ones.
+    """Move every bend of a path towards the line between its neighbours while the cost falls; drop needless bends.
 
-    ``points`` (N, 2) [cells] is changed in place, its first ``n`` rows are the path; returns how many are left.
+    ``points`` (N, 2) [cells] is changed in place; its first ``n`` rows are the path. Returns how many rows are left.
     """
     for _ in range(6):
         changed = False

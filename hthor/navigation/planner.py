@@ -1,4 +1,4 @@
-"""Shortest paths of a round body on a map that still grows."""
+"""Shortest paths of a round body on a map that is still being explored."""
 
 import math
 from collections.abc import Sequence
@@ -14,17 +14,17 @@ from hthor.navigation.search_window import ESCAPE_CELLS, SearchWindow, path_cost
 from hthor.types import Vec2
 
 _HARD_M = 0.026
-"""Clearance between the body and the centre of an occupied cell [m]: with less it would scrape along walls."""
+"""[m] Clearance between the body and the centre of an occupied cell: with less, the body would scrape along walls."""
 _SOFT_M = 0.10
-"""A path that comes closer than this [m] costs a fifth more."""
+"""[m] A path that comes closer to obstacles than this costs a fifth more."""
 _BORDER_CELLS = 12
 
 
 class Planner:
-    """Plans on a `GridMap` for a disc of ``radius`` metres; follows the map as it changes.
+    """Plans paths on a `GridMap` for a disc of ``radius`` [m]; keeps up with changes of the map.
 
-    With ``optimistic`` unknown cells count as passable, so that every place can be tried; without, only free cells do.
-    Cells where the body would touch are closed, cells where it would come close cost a fifth more.
+    If ``optimistic``, unknown cells count as passable, so that a path to any place can be tried; else only free cells.
+    Cells where the body would touch an obstacle are closed; cells close to an obstacle cost a fifth more.
     """
 
     def __init__(self, grid: GridMap, radius: float, optimistic: bool = True) -> None:
@@ -38,10 +38,10 @@ class Planner:
         """Way points [m] from ``a`` to ``b``, both included, or None when there is no path.
 
         Args:
-            a: where the body is [m]. If it stands too close to something it first goes to the nearest free cell.
-            b: where to go [m]. A place where the body cannot stand is replaced by the nearest one within 0.7 m.
-            within: the path ends as soon as it is this close to ``b`` [m].
-            most: ignore paths whose cost on the lattice is above that of so many clear metres.
+            a: where the body is [m]. A body too close to an obstacle first goes to the nearest free cell.
+            b: where to go [m]. A place where the body cannot stand is replaced by the nearest free place within 0.7 m.
+            within: [m] the path ends as soon as it is this close to ``b``.
+            most: [m] ignore paths whose cost on the lattice is above that of this length of clear cells.
         """
         self._follow()
         start, escape = self._enter(a)
@@ -74,22 +74,22 @@ class Planner:
         return Field(self.grid, window, lambda window, end, b: self._pulled(window, end, a, b, escape))
 
     def distances(self, a: Vec2, points: Sequence[Vec2], most: float = math.inf) -> tuple[float, ...]:
-        """Walking distance [m] from ``a`` to each point; infinite without a path, or without one up to ``most`` metres.
+        """Walking distance [m] from ``a`` to each point; infinite without a path of at most ``most`` [m].
 
-        One search serves all points, and goes no farther than necessary. Distances follow the lattice and its costs:
-        up to 8 % longer than the path walked.
+        One search serves all points and goes no farther than necessary. Distances follow the lattice and its costs, and
+        are up to 8 % longer than the walked path.
         """
         return self.field(a, points).distances(points, most)
 
     def nearest(self, a: Vec2, groups: Sequence[Sequence[Vec2]]) -> tuple[tuple[float, int], ...]:
-        """For each group of points the walking distance [m] to the nearest of them, as `distances`, and which it is.
+        """For each group, the walking distance [m] to its nearest point, as from `distances`, and that point's index.
 
-        Infinite and -1 where there is no path to any. One search serves all groups, and ends once each is reached.
+        Infinity and -1 for a group without a path to any of its points. One search serves all groups.
         """
         return self.field(a, [point for group in groups for point in group]).nearest(groups)
 
     def fits(self, x: float, y: float) -> bool:
-        """Whether the body may stand at (``x``, ``y``) [m], according to the map."""
+        """Whether the body can stand at (``x``, ``y``) [m], according to the map."""
         self._follow()
         row, column = self._row_column((x, y))
         ny, nx = self._cells.shape
@@ -116,7 +116,7 @@ class Planner:
         return self._level
 
     def _follow(self) -> None:
-        """Update from the map."""
+        """Update the levels from the map."""
         grid = self.grid
         if self._version == grid.version:
             return
@@ -129,7 +129,7 @@ class Planner:
         self._version = grid.version
 
     def _grow(self) -> None:
-        """The map has grown: move levels to a larger array, and inflate obstacles at the old edges again."""
+        """Move levels to a larger array after the map has grown, and inflate obstacles at the old edges again."""
         (left, bottom, ny, nx), level, stamped = self._frame, self._level, self._stamped
         self._allocate()
         column, row = left - self.grid.left, bottom - self.grid.bottom
@@ -151,7 +151,7 @@ class Planner:
         self._stamped = 0
 
     def _window(self, start: tuple[int, int] | None, points: Sequence[Vec2]) -> tuple[int, int, int, int]:
-        """First and last column, first and last row of the known map and the points, with a border."""
+        """First and last column, first and last row of a window around the known map and the points, with a border."""
         ny, nx = self._cells.shape
         x0, x1, y0, y1 = self.grid.bounds.tolist()
         for point in points:
@@ -164,7 +164,7 @@ class Planner:
         return min(x0, start[1]), max(x1, start[1]), min(y0, start[0]), max(y1, start[0])
 
     def _cell(self, point: Vec2) -> Vec2:
-        """The point [cells] of the map's array, columns first."""
+        """The point in cells of the map's array, (column, row)."""
         return point[0] / CELL_M - self.grid.left, point[1] / CELL_M - self.grid.bottom
 
     def _metres(self, x: float, y: float) -> Vec2:
@@ -176,20 +176,20 @@ class Planner:
         return math.floor(y), math.floor(x)
 
     def _nearest(self, point: Vec2) -> tuple[int, int] | None:
-        """The nearest cell the body may be in; None when there is none close by or the point is far outside."""
+        """The nearest cell that the body can be in; None if no such cell is close by or the point is far outside."""
         row, column = self._row_column(point)
         flat = grid_search_kernel.nearest(self._cells, self._level, self.optimistic, row, column, ESCAPE_CELLS)
         return None if flat < 0 else divmod(int(flat), self._cells.shape[1])
 
     def _enter(self, a: Vec2) -> tuple[tuple[int, int] | None, bool]:
-        """The cell where a path from ``a`` begins, and whether the body must first leave a tight spot for it."""
+        """The cell where a path from ``a`` begins, and whether the body must first leave a tight place to get there."""
         start = self._nearest(a)
         return start, start is not None and start != self._row_column(a)
 
     def _pulled(self, window: SearchWindow, end: int, a: Vec2, b: Vec2 | None, escape: bool) -> tuple[Vec2, ...]:
-        """The path [m] that a search found to its cell ``end``, smoothed, from ``a`` and to ``b`` exactly.
+        """The smoothed path [m] that a search found to its cell ``end``, from exactly ``a`` to exactly ``b``.
 
-        With ``escape`` it first leads from ``a`` to the cell where the search began.
+        If ``escape``, the path first leads from ``a`` to the cell where the search began.
         """
         points, costs = window.trace(end)
         first = self._cell(a)
@@ -216,7 +216,7 @@ def path_length(way: Sequence[Vec2]) -> float:
 
 
 def _disc(radius: float) -> NDArray[np.int64]:
-    """Offsets (N, 3): column, row and the level that an occupied cell gives to the cell there."""
+    """(N, 3) column and row offsets, and the level that an occupied cell gives to the cell at that offset."""
     reach = math.ceil((radius + _SOFT_M) / CELL_M)
     rows = []
     for row in range(-reach, reach + 1):

@@ -1,7 +1,7 @@
-"""Compiled: range scans onto a grid, and obstacles onto levels.
+"""Compiled: adds range scans to a grid, and obstacles to levels.
 
 Cells are (ny, nx) uint8: 0 unknown, 1 free, 2 occupied. Levels are (ny, nx) uint8: 0 clear, 1 tight, 2 no room for the
-body. Signatures are explicit, so that loading a module loads its loops, from the cache when there is one.
+body. Signatures are explicit, so that the loops are compiled, or loaded from the cache, when the module is imported.
 """
 
 import math
@@ -16,7 +16,7 @@ _ONE = 1 << _BITS
 
 @numba.njit("void(uint8[:,::1], int64, int64, int64[::1])", cache=True)
 def _open(cells: Any, row: int, column: int, bounds: Any) -> None:
-    """Make an unknown cell free, and keep the bounds of what is known."""
+    """Make an unknown cell free, and extend the ``bounds`` of the known cells."""
     if cells[row, column] == 0:
         cells[row, column] = 1
         if column < bounds[0]:
@@ -33,7 +33,7 @@ def _open(cells: Any, row: int, column: int, bounds: Any) -> None:
 def _fill(
     cells: Any, row: int, column: int, left: int, bottom: int, bounds: Any, found: Any, count: int, low: int
 ) -> int:
-    """Make a cell occupied and note it, and whether it is ``low``; returns how many are noted."""
+    """Make a cell occupied, and add it and ``low`` to the list ``found``; returns the length of the list."""
     if cells[row, column] == 2:
         return count
     _open(cells, row, column, bounds)
@@ -48,8 +48,8 @@ def _fill(
 def _sweep(cells: Any, x: float, y: float, ux: float, uy: float, count: int, bounds: Any) -> None:
     """Mark ``count`` cells along a beam as free, from (x, y) on in steps of (ux, uy) cells.
 
-    The map reaches farther than any beam, so that no coordinate is negative. Coordinates are fixed-point integers, a
-    cell being `_ONE`, so that a step is one addition and a cell's index one shift.
+    The map is larger than any beam, so that no coordinate is negative. Coordinates are fixed-point integers in which a
+    cell is `_ONE`, so that a step is one addition and a cell's index one shift.
     """
     fx, fy, dx, dy = int(x * _ONE), int(y * _ONE), int(ux * _ONE), int(uy * _ONE)
     for _ in range(count):
@@ -80,9 +80,9 @@ def beyond(
     found: Any,
     count: int,
 ) -> int:
-    """Fill the cells of ``walls`` [m] that were seen over what the beams met; returns the count of obstacles.
+    """Fill the cells at the distances ``walls`` [m], seen over lower obstacles; returns the number of obstacles.
 
-    The floor between stays unknown.
+    The floor between the lower obstacle and the wall stays unknown.
     """
     px, py = x / cell - left, y / cell - bottom
     for k in range(len(bearings)):
@@ -119,9 +119,9 @@ def integrate(
     found: Any,
     count: int,
 ) -> int:
-    """Trace every beam, and beams between neighbours so that no cell is skipped; returns the number of obstacles.
+    """Trace every beam, and more beams in between so that no cell is skipped; returns the number of obstacles.
 
-    ``tops`` are the heights [m] of what the beams hit; obstacles lower than ``low`` are marked as such.
+    ``tops`` are the heights [m] of the obstacles that beams hit; obstacles lower than ``low`` are marked as low.
     """
     px, py = x / cell - left, y / cell - bottom
     row, column = math.floor(py), math.floor(px)
@@ -148,7 +148,7 @@ def integrate(
         if hit:
             b, a = math.floor(py + (reach + 0.2) * uy), math.floor(px + (reach + 0.2) * ux)
             count = _fill(cells, b, a, left, bottom, bounds, found, count, tops[k] < low)
-        # Between this beam and the next: free as far as the shorter one, from where a gap could open.
+        # Between this beam and the next, cells are free up to the shorter range; start where a gap could open.
         m = k + 1 if k + 1 < n else 0
         gap = bearings[m] - bearings[k] if m else bearings[0] + 2.0 * math.pi - bearings[k]
         if not 1e-9 < gap < 0.3:
@@ -161,7 +161,7 @@ def integrate(
         for _ in range(between):
             vx, vy = vx * cos - vy * sin, vx * sin + vy * cos
             _sweep(cells, px + t * vx, py + t * vy, vx, vy, math.ceil(shorter - t), bounds)
-        # Two hits closer together than any body is wide belong to one obstacle.
+        # Two hits that are closer together than the width of any body belong to one obstacle.
         if hit and ranges[m] < limit - 1e-6:
             ax, ay = px + (reach + 0.2) * ux, py + (reach + 0.2) * uy
             bx, by = px + (other + 0.2) * along_x[m], py + (other + 0.2) * along_y[m]
@@ -195,7 +195,7 @@ def along(
     state: int,
     wanted: bool,
 ) -> bool:
-    """Whether all points of a line, ``first`` to ``last``, ``step`` apart, are in cells of a state, or all are not."""
+    """Whether a line's points ``first`` to ``last``, ``step`` apart, are all in (``wanted``) or all not in ``state``."""
     ny, nx = cells.shape
     for k in range(first, last + 1):
         share = k * step / length
@@ -209,7 +209,7 @@ def along(
 
 @numba.njit("void(uint8[:,::1], int32[:,::1], int64, int64, int64, int64, int64)", cache=True)
 def surround(beside: Any, obstacles: Any, first: int, last: int, left: int, bottom: int, reach: int) -> None:
-    """Mark the cells within ``reach`` columns and rows of those obstacles, ``first`` to ``last``, that are low."""
+    """Mark the cells within ``reach`` columns and rows of the low obstacles among obstacles ``first`` to ``last``."""
     ny, nx = beside.shape
     for k in range(first, last):
         if obstacles[k, 2]:
@@ -221,7 +221,7 @@ def surround(beside: Any, obstacles: Any, first: int, last: int, left: int, bott
 
 @numba.njit("void(uint8[:,::1], int32[:,::1], int64, int64, int64, int64, int64[:,::1])", cache=True)
 def inflate(level: Any, obstacles: Any, first: int, last: int, left: int, bottom: int, disc: Any) -> None:
-    """Raise the level around obstacles ``first`` to ``last``; ``disc`` (N, 3) holds column and row offsets, level."""
+    """Raise the levels around obstacles ``first`` to ``last``; ``disc`` (N, 3): column offset, row offset, level."""
     ny, nx = level.shape
     for k in range(first, last):
         column, row = obstacles[k, 0] - left, obstacles[k, 1] - bottom

@@ -9,19 +9,19 @@ from hthor.navigation import frontier_kernel, grid_search_kernel
 from hthor.navigation.grid_map import CELL_M
 
 ESCAPE_CELLS = 14
-"""A place where the body cannot stand is replaced by the nearest one at most this far away [cells]."""
+"""[cells] A place where the body cannot stand is replaced by the nearest free place within this distance."""
 _LONGEST = 8192
 
 
 def path_cost(metres: float) -> int:
-    """What a path of so many metres through clear cells costs, rounded up."""
+    """The cost of a path of length ``metres`` [m] through clear cells, rounded up."""
     return grid_search_kernel.FAR if math.isinf(metres) else math.floor(metres / CELL_M * grid_search_kernel.STEP) + 1
 
 
 class SearchWindow:
     """The cheapest paths from one cell through a window of a map.
 
-    Rows and columns are the map's; ``flat`` indices are the window's own, which has a border of one cell.
+    Rows and columns are those of the map; ``flat`` indices are those of the window, which has a border of one cell.
 
     Attributes:
         state, cost, came: flat arrays, see `grid_search_kernel.prepare`. start: flat index of the first cell.
@@ -37,7 +37,7 @@ class SearchWindow:
         start: tuple[int, int],
         key: int = 0,
     ) -> None:
-        """``start`` is a row and a column, ``key`` the least possible cost of the path to the goal."""
+        """``start`` is a (row, column), ``key`` the least possible cost of the path to the goal."""
         x0, x1, y0, y1 = self.edges = edges
         self.left, self.bottom, self.width = x0 - 1, y0 - 1, x1 - x0 + 3
         size = self.width * (y1 - y0 + 3)
@@ -58,7 +58,7 @@ class SearchWindow:
         return (row - self.bottom) * self.width + column - self.left
 
     def cell(self, flat: int) -> tuple[int, int]:
-        """The row and column of a cell of the map."""
+        """The map's row and column of the cell with a flat index."""
         row, column = divmod(flat, self.width)
         return row + self.bottom, column + self.left
 
@@ -68,30 +68,30 @@ class SearchWindow:
         return x0 <= column <= x1 and y0 <= row <= y1
 
     def seek(self, x: float, y: float, within: float, most: int = grid_search_kernel.FAR) -> int:
-        """The flat index where the path to within ``within`` cells of (``x``, ``y``) [cells] ends.
+        """The flat index of the last cell of the cheapest path to within ``within`` cells of (``x``, ``y``) [cells].
 
-        -1 when there is none that costs ``most`` or less.
+        -1 when no path costs ``most`` or less.
         """
         arrays = self.state, self.cost, self.came, self.width, self.left, self.bottom
         return int(grid_search_kernel.seek(*arrays, x, y, within, most, *self._queue))
 
     def watch(self, flat: int) -> bool:
-        """Stop at this cell when it is reached; False if it is closed or watched already."""
+        """Let searches stop at this cell; returns False if it is closed or watched already."""
         news = grid_search_kernel.CLOSED < int(self.state[flat]) < grid_search_kernel.WATCHED
         if news:
             self.state[flat] |= grid_search_kernel.WATCHED
         return news
 
     def ignore(self, flat: int) -> None:
-        """Do not stop at this cell any longer."""
+        """Let searches no longer stop at this cell."""
         self.state[flat] &= ~np.uint8(grid_search_kernel.WATCHED)
 
     def spread(self, watched: int, most: int = grid_search_kernel.FAR) -> int:
-        """Search on until so many watched cells, or all cells up to cost ``most``, are reached; the last one, or -1."""
+        """Search on until ``watched`` more watched cells are reached; returns the last, -1 if ``most`` came first."""
         return int(grid_search_kernel.spread(self.state, self.cost, self.came, self.width, watched, most, *self._queue))
 
     def reach(self, names: NDArray[np.int16], known: NDArray[np.uint8], goal: int) -> int:
-        """Search on to the watched cell ``goal``, or to one of a group that is not ``known``; -1 for none."""
+        """Search on to the watched cell ``goal``, or to a cell of a group that is not ``known``; -1 for none."""
         arrays = self.state, self.cost, self.came, self.width
         return int(frontier_kernel.reach_group(names, known, goal, *arrays, *self._queue))
 
@@ -105,7 +105,7 @@ class SearchWindow:
 
     @property
     def reached(self) -> int:
-        """Every cell with a lower cost was reached."""
+        """The cost below which every cell has been reached."""
         return int(self._queue[3][0])
 
     def trace(self, end: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -1,4 +1,4 @@
-"""Where a body can stand without cutting anybody's way, and which of many places can be used."""
+"""Finds places where a body can stand without blocking anybody's way, and checks which places can be used."""
 
 import math
 from collections.abc import Sequence
@@ -16,24 +16,24 @@ from hthor.navigation.search_window import SearchWindow
 from hthor.types import Vec2
 
 BERTH_M = 0.45
-"""Nobody else's axis comes closer than this to a standing body: both radii and a little."""
+"""[m] No other body's axis comes closer than this to a standing body: both radii and a small margin."""
 _ROUND_M = 0.95
 _FAR_M = 3.0
 _SNAP_CELLS = 30
 NO, MAYBE, YES = 0, 1, 2
-"""Not usable; usable if unknown cells are free; known to be free."""
+"""A place is not usable; is usable if unknown cells are free; is known to be usable."""
 
 
 def park(free: NDArray[np.bool_], origin: Vec2, cell: float, here: Vec2, point: Vec2, apart_m: float) -> Vec2 | None:
-    """The spot nearby where least traffic to ``point`` would pass; None when there is none.
+    """The place nearby where the least traffic to ``point`` would pass; None if there is no suitable place.
 
-    It blocks no passage: the free floor around it hangs together without it. Traffic comes from everywhere alike, by
-    the shortest ways.
+    It blocks no passage: the free floor around it stays connected when it is occupied. Traffic is assumed to come from
+    every free cell equally, by the shortest path.
 
     Args:
-        free: (ny, nx) where an axis may be; its corner lies at ``origin`` [m], its cells are ``cell`` metres wide.
-        here: where the body stands [m]. The spot is at most 3 m away.
-        point: where others have business [m]; the spot is at least ``apart_m`` metres away from it.
+        free: (ny, nx) bool, cells where an axis can be; the corner is at ``origin`` [m], cells are ``cell`` [m] wide.
+        here: where the body stands [m]; the place is at most 3 m away.
+        point: where other bodies want to go [m]; the place is at least ``apart_m`` [m] away from it.
     """
     cells = np.array(free, dtype=np.uint8)
     column, row = math.floor((here[0] - origin[0]) / cell), math.floor((here[1] - origin[1]) / cell)
@@ -49,14 +49,14 @@ def park(free: NDArray[np.bool_], origin: Vec2, cell: float, here: Vec2, point: 
 
 
 def retreat(grid: GridMap, planner: Planner, here: Vec2, point: Vec2, apart_m: float) -> tuple[Vec2, ...] | None:
-    """The way on a body's own map to the spot that `park` finds there; None to stay."""
+    """The path [m] on a body's own map to the place that `park` finds on that map; None to stay."""
     free = (grid.cells == FREE) & (planner.levels < 2)
     spot = park(free, (grid.left * CELL_M, grid.bottom * CELL_M), CELL_M, here, point, apart_m)
     return None if spot is None else planner.path(here, spot)
 
 
 def _traffic(cells: NDArray[np.uint8], x: float, y: float) -> NDArray[np.int64] | None:
-    """How many cells' shortest ways to a point [cells] lead through each cell."""
+    """For each cell, the number of cells whose shortest path to a point [cells] leads through it."""
     nx = cells.shape[1]
     level = np.zeros_like(cells)
     end = nearest(cells, level, False, math.floor(y), math.floor(x), _SNAP_CELLS)
@@ -75,9 +75,9 @@ def _traffic(cells: NDArray[np.uint8], x: float, y: float) -> NDArray[np.int64] 
 
 @numba.njit("void(int32[::1], int8[::1], int64, int64, int64[::1])", cache=True)
 def _pour(cost: Any, came: Any, width: int, end: int, flow: Any) -> None:
-    """Let one unit run down from every reached cell along the steps by which it was reached."""
+    """Let one unit flow from every reached cell back along the path by which it was reached."""
     n = len(cost)
-    sources = np.zeros(n, dtype=np.int8)  # cells that still have to run into each
+    sources = np.zeros(n, dtype=np.int8)  # number of neighbours that still have to flow into each cell
     for here in range(n):
         if cost[here] < FAR and here != end:
             d = came[here]
@@ -93,14 +93,14 @@ def _pour(cost: Any, came: Any, width: int, end: int, flow: Any) -> None:
             there = here - _DY[d] * width - _DX[d]
             flow[there] += flow[here]
             sources[there] -= 1
-            if there > first:  # its own turn comes
+            if there > first:  # it is handled later
                 break
             here = there
 
 
 @numba.njit("int64(uint8[:,::1], int64, int64, float64, float64)", cache=True)
 def _pieces(free: Any, row: int, column: int, inner: float, outer: float) -> int:
-    """How many pieces the free floor between two radii [cells] around a cell falls into."""
+    """The number of connected pieces of the free floor between two radii [cells] around a cell."""
     ny, nx = free.shape
     reach = math.ceil(outer)
     width = 2 * reach + 1
@@ -137,7 +137,7 @@ def _pieces(free: Any, row: int, column: int, inner: float, outer: float) -> int
 
 @numba.njit("int64(int64[:,::1], int64, int64, float64, int64)", cache=True)
 def _passing(flow: Any, row: int, column: int, radius: float, enough: int) -> int:
-    """The strongest stream within a radius [cells] of a cell, or one that is at least ``enough``."""
+    """The largest flow within a radius [cells] of a cell; the search ends at any flow of at least ``enough``."""
     ny, nx = flow.shape
     reach = math.ceil(radius)
     most = flow[row, column]
@@ -167,7 +167,7 @@ def _search(
     outer: float,
     far: float,
 ) -> int:
-    """Flat index of the quietest good cell, the first found of equals, looking ever farther; -1 when there is none."""
+    """Flat index of the suitable cell with the least traffic, the nearer of equal cells; -1 if no cell is suitable."""
     ny, nx = free.shape
     seen = np.zeros((ny, nx), dtype=np.uint8)
     queue = np.empty(ny * nx + 9, dtype=np.int64)
@@ -196,11 +196,11 @@ def _search(
 
 
 def usable(grid: GridMap, planner: Planner, spots: Sequence[Vec2], facing: Sequence[Vec2], margin: float) -> list[int]:
-    """`NO`, `MAYBE` or `YES` for each spot [m]: whether the body fits, and nothing stands between it and what it faces.
+    """`NO`, `MAYBE` or `YES` for each spot [m]: whether the body fits, with no obstacle before the point it faces.
 
     Args:
-        grid, planner: the map, and the body on it.
-        facing: the point [m] that each spot faces; the last ``margin`` [m] before it do not count.
+        grid, planner: the map, and the planner for the body.
+        facing: the point [m] that each spot faces; obstacles in the last ``margin`` [m] before it do not count.
     """
     if not spots:
         return []
