@@ -1,4 +1,4 @@
-"""Every kind of thing once: size, mass, affordances, form."""
+"""The catalogue of all kinds of things: size, mass, affordances, form."""
 
 import re
 
@@ -19,15 +19,15 @@ _ASSET = re.compile(r"hthor_([a-z_]+?)(?:_(\d+)x(\d+)x(\d+))?(?:_v(\d+))?")
 
 
 def names() -> tuple[str, ...]:
-    """The name of every kind: receptacles, targets, then all other household things."""
+    """The names of all kinds: receptacles, then targets, then all other household things."""
     return tuple(_KINDS)
 
 
 def kind(name: str) -> Kind:
-    """The kind of that name.
+    """The kind with this name.
 
     Raises:
-        UnknownName: when there is none.
+        UnknownName: when no kind has this name.
     """
     try:
         return _KINDS[name]
@@ -36,10 +36,10 @@ def kind(name: str) -> Kind:
 
 
 def own_asset(asset: str) -> tuple[Kind, Vec3, int] | None:
-    """Kind, size [m] and variant of one of our own asset ids, None for an id that is not ours.
+    """Kind, size [m] and variant of one of hthor's own asset ids, None for any other id.
 
-    Ours are ``hthor_<kind>``, and ``hthor_<kind>_<width>x<depth>x<height>`` with whole centimetres for another size;
-    ``_v<number>`` at the end names a variant.
+    Own ids are ``hthor_<kind>``, and for another size ``hthor_<kind>_<width>x<depth>x<height>`` in whole centimetres;
+    ``_v<number>`` at the end gives the variant.
     """
     match = _ASSET.fullmatch(asset)
     if match is None or match[1] not in _KINDS:

@@ -7,7 +7,7 @@ from hthor.types import Rgba, Vec3
 
 
 def oven_front(size: Vec3, *, body: Rgba, glass: Rgba) -> Form:
-    """A box with a door hinged at the left and a panel of keys beside it: microwave ovens and safes."""
+    """A box with a door hinged at the left and a panel of keys next to it: microwave ovens and safes."""
     w, d, h = size
     wall, leaf = min(0.025, 0.08 * w, 0.08 * h, 0.08 * d), min(0.02, 0.08 * d)
     front, split = d - leaf, 0.76 * w
@@ -35,7 +35,7 @@ def washer(size: Vec3, *, body: Rgba, glass: Rgba) -> Form:
     )
     drum = inside(size, "drum", (wall, wall, low + wall), (w - wall, 0.97 * front, high - wall))
     door = hinge(size, "door", 0.1 * w, d, left=True)
-    # Beside the door the shell is open in front; a frame of its own would show nothing more than the door's look does.
+    # Next to the door the shell is open in front; a frame there would not be visible in addition to the door's look.
     sides = (
         box(size, (0.0, front, low), (0.1 * w, front + 0.5 * leaf, high), body),
         box(size, (0.9 * w, front, low), (w, front + 0.5 * leaf, high), body),
@@ -44,7 +44,7 @@ def washer(size: Vec3, *, body: Rgba, glass: Rgba) -> Form:
 
 
 def stove(size: Vec3, *, body: Rgba, glass: Rgba) -> Form:
-    """An oven under a glass hob: its door is a flap that falls open, its knobs are above the door."""
+    """An oven under a glass hob: its door is a flap that opens downwards, its knobs are above the door."""
     w, d, h = size
     wall, leaf, grip = min(0.04, 0.08 * w, 0.08 * d), min(0.03, 0.06 * d), min(0.03, 0.05 * d)
     front, low, high, hob = d - leaf - grip, 0.12 * h, 0.82 * h, min(0.02, 0.05 * h)

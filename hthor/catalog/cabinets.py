@@ -1,7 +1,7 @@
 """Parametric furniture that opens: base and wall cabinets, wardrobes, chests with a drawer.
 
-Doors turn about the thing's outer edges and drawers slide to the front; of several drawers only the topmost is one,
-the others are drawn on. Fronts stand ``size[1]`` deep when closed, handles included.
+Doors turn about the thing's outer edges and drawers slide to the front. Of several drawers only the topmost can be
+opened; the others are only visible fronts. When closed, the thing with its handles is ``size[1]`` deep.
 """
 
 from hthor.catalog.colors import IRON, STEEL
@@ -10,15 +10,15 @@ from hthor.catalog.solids import PULL, box, hinge, inside, rest_on_top, shell, s
 from hthor.types import Joint, Part, Rgba, Surface, Vec3
 
 _DOORS_M = 1.2
-"""A pair of doors is at most this wide; the rest of a longer cabinet is closed for good."""
+"""[m] A pair of doors is at most this wide; the rest of a longer cabinet cannot be opened."""
 _NARROW_M = 0.7
-"""A base cabinet that is narrower than this has no doors."""
+"""[m] A base cabinet that is narrower than this has no doors."""
 
 
 def _pair(
     size: Vec3, lo: Vec3, hi: Vec3, grip: float, rgba: Rgba, handle: Rgba
 ) -> tuple[tuple[Part, ...], tuple[Joint, Joint]]:
-    """Two doors side by side with a handle each, ``grip`` deep, at the front ``hi[1]`` of the leaves."""
+    """Two doors side by side, each with a handle, ``grip`` [m] deep, at the doors' front ``hi[1]``."""
     (x0, y0, z0), (x1, y1, z1) = lo, hi
     middle, slim = (x0 + x1) / 2, 0.03 * (x1 - x0)
     low, high = z0 + 0.35 * (z1 - z0), z0 + 0.65 * (z1 - z0)
@@ -33,9 +33,9 @@ def _pair(
 
 
 def counter(size: Vec3, *, body: Rgba, top: Rgba) -> Form:
-    """A kitchen base cabinet under a worktop, with a toe kick; a pair of doors at its left end, the rest closed.
+    """A kitchen base cabinet under a worktop, with a toe kick and a pair of doors at its left end.
 
-    One that is too narrow for a pair of doors is closed: it stands in a corner or ends a row.
+    The rest has no doors. A cabinet too narrow for a pair has none at all: it stands in a corner or ends a row.
     """
     w, d, h = size
     t, toe, leaf = min(0.04, 0.2 * h), min(0.1, 0.2 * h), min(0.02, 0.05 * d)
@@ -59,12 +59,12 @@ def counter(size: Vec3, *, body: Rgba, top: Rgba) -> Form:
 
 
 def wall_cabinet(size: Vec3, *, body: Rgba, inner: Rgba) -> Form:
-    """A kitchen cabinet for the wall: two doors before two shelves."""
+    """A kitchen cabinet on the wall: two doors in front of two shelves."""
     return _cupboard(size, body, inner, bottom=0.0, shelf=0.5)
 
 
 def wardrobe(size: Vec3, *, body: Rgba, inner: Rgba) -> Form:
-    """Two tall doors before a hanging space with a shelf above it, on a plinth."""
+    """Two tall doors in front of a space for hanging clothes with a shelf above it, on a plinth."""
     return _cupboard(size, body, inner, bottom=min(0.08, 0.1 * size[2]), shelf=0.8)
 
 
@@ -89,7 +89,7 @@ def _cupboard(size: Vec3, body: Rgba, inner: Rgba, *, bottom: float, shelf: floa
 def _drawer(
     size: Vec3, lo: Vec3, hi: Vec3, depth: float, rgba: Rgba, front: Rgba
 ) -> tuple[tuple[Part, ...], Surface, Joint]:
-    """A drawer that fills the space from ``lo`` to ``hi`` except for a small gap, its front the last of its parts."""
+    """A drawer that fills the space from ``lo`` to ``hi`` except for a small gap; its front is its last part."""
     wall, air = min(0.012, 0.1 * (hi[0] - lo[0]), 0.1 * (hi[2] - lo[2])), 0.03 * (hi[2] - lo[2])
     near, far = (lo[0] + air, lo[1] + air, lo[2] + air), (hi[0] - air, hi[1], hi[2] - air)
     parts = tray(size, "drawer", near, far, wall, rgba)
@@ -119,7 +119,7 @@ def dresser(size: Vec3, *, body: Rgba, fronts: Rgba) -> Form:
 
 
 def nightstand(size: Vec3, *, wood: Rgba, front: Rgba) -> Form:
-    """A small table with a drawer under its plate and a board between its sides."""
+    """A small table with a drawer under its top and a board between its sides."""
     w, d, h = size
     t, wall, e = min(0.025, 0.1 * h), min(0.018, 0.08 * w), min(0.018, 0.08 * d)
     low, top = 0.62 * h, h - t
@@ -137,7 +137,7 @@ def nightstand(size: Vec3, *, wood: Rgba, front: Rgba) -> Form:
 
 
 def desk(size: Vec3, *, wood: Rgba, body: Rgba) -> Form:
-    """A plate on a side panel and a chest of drawers, closed at the back; the upper drawer opens."""
+    """A desktop on a side panel and a chest of drawers, closed at the back; the upper drawer opens."""
     w, d, h = size
     t, chest = min(0.035, 0.3 * h), min(0.4, 0.35 * w)
     low, e = h - t, min(0.03, 0.1 * d)

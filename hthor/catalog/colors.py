@@ -1,4 +1,4 @@
-"""The paint box: colors (red, green, blue, opacity), each 0 to 1."""
+"""Named colors: (red, green, blue, opacity), each from 0 to 1."""
 
 from hthor.types import Rgba
 

@@ -1,4 +1,4 @@
-"""Parametric fixtures: the fridge with its door, basins, and what stands in a bathroom."""
+"""Parametric fixtures: the fridge with its door, basins, bathroom fixtures and a coffee machine."""
 
 from hthor.catalog.colors import GLASS, GREY, STEEL, WHITE
 from hthor.catalog.kind import Form
@@ -7,9 +7,9 @@ from hthor.types import Part, Rgba, Vec3
 
 
 def fridge(size: Vec3, *, body: Rgba, inner: Rgba) -> Form:
-    """A hollow shell with two shelves behind a door that is hinged at the left front edge, seen from inside it.
+    """A hollow shell with two shelves behind a door that is hinged at the left front edge, as seen from inside.
 
-    Closed, the door seals the shell; open, it has swung out by `solids.SWING_RAD` and the shelves lie bare.
+    When closed, the door seals the shell; when open, it is turned by `solids.SWING_RAD` and the shelves are accessible.
     """
     w, d, h = size
     t, leaf, grip = min(0.05, 0.1 * w, 0.05 * h), min(0.06, 0.12 * d), min(0.03, 0.06 * d)
@@ -65,7 +65,7 @@ def sink(size: Vec3, *, body: Rgba, basin: Rgba) -> Form:
 
 
 def bathtub(size: Vec3, *, body: Rgba) -> Form:
-    """A tub with a rim all round."""
+    """A tub with a rim on all sides."""
     w, d, h = size
     rim, floor = min(0.08, 0.1 * w, 0.1 * d), 0.25 * h
     bottom = box(size, (0.0, 0.0, 0.0), (w, d, floor), body)
@@ -101,7 +101,7 @@ def toilet(size: Vec3, *, body: Rgba) -> Form:
 
 
 def coffee_machine(size: Vec3, *, body: Rgba) -> Form:
-    """A tank at the back, a head over a foot, and a jug between them."""
+    """A tank at the back, a brewing head over a foot, and a jug between head and foot."""
     w, d, h = size
     parts = (
         box(size, (0.0, 0.0, 0.0), (w, 0.45 * d, h), body),

@@ -1,4 +1,4 @@
-"""What a kind of thing is: a record of its size, mass, affordances and form."""
+"""The record of a kind of thing: its size, mass, affordances and form."""
 
 from collections.abc import Callable, Mapping
 from functools import lru_cache
@@ -18,7 +18,7 @@ class Form(Struct, frozen=True, kw_only=True):
 
 
 Shape = Callable[..., Form]
-"""Makes the form of a thing from its (width, depth, height) [m], and colors by keyword."""
+"""A function that makes the form of a thing from its (width, depth, height) [m] and from colors by keyword."""
 
 Family = Literal["receptacle", "target", "household"]
 
@@ -31,11 +31,11 @@ def _form(shape: Shape, size: Vec3, colors: tuple[tuple[str, Rgba], ...]) -> For
 class Kind(Struct, frozen=True, kw_only=True):
     """A kind of thing: ``name`` for programs, ``title`` for people.
 
-    ``size`` [m] is what a thing of this kind measures unless its house says otherwise: (width, depth, height) along
-    the local x, y and z axes, front towards +y. ``mass`` [kg] belongs to that size. ``relation`` is how an object
-    lies there: in a fridge or a sink, on anything else. ``finishes`` are the colors of its variants: what each changes
-    of the shape's own colors; variant 0 is the shape as it is. ``handles`` says that it has one at either end of its
-    width, by which several can carry what is too heavy for one.
+    ``size`` [m] is the default size, which a house may change: (width, depth, height) along the local x, y and z axes,
+    front towards +y. ``mass`` [kg] is that of the default size. ``relation`` says whether objects lie "in" such a
+    thing, as in a fridge or a sink, or "on" it. ``finishes`` are the colors that each variant changes of the shape's
+    own colors; variant 0 changes none. ``handles`` says that the thing has a handle at either end of its width, so
+    that several bodies can carry it together.
     """
 
     name: str
@@ -56,28 +56,28 @@ class Kind(Struct, frozen=True, kw_only=True):
         return _form(self.shape, self.size if size is None else size, tuple(sorted(looks.items())))
 
     def parts(self, size: Vec3 | None = None, variant: int = 0) -> tuple[Part, ...]:
-        """The solids, everything closed; their common bounding box is exactly ``size``."""
+        """The solids with all doors and drawers closed; their common bounding box is exactly ``size``."""
         return self.form(size, variant).parts
 
     def surfaces(self, size: Vec3 | None = None) -> tuple[Surface, ...]:
-        """Where objects can rest, lowest first; empty for a thing that is no receptacle."""
+        """The surfaces where objects can rest, lowest first; empty for a thing that is not a receptacle."""
         return self.form(size).surfaces
 
     def rests(self, size: Vec3 | None = None) -> tuple[Surface, ...]:
         """The surfaces where a task may put things and people look for them, lowest first.
 
-        They lie in the open, or inside a receptacle that things are put *in*: the fridge's, but no drawer's.
+        These are open surfaces, and those inside a thing that objects are put *in*, such as a fridge; not drawers.
         """
         within = self.relation == "in" and self.family == "receptacle"
         return tuple(surface for surface in self.surfaces(size) if within or not surface.inside)
 
     @property
     def hides(self) -> bool:
-        """Whether it must be opened to see what lies on its `rests`."""
+        """Whether the thing must be opened to see the objects on its `rests`."""
         return any(surface.inside for surface in self.rests())
 
     def joints(self, size: Vec3 | None = None) -> tuple[Joint, ...]:
-        """Its doors and drawers, empty for a thing that does not open."""
+        """The joints of its doors and drawers; empty for a thing that does not open."""
         return self.form(size).joints
 
     @property

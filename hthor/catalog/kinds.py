@@ -1,6 +1,6 @@
-"""Every kind of thing, one row a kind: the benchmark's receptacles and targets, and all other household things.
+"""Every kind of thing, one row per kind: the benchmark's receptacles and targets, and all other household things.
 
-To add a kind, add a row: a look of its own (`hthor.looks.build`) is optional, and without one its solids are drawn.
+To add a kind, add a row. A look of its own (`hthor.looks.build`) is optional; without it, the kind's solids are drawn.
 """
 
 from collections.abc import Callable
@@ -16,7 +16,7 @@ Finishes = tuple[dict[str, Rgba], ...]
 
 
 def _maker(**traits: Any) -> Callable[..., Kind]:
-    """Makes kinds that have these traits; what a row gives by keyword is passed to its shape."""
+    """Returns a function that makes kinds with these traits; other keywords of a row are passed to the kind's shape."""
 
     def make(
         name: str, size: Vec3, mass: float, shape: Shape, finishes: Finishes = (), *, title: str = "", **look: Any
@@ -37,12 +37,12 @@ _heavy = _maker(family="household", pickable=True, handles=True)
 
 
 def _paints(keyword: str, *colors: Rgba) -> Finishes:
-    """Finishes that change one color."""
+    """Finishes that each change one color."""
     return tuple({keyword: rgba} for rgba in colors)
 
 
 def _pairs(one: str, other: str, *colors: tuple[Rgba, Rgba]) -> Finishes:
-    """Finishes that change two colors."""
+    """Finishes that each change two colors."""
     return tuple({one: first, other: second} for first, second in colors)
 
 
@@ -52,7 +52,7 @@ _CHESTS = _pairs("body", "fronts", (c.OAK, c.BIRCH), (c.WALNUT, c.WALNUT), (c.IR
 _STANDS = _pairs("wood", "front", (c.WALNUT, c.WALNUT), (c.WHITE, c.CREAM), (c.BIRCH, c.WHITE))
 _CUPBOARDS = _pairs("body", "inner", (c.OAK, c.BIRCH), (c.WALNUT, c.OAK), (c.SAGE, c.WHITE))
 _KITCHENS = _pairs("body", "inner", (c.WHITE, c.WHITE), (c.BLUE, c.WHITE), (c.OAK, c.BIRCH))
-"""For wall cabinets: variant n goes with variant n of the counter tops."""
+"""Finishes of wall cabinets: variant n matches variant n of the counter tops."""
 _COUNTERS = _pairs("body", "top", (c.WHITE, c.IRON), (c.BLUE, c.CREAM), (c.OAK, c.WHITE))
 _DINING_TABLES = _pairs("wood", "legs", (c.WALNUT, c.WALNUT), (c.WHITE, c.BIRCH), (c.BIRCH, c.IRON))
 _COFFEE_TABLES = _pairs("wood", "legs", (c.OAK, c.OAK), (c.WHITE, c.BIRCH), (c.BIRCH, c.IRON))
@@ -185,6 +185,6 @@ _SMALL = (
 )
 
 _TRUNK = _heavy("trunk", (0.8, 0.4, 0.4), 26.0, props.trunk, _TRUNKS, body=c.TEAL, lid=c.OAK, handle=c.WALNUT)
-"""Too heavy for one, and has handles for two."""
+"""A thing that is too heavy for one body and has handles for two."""
 
 HOUSEHOLD = (*_FURNITURE, *_FIXTURES, *_SMALL, _TRUNK)

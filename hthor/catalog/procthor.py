@@ -1,4 +1,4 @@
-"""Foreign assets: which of our kinds stands in for each ProcTHOR object type; ships no asset and knows no house."""
+"""Kinds that represent the object types of ProcTHOR; contains no assets and does not read houses."""
 
 import re
 from collections.abc import Container
@@ -18,7 +18,7 @@ _NAMED_ALIKE = """
     RemoteControl Safe ShowerHead SideTable Sink SoapBottle Sofa Statue TeddyBear Television TissueBox Toaster
     Toilet ToiletPaper Tomato VacuumCleaner Vase Watch WateringCan
 """
-"""Object types that bear our kinds' own names, in another spelling."""
+"""Object types that have the same names as our kinds, in another spelling."""
 KIND_OF = {
     **{name: re.sub(r"(?<!^)(?=[A-Z])", "_", name).lower() for name in _NAMED_ALIKE.split()},
     "ArmChair": "armchair",
@@ -67,16 +67,16 @@ KIND_OF = {
     "WashingMachine": "washing_machine",
     "WineBottle": "bottle",
 }
-"""The kind for each object type; types without one become "object" when they can be picked up, else "furniture"."""
+"""The kind for each object type; other types become "object" if they can be picked up, else "furniture"."""
 
 _ROUND_CORNERS = re.compile(r"Countertop_([LC])_")
-"""ProcTHOR names its worktops by their outline: I and Island are straight, L and C go round corners."""
+"""ProcTHOR names its worktops by their outline: I and Island are straight; L and C go round corners."""
 
 
 class Asset(Struct, frozen=True, kw_only=True):
-    """A foreign asset: the kind that stands in for it, and its size (width, depth, height) [m], and variant.
+    """An asset of ProcTHOR: the kind that represents it, its size (width, depth, height) [m], and its variant.
 
-    ``plan`` is its outline seen from above where that is no rectangle: "L" or "C", see `hthor.houses.loader`.
+    ``plan`` is its outline from above if that is not a rectangle: "L" or "C", see `hthor.houses.loader`.
     """
 
     kind: str
@@ -99,7 +99,7 @@ class _Row(Struct, rename="camel"):
 
 
 def kind_of(object_type: str, *, pickable: bool) -> str:
-    """The name of the kind that stands in for a ProcTHOR object type."""
+    """The name of the kind that represents a ProcTHOR object type."""
     return KIND_OF.get(object_type, "object" if pickable else "furniture")
 
 
@@ -109,7 +109,7 @@ def read(path: Path) -> dict[str, Asset]:
     Assets without a bounding box are left out.
 
     Raises:
-        HouseError: when the file is absent or is no such database.
+        HouseError: when the file does not exist or is not such a database.
     """
     types = _types(path)
     rows = (row for group in types.values() for row in group)
@@ -117,7 +117,7 @@ def read(path: Path) -> dict[str, Asset]:
 
 
 def excerpt(path: Path, ids: Container[str]) -> bytes:
-    """The rows of an asset database about these assets, as a small database; raises as `read`."""
+    """The rows of these assets from an asset database, as a smaller database; raises as `read` does."""
     kept = {name: [row for row in rows if row.asset_id in ids] for name, rows in _types(path).items()}
     return jsonio.pretty({name: rows for name, rows in kept.items() if rows})
 
@@ -127,7 +127,7 @@ def _types(path: Path) -> dict[str, list[_Row]]:
 
 
 def _asset(path: Path, row: _Row, box: Any) -> Asset:
-    size = (box.x, box.z, box.y)  # y is up there
+    size = (box.x, box.z, box.y)  # in ProcTHOR y is up
     if not all(0.0 < extent < 100.0 for extent in size):
         problem = f"a size must be positive and below 100 m, got {size}"
         raise HouseError(str(path), f"{row.object_type}: {row.asset_id}.boundingBox", problem)

@@ -1,4 +1,4 @@
-"""Parametric small things of one to three parts, and what hangs on walls."""
+"""Parametric small things with few parts, and things that hang on walls."""
 
 from hthor.catalog.kind import Form
 from hthor.catalog.solids import box, pillar, rest, rounded
@@ -13,12 +13,12 @@ def block(size: Vec3, *, rgba: Rgba) -> Form:
 
 
 def ball(size: Vec3, *, rgba: Rgba) -> Form:
-    """One sphere, or the roundest solid of that size."""
+    """One sphere, or the roundest possible solid of this size."""
     return Form(parts=(rounded(size, ZERO, size, rgba),))
 
 
 def stack(size: Vec3, *, low: Rgba, high: Rgba, split: float, narrow: float) -> Form:
-    """A foot below ``split`` of the height, the full width above it; ``narrow`` is the foot's share of the width."""
+    """A foot up to the share ``split`` of the height, with the share ``narrow`` of the width; full width above it."""
     w, d, h = size
     a, b = (1 - narrow) / 2, (1 + narrow) / 2
     foot = rounded(size, (a * w, a * d, 0.0), (b * w, b * d, split * h), low)
@@ -26,7 +26,7 @@ def stack(size: Vec3, *, low: Rgba, high: Rgba, split: float, narrow: float) -> 
 
 
 def plate(size: Vec3, *, glaze: Rgba) -> Form:
-    """A flat dish on a foot, with room for a little something on it."""
+    """A flat dish on a foot, with room for a small object on it."""
     w, d, h = size
     form = stack(size, low=glaze, high=glaze, split=0.5, narrow=0.7)
     return Form(parts=form.parts, surfaces=(rest(size, "dish", (0.15 * w, 0.15 * d), (0.85 * w, 0.85 * d), h),))
@@ -45,7 +45,7 @@ def bottle(size: Vec3, *, glass: Rgba, cap: Rgba) -> Form:
 
 
 def mug(size: Vec3, *, glaze: Rgba) -> Form:
-    """A cup with its handle to the right; without room for a handle, a plain cup."""
+    """A cup with its handle to the right; a cup without a handle if there is no room for one."""
     w, d, h = size
     if w <= 1.05 * d:
         return ball(size, rgba=glaze)
@@ -63,7 +63,7 @@ def pan(size: Vec3, *, metal: Rgba, handle: Rgba) -> Form:
 
 
 def book(size: Vec3, *, cover: Rgba, pages: Rgba) -> Form:
-    """A cover, lying flat, out of which the pages stick a little on three sides; none of it is thin."""
+    """A closed book lying flat, whose pages project from the cover on three sides; no part of it is thin."""
     w, d, h = size
     parts = (
         box(size, (0.0, 0.01 * d, 0.0), (0.98 * w, 0.99 * d, h), cover),
@@ -84,7 +84,7 @@ def remote_control(size: Vec3, *, body: Rgba, key: Rgba) -> Form:
 
 
 def cushion(size: Vec3, *, fabric: Rgba) -> Form:
-    """A flat square that is thick in the middle."""
+    """A flat square cushion that is thickest in the middle."""
     w, d, h = size
     middle = box(size, (0.1 * w, 0.1 * d, 0.0), (0.9 * w, 0.9 * d, h), fabric)
     return Form(parts=(middle, box(size, (0.0, 0.0, 0.2 * h), (w, d, 0.7 * h), fabric)))
@@ -124,7 +124,7 @@ def television(size: Vec3, *, body: Rgba, screen: Rgba) -> Form:
 
 
 def lamp(size: Vec3, *, metal: Rgba, shade: Rgba, hood: float) -> Form:
-    """A foot, a pole and a shade that takes the topmost ``hood`` of the height."""
+    """A foot, a pole and a shade; the shade is the upper share ``hood`` of the height."""
     w, d, h = size
     at, r = (w / 2, d / 2), min(0.015, 0.1 * w, 0.1 * d)
     low = (1 - hood) * h
@@ -170,7 +170,7 @@ def mirror(size: Vec3, *, frame: Rgba, glass: Rgba) -> Form:
 
 
 def clock(size: Vec3, *, rim: Rgba, face: Rgba) -> Form:
-    """A round dial on a wall, a box when it is not as wide as high."""
+    """A round dial on a wall; a box if its width and height differ."""
     w, d, h = size
     if abs(w - h) > 1e-6:
         return mirror(size, frame=rim, glass=face)
@@ -198,7 +198,7 @@ def figure(size: Vec3, *, rgba: Rgba) -> Form:
 
 
 def trunk(size: Vec3, *, body: Rgba, lid: Rgba, handle: Rgba) -> Form:
-    """A chest with an overhanging lid and a handle at either end, left and right."""
+    """A chest with an overhanging lid and handles at its left and right ends."""
     w, d, h = size
     parts = (
         box(size, (0.05 * w, 0.02 * d, 0.0), (0.95 * w, 0.98 * d, 0.72 * h), body),

@@ -1,7 +1,7 @@
 """Parametric furniture without doors: tables, open cabinets, shelves, seats, beds.
 
-Every function builds a thing of any positive size [m] whose parts fill its bounding box; z runs up from the floor and
-y from the back to the front while building (see ``solids``).
+Every function builds a thing of any positive size [m] whose parts fill its bounding box. The functions measure z from
+the floor upwards and y from the back to the front (see ``solids``).
 """
 
 from hthor.catalog.colors import IRON, WHITE
@@ -17,7 +17,7 @@ def _legs(size: Vec3, leg: float, height: float, rgba: Rgba) -> tuple[Part, ...]
 
 
 def table(size: Vec3, *, wood: Rgba, legs: Rgba) -> Form:
-    """A plate on four legs."""
+    """A table top on four legs."""
     w, d, h = size
     t, leg = min(0.04, 0.3 * h), min(0.06, 0.2 * w, 0.2 * d)
     plate = box(size, (0.0, 0.0, h - t), (w, d, h), wood)
@@ -25,7 +25,7 @@ def table(size: Vec3, *, wood: Rgba, legs: Rgba) -> Form:
 
 
 def low_table(size: Vec3, *, wood: Rgba, legs: Rgba) -> Form:
-    """A plate on four legs with a board between them."""
+    """A table top on four legs with a board between the legs."""
     w, d, h = size
     form = table(size, wood=wood, legs=legs)
     e, z, t = min(0.03, 0.1 * w, 0.1 * d), 0.3 * h, min(0.02, 0.1 * h)
@@ -33,7 +33,7 @@ def low_table(size: Vec3, *, wood: Rgba, legs: Rgba) -> Form:
 
 
 def tv_stand(size: Vec3, *, wood: Rgba) -> Form:
-    """A low cabinet, open in front, parted in the middle."""
+    """A low cabinet, open in front, divided in the middle."""
     w, d, h = size
     t, b = min(0.03, 0.15 * h, 0.1 * w), min(0.015, 0.1 * d)
     parts = (
@@ -48,7 +48,7 @@ def tv_stand(size: Vec3, *, wood: Rgba) -> Form:
 
 
 def shelf(size: Vec3, *, wood: Rgba) -> Form:
-    """A bookcase with a board about every 0.38 m; its top counts as a board while a person can see onto it."""
+    """A bookcase with a board about every 0.38 m; its top counts as a board if a person can see onto it."""
     w, d, h = size
     t, b = min(0.025, 0.05 * h, 0.1 * w), min(0.012, 0.1 * d)
     gaps = max(1, min(5, round(h / 0.38)))
@@ -94,7 +94,7 @@ def sofa(size: Vec3, *, fabric: Rgba, cushion: Rgba, seats: int) -> Form:
         box(size, (arm, back, 0.04 * h), (w - arm, d, base), fabric),
         *(
             box(size, (arm + i * width, back, base), (arm + (i + 1) * width, d, seat), cushion)
-            for i in range(seats)  # without a gap, where a pen would be lost
+            for i in range(seats)  # without gaps, in which a pen would be lost
         ),
     )
     e = min(0.03, 0.05 * d)

@@ -1,9 +1,9 @@
-"""Where people expect things: the scene priors of the six targets.
+"""The scene priors of the six targets: where people expect objects.
 
-Each of the 65 triplets (target, relation, reference) has two parts: the ``frequency`` with which the target is seen so
-in 195 hand-made AI2-THOR scenes, which stands for what people know, and the ``similarity`` of the two names to a BERT-
-family encoder, which stands for what texts know. `weighed` makes weights of them. ``table.json`` ships computed;
-`hthor.catalog.priors.making` computes it.
+Each of the 65 triplets (target, relation, reference) has two parts: the ``frequency`` of this relation in 195 hand-made
+AI2-THOR scenes, which represents people's knowledge, and the ``similarity`` of the two names for an encoder of the BERT
+family, which represents the knowledge in texts. `weigh_triplets` computes weights from them. The result ships in
+``table.json``; `hthor.catalog.priors.making` computes it.
 """
 
 import math
@@ -18,17 +18,17 @@ from msgspec import Struct
 from hthor.errors import UnknownName
 
 SEEN_SHARE = 0.75
-"""Of the weight: what the frequency gives; the similarity gives the rest."""
+"""The share of a weight that comes from the frequency; the rest comes from the similarity."""
 LEAST_FREQUENCY = 0.01
-"""What was hardly ever seen may still happen: the frequency counts as at least this."""
+"""The least value that a frequency counts as, because relations that were hardly ever seen may still occur."""
 TEMPERATURE = 0.15
-"""Of the softmax over a target's similarities."""
+"""The temperature of the softmax over a target's similarities."""
 DIGITS = 3
-"""Behind the point of every number in the table: the parts are rounded first, then the weights made of them."""
+"""Decimals of every number in the table; weights are computed from the rounded parts and then rounded."""
 
 
 class Source(Struct, frozen=True, kw_only=True):
-    """Where each part of one triplet's weight comes from, in words."""
+    """The source of each part of one triplet's weight, in words."""
 
     frequency: str
     similarity: str
@@ -37,9 +37,9 @@ class Source(Struct, frozen=True, kw_only=True):
 class Triplet(Struct, frozen=True, kw_only=True):
     """One scene prior.
 
-    ``optional`` says that not every house has the reference. ``frequency`` is ``seen`` / ``of``: of all objects of the
-    target's type, those in this relation. ``similarity`` is a cosine, in [-1, 1]. The weights of a target's triplets
-    add up to 1 up to rounding; `weights` gives them exactly.
+    ``optional`` says that not every house has the reference. ``frequency`` is ``seen`` / ``of``: the share of objects of
+    the target's type that are in this relation. ``similarity`` is a cosine, in [-1, 1]. The weights of a target's
+    triplets add up to 1 up to rounding; `weights` returns them exactly.
     """
 
     target: str
@@ -55,12 +55,12 @@ class Triplet(Struct, frozen=True, kw_only=True):
 
     @property
     def key(self) -> tuple[str, str, str]:
-        """(target, relation, reference), of which there is one triplet."""
+        """(target, relation, reference), which identifies the triplet."""
         return self.target, self.relation, self.reference
 
 
 class Origin(Struct, frozen=True, kw_only=True):
-    """What a part of all weights was computed from: the package, one file of it and that file's hash."""
+    """The source of one part of all weights: a package, one file of it and the file's hash."""
 
     part: Literal["frequency", "similarity"]
     package: str
@@ -72,7 +72,7 @@ class Origin(Struct, frozen=True, kw_only=True):
 
 
 class Table(Struct, frozen=True, kw_only=True):
-    """The triplets, by target, and what they come from."""
+    """The triplets, by target, and their sources."""
 
     origins: tuple[Origin, ...]
     triplets: tuple[Triplet, ...]
@@ -80,7 +80,7 @@ class Table(Struct, frozen=True, kw_only=True):
 
 @cache
 def table() -> Table:
-    """The table that ships."""
+    """The table that ships with hthor."""
     return msgspec.json.decode(resources.files(__name__).joinpath("table.json").read_bytes(), type=Table)
 
 
@@ -118,10 +118,10 @@ def weights(target: str) -> dict[tuple[str, str], float]:
 
 
 def weigh_triplets(frequencies: Sequence[float], similarities: Sequence[float]) -> list[float]:
-    """The weights that follow from the two parts of one target's triplets; they add up to 1.
+    """The weights of one target's triplets, computed from their two parts; they add up to 1.
 
-    Three quarters of each weight are the frequency's share of all frequencies, each at least `LEAST_FREQUENCY`; the
-    rest is the softmax of similarity / `TEMPERATURE`.
+    `SEEN_SHARE` of each weight is the frequency's share of all frequencies, each at least `LEAST_FREQUENCY`; the rest
+    is the softmax of similarity / `TEMPERATURE`.
     """
     seen = [max(frequency, LEAST_FREQUENCY) for frequency in frequencies]
     like = [math.exp(similarity / TEMPERATURE) for similarity in similarities]

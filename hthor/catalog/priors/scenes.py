@@ -1,8 +1,8 @@
-"""Counting where things lie in hand-made AI2-THOR scenes.
+"""Counts the relations between objects in hand-made AI2-THOR scenes.
 
 The scenes are those of the wheel `procthor` 0.0.1.dev2 (Apache-2.0): 30 kitchens, 30 living rooms, 30 bedrooms, 30
-bathrooms and 75 of RoboTHOR, each a list of objects as the simulator reported them. Only its data is read: its code
-needs Unity and is never imported.
+bathrooms and 75 scenes of RoboTHOR, each a list of objects as the simulator reported them. Only the wheel's data is
+read; its code needs Unity and is never imported.
 """
 
 import hashlib
@@ -22,9 +22,9 @@ from hthor.errors import HthorError, MissingExtra
 PACKAGE = "procthor"
 FILE = "procthor/databases/ai2thor-object-metadata.json"
 NEAR_M = 1.0
-"""Two objects are near when the centres of their boxes are at most this far apart, height included."""
+"""[m] Two objects are near if the centres of their bounding boxes are at most this far apart in three dimensions."""
 _BASINS = {"sink": ("SinkBasin",)}
-"""Parts of our kinds that AI2-THOR counts as things of their own; what lies in a sink lies in its basin there."""
+"""Parts of our kinds that are separate objects in AI2-THOR, where objects in a sink lie in its basin."""
 
 
 class _Point(Struct, frozen=True):
@@ -38,7 +38,7 @@ class _Box(Struct, frozen=True):
 
 
 class Thing(Struct, frozen=True, rename="camel"):
-    """An object of a scene: what it is, where [m], and the ids of what it lies on or in."""
+    """An object of a scene: its type, its box [m], and the ids of the objects that it lies on or in."""
 
     object_id: str
     object_type: str
@@ -47,7 +47,7 @@ class Thing(Struct, frozen=True, rename="camel"):
 
     @property
     def centre(self) -> tuple[float, float, float]:
-        """Of its box [m], y up."""
+        """The centre of its box [m], y up."""
         at = self.axis_aligned_bounding_box.center
         return at.x, at.y, at.z
 
@@ -56,7 +56,7 @@ Scene = tuple[Thing, ...]
 
 
 class Scenes(Struct, frozen=True):
-    """All scenes, and what they were read from."""
+    """All scenes, and their source."""
 
     scenes: tuple[Scene, ...]
     origin: Origin
@@ -67,7 +67,7 @@ def read_scenes(wheel: Path | None = None) -> Scenes:
 
     Raises:
         MissingExtra: when no wheel is given and the package is not installed.
-        HthorError: when the file is no such wheel, or its data has another form.
+        HthorError: when the file is not such a wheel, or its data has another format.
     """
     version, data = _installed() if wheel is None else _of_wheel(wheel)
     try:
@@ -112,9 +112,9 @@ def types(kind: str) -> tuple[str, ...]:
 
 
 def count(scenes: tuple[Scene, ...], target: str, relation: str, reference: str) -> tuple[int, int]:
-    """How many objects of the target's type are in that relation to any object of the reference's type, of how many.
+    """How many objects of the target's type have this relation to an object of the reference's type, and how many exist.
 
-    On and in: the reference is among the object's parent receptacles. Near: within `NEAR_M`.
+    On and in: the reference is among the object's parent receptacles. Near: it is within `NEAR_M`.
     """
     held = near if relation == "near" else lies
     wanted = types(reference)
@@ -123,13 +123,13 @@ def count(scenes: tuple[Scene, ...], target: str, relation: str, reference: str)
 
 
 def lies(thing: Thing, scene: Scene, wanted: tuple[str, ...]) -> bool:
-    """Whether it lies on or in an object of one of these types."""
+    """Whether ``thing`` lies on or in an object of one of these types."""
     parents = thing.parent_receptacles or ()
     return any(other.object_id in parents for other in _all(scene, wanted))
 
 
 def near(thing: Thing, scene: Scene, wanted: tuple[str, ...]) -> bool:
-    """Whether another object of one of these types is near."""
+    """Whether another object of one of these types is near ``thing``."""
     others = (other for other in _all(scene, wanted) if other is not thing)
     return any(math.dist(thing.centre, other.centre) <= NEAR_M for other in others)
 
