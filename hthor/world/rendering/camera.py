@@ -82,7 +82,7 @@ def projection_vector(pose: Pose, spec: BodySpec, size: tuple[int, int], chosen:
 
 
 def top_view_vector(bounds: tuple[float, float, float, float]) -> Any:
-    """(16,) float64 for `hthor.world.rendering.rasterizer.fill`: a camera straight above x0, y0, x1, y1 [m], north up."""
+    """(16,) float64 for `hthor.world.rendering.rasterizer.fill`: a camera above x0, y0, x1, y1 [m], north up."""
     x0, y0, x1, y1 = bounds
     eye = ((x0 + x1) / 2, (y0 + y1) / 2, _UP_M)
     tangents = ((x1 - x0) / 2 / _UP_M, (y1 - y0) / 2 / _UP_M)

@@ -84,7 +84,7 @@ class OpenGLRenderer:
     def view(
         self, moment: PoseSnapshot, seat: str, mode: str, size: tuple[int, int], by: CameraSpec = projection.OWN
     ) -> Any:
-        """One picture of the seat's camera: rgb (H, W, 3) uint8, depth (H, W) float32 [m] or segmentation (H, W) int32."""
+        """A picture of ``seat``: rgb (H, W, 3) uint8, depth (H, W) float32 [m] or segmentation (H, W) int32."""
         if mode not in _MODES:
             raise ValueError(f"mode must be one of {', '.join(_MODES)}, got '{mode}'")
         pose, spec = moment.seats[seat]
