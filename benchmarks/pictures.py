@@ -11,6 +11,7 @@ Chromium, whose versions and fonts can change their bytes, but not whether they 
 from __future__ import annotations
 
 import argparse
+import ast
 import functools
 import hashlib
 import json
@@ -65,12 +66,12 @@ def origin(name: str) -> str:
         task = _task(TRIALS[name])
         code = [f"hthor/report/drawing/{part}.py" for part in _DRAWING]
         facts = [TRIALS[name], task, houses.load(task.house).sha256, rules.sha256(), _sha256(ROOT / _REFERENCE)]
-        return jsonio.sha256([*facts, *(_sha256(ROOT / path) for path in code)])
+        return jsonio.sha256([*facts, *(_code_sha256(ROOT / path) for path in code)])
     if name in _OF_RUNS:
         return jsonio.sha256(
-            [AGENTS, CASE, tasks.load_suite(SUITE).sha256, rules.sha256(), *map(_sha256, _code_of_pages())]
+            [AGENTS, CASE, tasks.load_suite(SUITE).sha256, rules.sha256(), *map(_code_sha256, _code_of_pages())]
         )
-    return jsonio.sha256([houses.load(Path(name).stem).sha256, *(_sha256(ROOT / path) for path in _SHEETS)])
+    return jsonio.sha256([houses.load(Path(name).stem).sha256, *(_code_sha256(ROOT / path) for path in _SHEETS)])
 
 
 def problems(folder: Path = FOLDER) -> list[str]:
@@ -187,6 +188,18 @@ def _draw_scene(path: Path) -> None:
 
 def _task(task_id: str) -> TaskSpec:
     return next(task for task in tasks.load_suite(task_id.partition("/")[0]).tasks if task.id == task_id)
+
+
+def _code_sha256(path: Path) -> str:
+    """Hash of a file, of a Python file without its comments and docstrings."""
+    if path.suffix != ".py":
+        return _sha256(path)
+    tree = ast.parse(path.read_bytes())
+    for node in ast.walk(tree):
+        if isinstance(body := getattr(node, "body", None), list):
+            texts = [one for one in body if isinstance(one, ast.Expr) and isinstance(one.value, ast.Constant)]
+            node.body = [one for one in body if one not in texts]
+    return hashlib.sha256(ast.dump(tree).encode()).hexdigest()
 
 
 def _sha256(path: Path) -> str:
