@@ -67,7 +67,7 @@ class Survey:
 
     @property
     def frontiers(self) -> list[Frontier]:
-        """Groups of reachable free cells next to unknown ones, in map order."""
+        """Groups of reachable free cells next to unknown cells, in map order."""
         return self._all(is_edge=True)
 
     @property
@@ -150,7 +150,7 @@ class Survey:
 
 
 def frontiers(grid: GridMap, planner: Planner, pose: Pose, least: float = 0.2) -> list[Frontier]:
-    """Groups of at least ``least`` [m] of reachable free cells next to unknown ones, in map order."""
+    """Groups of at least ``least`` [m] of reachable free cells next to unknown cells, in map order."""
     return Survey(grid, planner, pose, least).frontiers
 
 

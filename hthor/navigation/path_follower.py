@@ -12,7 +12,7 @@ _ARRIVED_M = 0.04
 NEAR_M = 0.9
 """[m] A person in front who is closer than this has the right of way."""
 PATIENCE_S = 2.0
-"""[s] How long to stand aside before going on."""
+"""[s] How long a body stands aside before it goes on."""
 _PAUSE_S = 0.5
 _STEP_M = 0.5
 _FRONT_RAD = math.radians(70.0)

@@ -195,7 +195,7 @@ def along(
     state: int,
     wanted: bool,
 ) -> bool:
-    """Whether a line's points ``first`` to ``last``, ``step`` apart, are all in (``wanted``) or all not in ``state``."""
+    """Whether all points of a line, ``first`` to ``last``, ``step`` apart, are in ``state`` cells, or all are not."""
     ny, nx = cells.shape
     for k in range(first, last + 1):
         share = k * step / length

@@ -1,4 +1,4 @@
-"""What an agent or a human model may do and say: one motion and one utterance at a time."""
+"""The actions of agents and human models: one motion and one utterance at a time."""
 
 from msgspec import Struct
 
@@ -30,7 +30,7 @@ class Pick(Struct, tag="pick", frozen=True, kw_only=True):
 
 
 class Place(Struct, tag="place", frozen=True, kw_only=True):
-    """Put the held object on or in the thing ``on`` (an id), as near as possible to ``position`` [m], house frame."""
+    """Put the held object on or in the thing ``on`` (an id); near ``position`` [m], house frame, if that is given."""
 
     on: str
     position: Vec3 | None = None

@@ -81,7 +81,7 @@ class ThingState(Struct, frozen=True, kw_only=True):
 
 
 class Observation(Struct, frozen=True, kw_only=True):
-    """What an agent or a human model is given when it has to act; see `Mind.act`.
+    """The input of an agent or a human model that has to act; see `Mind.act`.
 
     Attributes:
         tick: ticks since the trial began. pose: of the seat's body, house frame.
@@ -107,7 +107,7 @@ class Observation(Struct, frozen=True, kw_only=True):
 
     @property
     def detections(self) -> tuple[Detection, ...]:
-        """What the detector reports, by id; see `Senses.detections`."""
+        """The detector's detections, by id; see `Senses.detections`."""
         return self.senses.detections()
 
     @property
@@ -137,7 +137,7 @@ class Observation(Struct, frozen=True, kw_only=True):
 
 
 class Briefing(Struct, frozen=True, kw_only=True):
-    """What an agent or a human model learns before a trial.
+    """The information that an agent or a human model gets before a trial.
 
     Attributes:
         seat: its own seat. body: its own body. teammates: all other seats. crew: the body in every seat, its own too.

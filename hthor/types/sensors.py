@@ -1,4 +1,4 @@
-"""Sensors: what a seat's detector, range scanner and camera report, and how they are specified."""
+"""The readings of a seat's detector, range scanner and camera, and the specifications of these sensors."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ class Scan(Struct, frozen=True, kw_only=True):
 
 
 class CameraSpec(Struct, frozen=True, kw_only=True):
-    """The size and field of view of a seat's pictures; `hthor.types.cameras.parse` reads one from its name.
+    """The size and field of view of a seat's pictures; `hthor.types.cameras.parse` makes this record from a name.
 
     ``size`` is (width, height) [pixels], None for the body's own. ``fov`` [rad] is the horizontal field of view of the
     pictures, None for the body's own. Detectors always use the body's field of view.

@@ -13,7 +13,7 @@ RELATIONS: tuple[Relation, ...] = ("find", "on", "in", "at")
 
 
 class BodySpec(Struct, frozen=True, kw_only=True):
-    """What the body of a robot, or the person's avatar, can do.
+    """The abilities of a body: a robot's, or that of the person's avatar.
 
     Attributes:
         name: for a robot, the name of its file. title: the name in texts for people.
@@ -50,7 +50,7 @@ class BodySpec(Struct, frozen=True, kw_only=True):
 
 
 class RobotSpec(BodySpec, frozen=True, kw_only=True):
-    """A robot's body; one file each in ``hthor/world/robots``, see docs/robots.md."""
+    """The body of a robot; each robot has a file in ``hthor/world/robots``, see docs/robots.md."""
 
 
 class Placement(Struct, frozen=True, kw_only=True, omit_defaults=True):
@@ -70,7 +70,7 @@ class Placement(Struct, frozen=True, kw_only=True, omit_defaults=True):
     near: str = ""
 
     def __post_init__(self) -> None:
-        # Only defaults that are the same object are omitted; floats and words from another process are not.
+        # msgspec omits a default only if it is the same object, which floats and words from another process are not.
         for name, default in _DEFAULTS:
             if getattr(self, name) == default:
                 msgspec.structs.force_setattr(self, name, default)
@@ -96,7 +96,7 @@ class Job(Struct, frozen=True, kw_only=True, omit_defaults=True):
 
 
 class Goal(Struct, frozen=True, kw_only=True, omit_defaults=True):
-    """What completes a task: to find or place ``target`` (an object's id). ``destination`` is a *kind* of thing.
+    """The goal of a task: to find or place ``target`` (an object's id). ``destination`` is a *kind* of thing.
 
     With several jobs, ``jobs`` lists them all and the other fields describe the first.
     """
@@ -165,7 +165,7 @@ class TrialSpec(Struct, frozen=True, kw_only=True):
     """Everything that determines a trial; its content hash is the trial's key.
 
     Attributes:
-        assets_sha256: hash of what the robots' pictures show and of the code that draws it, empty if no agent is known
+        assets_sha256: hash of the looks in robots' pictures and of the code that draws them, empty if no agent is known
             to take pictures.
         kind_sha256: hash of the task kind's file if it is a user's own, empty for a kind that ships with hthor.
         realtime: set only if the trial's clock ran while robots were thinking.

@@ -66,7 +66,7 @@ class Actor:
 
     @property
     def body(self) -> BodySpec:
-        """What the body can do."""
+        """The abilities of the body."""
         return self._world.bodies[self.seat]
 
     @property

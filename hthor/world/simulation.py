@@ -1,4 +1,4 @@
-"""A house with bodies and objects in it, one tick at a time."""
+"""The simulation of a house with bodies and objects, one tick at a time."""
 
 import math
 from collections.abc import Iterable, Sequence
@@ -48,7 +48,7 @@ class Simulation:
             `hthor.types.detector_specs.parse` reads; the default "own" is the detector that the body declares.
 
     Attributes:
-        house: the floor plan. seats: names of all seats, the person's first. bodies: what each seat's body can do.
+        house: the floor plan. seats: names of all seats, the person's first. bodies: the body in each seat.
         tick: ticks since the last reset. space: each seat's free-space grid.
     """
 

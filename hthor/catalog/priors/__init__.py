@@ -37,8 +37,8 @@ class Source(Struct, frozen=True, kw_only=True):
 class Triplet(Struct, frozen=True, kw_only=True):
     """One scene prior.
 
-    ``optional`` says that not every house has the reference. ``frequency`` is ``seen`` / ``of``: the share of objects of
-    the target's type that are in this relation. ``similarity`` is a cosine, in [-1, 1]. The weights of a target's
+    ``optional`` says that not every house has the reference. ``frequency`` is ``seen`` / ``of``: the share of the
+    target type's objects that are in this relation. ``similarity`` is a cosine, in [-1, 1]. The weights of a target's
     triplets add up to 1 up to rounding; `weights` returns them exactly.
     """
 

@@ -112,7 +112,7 @@ def types(kind: str) -> tuple[str, ...]:
 
 
 def count(scenes: tuple[Scene, ...], target: str, relation: str, reference: str) -> tuple[int, int]:
-    """How many objects of the target's type have this relation to an object of the reference's type, and how many exist.
+    """How many objects of the target's type have this relation to one of the reference's type, and how many exist.
 
     On and in: the reference is among the object's parent receptacles. Near: it is within `NEAR_M`.
     """

@@ -51,9 +51,9 @@ from hthor.world.state.objects import Objects
 from hthor.world.state.overlap_test import OverlapTest
 
 _LOWER_STEP_M = 0.01
-"""[m] Steps, from the floor up, in which the search for a free height for a lowered thing proceeds."""
+"""[m] Step of the search, from the floor up, for a free height at which a thing is put down."""
 _STANDING_ON_M = 0.05
-"""[m] by which a body's disc may overlap a thing on the floor when it takes hold of a handle."""
+"""[m] How far a body's disc may overlap a thing on the floor when it takes hold of a handle."""
 _CARRY_HEIGHT_M = 1.0
 """[m] Obstacles that begin higher above the floor are not in the way of a carried thing."""
 EventList = tuple[tuple[str, dict[str, Any]], ...]

@@ -30,9 +30,9 @@ from hthor.world.state.body_state import BodyState
 from hthor.world.state.movable_object import MovableObject
 
 ARM_M = 0.30
-"""[m] from a bearer's side to its handle; an arm is longer than this only for a short time."""
+"""[m] Distance from a bearer's side to its handle; an arm is longer than this only for a short time."""
 ELBOW_M = 0.03
-"""[m] kept free between a bearer's disc and the thing."""
+"""[m] Gap kept free between a bearer's disc and the thing."""
 TOUCH_M = 0.002
 """[m] Overlaps up to this depth are ignored because the solver does not remove them completely."""
 _ITERATIONS = 4
@@ -53,11 +53,11 @@ _STUCK_STRETCH_M, _STEER_GAIN_M = 0.05, 0.008
 """[m] A thing is stuck if it stands still while the leader's path to it is too long by the first length; then the pull
 is turned aside if that moves the thing by the second length."""
 _STEER_ANGLES = tuple(math.radians(angle) for angle in (30.0, -30.0, 60.0, -60.0, 90.0, -90.0))
-"""[rad] by which the pull on a stuck thing is turned aside, tried in this order."""
+"""[rad] Angles by which the pull on a stuck thing is turned aside, tried in this order."""
 _STEER_TICKS = 8
-"""[ticks] for which the pull stays turned aside."""
+"""[ticks] How long the pull stays turned aside."""
 _FOLLOW_ANGLES = tuple(side * math.radians(15.0 * k) for k in range(9) for side in ((1.0, -1.0) if k else (1.0,)))
-"""[rad] off the straight line that a follower tries, up to 120 degrees to either side, the smallest first."""
+"""[rad] Angles off the straight line that a follower tries, up to 120 degrees to either side, the smallest first."""
 
 _Step = tuple[Floats, dict[str, Vec2], dict[str, tuple[Vec2, ...]]]
 """A solved step: the thing's state (3,), each bearer's place, and each bearer's path from its handle."""

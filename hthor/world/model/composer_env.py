@@ -23,9 +23,9 @@ STEP_TRAVEL_MAX_M = 0.003
 STEP_TURN_MAX_RAD = 0.2
 """[rad] The largest turn in one step: with larger turns, thin things would spin ever faster."""
 RESTLESS_TICKS, _RESTLESS_PARTS = 20, 4
-"""[ticks] without rest after which steps are split, and into how many parts: some long things tremble otherwise."""
+"""After so many ticks without rest, steps are split into so many parts, because some long things would tremble."""
 DAMP_TICKS, DAMP_TOLERANCE = 50, 0.5
-"""[ticks] without rest after which the engine's sleep tolerance is raised, and its new value: it ends trembling."""
+"""After so many ticks without rest, the engine's sleep tolerance is raised to the second number to end trembling."""
 _PARTS_MAX = 64
 """The most parts that a step is split into."""
 SPEED_MAX_M_S, SPIN_MAX_RAD_S = 20.0, 300.0

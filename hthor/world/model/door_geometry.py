@@ -16,7 +16,7 @@ GAP_M = 0.02
 DOUBLE_M = 1.3
 """[m] Doorways wider than this have two doors."""
 TURN_RAD = math.pi / 2
-"""[rad] by which doors open."""
+"""[rad] How far doors open."""
 _LEAF: Rgba = (0.88, 0.87, 0.85, 1.0)
 _SOLE_M = 0.008
 """[m] Gap below a door."""

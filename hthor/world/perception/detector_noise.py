@@ -28,7 +28,7 @@ from hthor.world.state.movable_object import MovableObject
 from hthor.world.state.support_surfaces import SupportSurface, SupportSurfaces
 
 GLIMPSE_TICKS = round(1.0 / rules.TICK_S)
-"""[ticks] for which an error persists: a detector that errs in one frame also errs in the next. Our choice: 1 s."""
+"""[ticks] How long an error persists: a detector that errs in one frame also errs in the next. Our choice: 1 s."""
 _POSITION_TRIES = 4
 _SURFACE_SHARE = 0.8
 

@@ -16,9 +16,9 @@ from hthor.geometry import plane
 from hthor.types import Joint, Thing, Vec2, Vec3
 
 _SINK_M = 0.03
-"""[m] by which the lowest point of an object, such as a tilted one, may be below the surface that it lies on."""
+"""[m] How far the lowest point of a round or tilted object may be below the surface that it lies on."""
 _GAP_M = 0.005
-"""[m] kept free on every side of an object that is put down, and the height from which it is released."""
+"""[m] Gap kept free on every side of an object that is put down, and the height from which it is released."""
 
 
 class SupportSurface(Struct, frozen=True, kw_only=True):

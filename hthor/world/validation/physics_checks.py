@@ -22,13 +22,13 @@ from hthor.world.model.engine import mujoco
 from hthor.world.state.support_surfaces import SupportSurface, SupportSurfaces, free_spots
 
 STAYS_M = 0.02
-"""[m] by which an object may move from the place where it was put."""
+"""[m] How far an object may move from the place where it was put."""
 WATCHED_S = 2.0
-"""[s] for which an object is watched after it was put down."""
+"""[s] How long an object is watched after it was put down."""
 _LOOKS = 10
 """How often an object's position is read while it is watched."""
 PENETRATION_MAX_M = 0.005
-"""[m] by which parts may overlap: the engine's solver leaves such overlaps, and they are too small to be seen."""
+"""[m] How far parts may overlap: the engine's solver leaves such overlaps, and they are too small to be seen."""
 _SOLID = {"contype": 1, "conaffinity": 0}
 _ALONE = {"contype": 2, "conaffinity": 1}
 _TOUCHING = {"contype": 1, "conaffinity": 1}

@@ -27,7 +27,7 @@ from hthor.world.model.engine import Entity, mjcf
 _HAND_HEIGHT = 0.60
 """Height of the hand as a share of the body's height, if its file does not give it."""
 _HAND_AHEAD_M = 0.14
-"""[m] from the body's rim to the hand, if its file does not give it."""
+"""[m] Distance from the body's rim to the hand, if its file does not give it."""
 _NECK_HEIGHT = 0.93
 """Height of the neck as a share of the body's height, if its file does not give it."""
 _SHELL: Rgba = (0.80, 0.82, 0.84, 1.0)
