@@ -71,7 +71,7 @@ READERS: dict[str, tuple[str, type[HthorError], Callable[[Path], Any]]] = {
     "platform": ("platform.json", RunError, lambda path: platform.load(path.parent)),
     "platform of a report": ("platform.json", RunError, lambda path: run_provenance._platforms(_Run(path.parent))),
     "faults": ("faults.json", RunError, fault_report.load_fault_report),
-    "population": ("pop.json", PopulationError, lambda path: population_file._document(path)),
+    "population": ("pop.json", PopulationError, lambda path: population_file._read(path)),
     "people": ("pop.json", HthorError, lambda path: resolve.resolve_humans(str(path))),
     "kind of people": ("quick.json", PopulationError, kinds.load),
     "past trials": ("past.jsonl", HthorError, _lines(lambda path: _logged_trials._read(str(path)))),

@@ -300,8 +300,8 @@ def test_logs_are_read_from_folders_and_files_each_trial_once(
         (lambda lines: b"".join(lines)[:-40], "line 3 is cut off"),
         (lambda lines: lines[0] + b'{"pose": [1, 2]}\n', "line 2 is not a trial that 'hthor eval' logged: $: "),
         (lambda lines: lines[0].replace(b'"ticks":', b'"tacks":', 1), "ticks"),
-        (lambda lines: lines[0] + lines[1].replace(b'"index":1', b'"index":7', 1), "line 2 is no trial"),
-        (lambda lines: b"\x00\xff\n", "line 1 is no trial"),
+        (lambda lines: lines[0] + lines[1].replace(b'"index":1', b'"index":7', 1), "line 2 is not a trial"),
+        (lambda lines: b"\x00\xff\n", "line 1 is not a trial"),
     ],
 )
 def test_foreign_and_broken_logs_are_refused(
@@ -363,5 +363,5 @@ def test_logs_become_a_population_the_same_every_time(
 def test_a_log_without_a_journal_is_refused(played: tuple[Parameters, list[TrialRecord]], tmp_path: Path) -> None:
     bare = [msgspec.structs.replace(one, journal=()) for one in played[1]]
     (tmp_path / "trials.jsonl").write_bytes(b"".join(trial_record.encode(one) for one in bare))
-    with pytest.raises(RunError, match="holds no journal of the person"):
+    with pytest.raises(RunError, match="has no record of the person's motions"):
         run.estimate_from_logs([tmp_path], "literature", tmp_path / "out", lambda _: None)

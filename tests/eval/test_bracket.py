@@ -136,9 +136,9 @@ def test_a_flip_is_a_sign_that_changes_and_nothing_else(paper, greedy, random):
 
 
 def test_what_is_no_bracket_is_an_error():
-    with pytest.raises(HthorError, match="greedy people, of random people and of a population"):
+    with pytest.raises(HthorError, match="people who accept everything, of random people and of a population"):
         flips(results(paper=(0.6, 0.7), greedy=(0.5, 0.7)))
-    with pytest.raises(HthorError, match="greedy people, of random people and of a population"):
+    with pytest.raises(HthorError, match="people who accept everything, of random people and of a population"):
         flips(results(random=(0.6, 0.7), greedy=(0.5, 0.7)))
     uneven = results(paper=(0.6, 0.7), greedy=(0.5, 0.7), random=(0.1,))
     with pytest.raises(HthorError, match="the same robots on the same trials"):

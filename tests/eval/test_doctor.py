@@ -113,7 +113,9 @@ def test_what_crashes_or_is_blank_is_told_with_a_way_out() -> None:
 )
 def test_a_level_that_does_not_start_comes_with_its_fix(monkeypatch, level, files, bwrap, kernel, fix) -> None:
     def refuse(wanted: str) -> None:
-        raise IsolationError(f"isolation {wanted} cannot be had on this machine: it is forbidden. 'hthor eval' helps.")
+        raise IsolationError(
+            f"isolation {wanted} is not available on this machine: it is forbidden. 'hthor eval' helps."
+        )
 
     monkeypatch.setattr(isolation_levels, "in_force", refuse)
     monkeypatch.setattr(isolation_levels, "read_system_file", lambda path: files.get(path, ""))

@@ -127,7 +127,7 @@ def test_an_exception_in_begin_is_a_fault_too(write: Write) -> None:
         ("return Action(motion=Move(forward='fast'))", "garbage", "Expected `float`, got `str`"),
         ("return Action(say=Send(text='x' * 70000))", "oversized", "at most 65536"),
         ("return Action(motion=Open(thing='x' * 300))", "oversized", "300 characters"),
-        ("os.write(WIRE, b'\\x05\\0\\0\\0hello'); return Action()", "garbage", "no message"),
+        ("os.write(WIRE, b'\\x05\\0\\0\\0hello'); return Action()", "garbage", "not a message"),
         ("os.write(WIRE, b'\\xff\\xff\\xff\\xff'); return Action()", "oversized", "4294967295"),
         ("os.close(WIRE); return Action()", "died", ""),
         ("observation.senses._get('walls'); return Action()", "garbage", "'walls'"),

@@ -224,7 +224,7 @@ def test_a_hostile_program_comes_to_nothing(level: str, perl: Callable[..., str]
     [
         ("sleep 60;", "timeout", "no answer within"),
         ("print 'x' x 100000;", "oversized", "2021161080 bytes"),
-        ("print pack('V/a*', 'hello');", "garbage", "no message"),
+        ("print pack('V/a*', 'hello');", "garbage", "not a message"),
         ("say_it({ type => 'done' });", "garbage", "answered by Done"),
         ("say_it({ type => 'ask', what => 'walls' });", "garbage", "'walls'"),
         ("say_it({ type => 'failed', kind => 'glory', detail => 'x' });", "garbage", "x"),

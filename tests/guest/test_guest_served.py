@@ -95,8 +95,8 @@ class Small(Sensors):
         (lambda _: time.sleep(1.0), "timeout", "no answer within"),
         (lambda connection: connection.close(), "died", "the server closed the connection"),
         (lambda connection: connection.socket.shutdown(2), "died", "the server closed the connection"),
-        (lambda connection: connection.send("words"), "garbage", "no message"),
-        (lambda connection: connection.send(b"\xc1"), "garbage", "no message"),
+        (lambda connection: connection.send("words"), "garbage", "not a message"),
+        (lambda connection: connection.send(b"\xc1"), "garbage", "not a message"),
         (lambda connection: connection.send(bytes(70_000)), "oversized", "65537 bytes"),
         (lambda connection: connection.send(wire.encode(wire.Done())), "garbage", "answered by Done"),
         (
@@ -164,7 +164,7 @@ def test_a_server_that_never_listens_runs_out_of_time() -> None:
 def test_what_says_what_cannot_be_is_refused() -> None:
     for ready, told in (
         (wire.Ready(privileges=("x_ray",)), "names? 'x_ray'. Valid: house_map"),
-        (wire.Ready(wire=7), "version 7 of the wire"),
+        (wire.Ready(wire=7), "version 7 of the protocol"),
         (wire.Ready(gpus=-1.0), "gpus must be"),
         (wire.Done(), "it said Done before"),
     ):

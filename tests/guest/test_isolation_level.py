@@ -28,7 +28,7 @@ def test_an_interpreter_in_a_folder_that_cannot_be_read_is_named(
     scratch.mkdir()
     monkeypatch.setattr(tempfile, "tempdir", str(scratch))
     monkeypatch.setattr(paths, "readable_paths", _unreadable)
-    told = r"cannot be had on this machine: .*Permission denied: /root/\.pyenv/versions"
+    told = r"is not available on this machine: .*Permission denied: /root/\.pyenv/versions"
     with pytest.raises(IsolationError, match=told), Guest(path, config=GuestConfig(isolation=level)) as mind:
         mind.load()
     assert os.listdir(scratch) == []

@@ -262,8 +262,8 @@ DAMAGE: dict[str, tuple[Callable[[Any], None], str, str]] = {
     "not a number": (_set("walls", 3, "polygon", 0, "x", to=math.nan), "walls[3].polygon[0].x", "finite"),
     "infinity": (_set("objects", 1, "position", "y", to=math.inf), "objects[1].position.y", "finite"),
     "a number beyond measure": (_set("objects", 1, "position", "y", to=10**400), "objects[1].position.y", "finite"),
-    "half a character": (_set("objects", 1, "id", to="chair\ud800"), "objects[1].id", "chair\\ud800"),
-    "half a character in a key": (_set("objects", 1, "\ud800", to=1), "objects[1]", "half a character"),
+    "half of a character": (_set("objects", 1, "id", to="chair\ud800"), "objects[1].id", "chair\\ud800"),
+    "half of a character in a key": (_set("objects", 1, "\ud800", to=1), "objects[1]", "half of a character"),
     "another version": (_set("metadata", "schema", to="0.0.1"), "metadata.schema", "1.0.0"),
     "no rooms": (_set("rooms", to=[]), "rooms", "empty"),
     "no walls": (_set("walls", to=[]), "walls", "empty"),
@@ -291,12 +291,12 @@ DAMAGE: dict[str, tuple[Callable[[Any], None], str, str]] = {
     "a hole beyond its wall": (
         _set("doors", 0, "holePolygon", 1, "x", to=55),
         "doors[0].holePolygon[1].x",
-        "outside of",
+        "is outside",
     ),
     "a window above its wall": (
         _set("windows", 0, "holePolygon", 1, "y", to=9),
         "windows[0].holePolygon[1].y",
-        "outside of",
+        "is outside",
     ),
     "a hole of one corner": (
         lambda document: document["doors"][0]["holePolygon"].pop(),

@@ -368,7 +368,7 @@ def test_a_log_of_another_task_is_an_error_that_says_so(task, participant, words
 
 
 @pytest.mark.parametrize(
-    ("content", "words"), [(None, "there is no log"), (b"{}\n", "line 1"), (b"", "holds no whole trial")]
+    ("content", "words"), [(None, "there is no log"), (b"{}\n", "line 1"), (b"", "has no complete trial")]
 )
 def test_a_log_that_cannot_be_read_is_an_error(content, words, tmp_path):
     file = tmp_path / "trials.jsonl"

@@ -120,7 +120,7 @@ def test_the_cube_and_the_units_are_one_to_one(point: list[float]):
 def test_tables_of_other_shapes_are_refused():
     with pytest.raises(
         ValueError,
-        match="31 columns is expected" if len(parameter_registry.free_parameter_names()) == 31 else "columns",
+        match="expected a table with 31 columns" if len(parameter_registry.free_parameter_names()) == 31 else "columns",
     ):
         parameter_registry.from_quantiles([[0.5, 0.5]])
     with pytest.raises(ValueError, match=r"draws: the shape is \(3, 4\); expected one row or more of 3 columns"):
@@ -269,7 +269,7 @@ def test_a_damaged_file_is_named_with_its_field(tmp_path: Path):
     refused(lambda path: _swap(path, log_weight=np.array([0.0, 800.0, 0.0])), "log_weight: the weights add up to inf")
     refused(lambda path: _swap(path, log_weight=np.zeros(3)), "log_weight: the weights add up to 3; expected 1")
     refused(lambda path: _edit(path, lambda d: d["parameters"][0]["prior"].update(high=0)), "parameters[0].prior: a ")
-    refused(lambda path: _swap(path, draws=np.array([{}], dtype=object)), "pop.npz: $: is no NPZ archive")
+    refused(lambda path: _swap(path, draws=np.array([{}], dtype=object)), "pop.npz: $: is not an NPZ archive")
 
 
 def test_what_a_newer_version_added_is_at_its_default_and_said(tmp_path: Path):

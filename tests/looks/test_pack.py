@@ -238,7 +238,7 @@ def test_things_that_would_float_are_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("data", "expected"),
     [
-        (b"hello", "is no Debian package"),
+        (b"hello", "is not a Debian package"),
         (deb({"a.sh3f": b"x"})[:300], "is a broken Debian package"),
         (deb({"readme.txt": b"x"}), "holds no furniture library"),
     ],
@@ -286,7 +286,7 @@ def test_a_pack_that_was_changed_is_refused(tmp_path: Path) -> None:
     pack = make(tmp_path / "p").pack
     pack.check()
     (tmp_path / "p" / "meshes.npz").write_bytes(b"other")
-    with pytest.raises(PackError, match="is not as it was built"):
+    with pytest.raises(PackError, match="was changed after it was built"):
         pack.look("sofa", catalog.kind("sofa").size)
     document = json.loads((tmp_path / "p" / "pack.json").read_text())
     (tmp_path / "p" / "pack.json").write_text(json.dumps(document | {"schema": "hthor.pack/0"}))
@@ -318,7 +318,7 @@ def test_a_stranger_s_folder_is_not_written_over(tmp_path: Path) -> None:
     packs.overwritable(tmp_path / "new")
     packs.overwritable(tmp_path)
     (tmp_path / "thesis.tex").touch()
-    with pytest.raises(PackError, match="is no pack"):
+    with pytest.raises(PackError, match="is not a furniture pack"):
         packs.overwritable(tmp_path)
 
 

@@ -196,7 +196,7 @@ def test_what_held_the_agents_and_where_they_were_played_is_told(folders: list[P
 
 def test_runs_that_do_not_belong_together_are_refused(folders: list[Path], tmp_path: Path) -> None:
     other = run(tmp_path / "other", "helper", count=30)
-    with pytest.raises(RunError, match=r"other/run\.json: suite\.sha256 is not that of .*alone/run\.json"):
+    with pytest.raises(RunError, match=r"other/run\.json: suite\.sha256 differs from .*alone/run\.json"):
         write_report.write_report([folders[0], other], tmp_path / "out")
     with pytest.raises(RunError, match="are the same run"):
         write_report.write_report([folders[1], folders[1]], tmp_path / "out")

@@ -114,7 +114,7 @@ def test_a_folder_does_as_well(home: Path, made: tuple[TaskSpec, ...], tmp_path:
     out = suite_files.write_files(tmp_path / "mine", files)
     assert sorted(path.name for path in out.iterdir()) == ["houses", "suite.json"]
     assert tasks.load_suite(out).tasks == made
-    with pytest.raises(HthorError, match="is there already"):
+    with pytest.raises(HthorError, match="exists"):
         suite_files.check_unused(out)
 
 
@@ -125,7 +125,7 @@ def test_houses_are_told_apart_by_name(home: Path, tmp_path: Path):
     with pytest.raises(HthorError, match="two of the houses are called 'my home'"):
         suite_files.find_sources([str(home), str(twin)])
     shutil.copy(DATA / "alder.json", tmp_path / "birch.json")
-    with pytest.raises(HthorError, match="called like a house of hthor's own"):
+    with pytest.raises(HthorError, match="has the name of one of hthor's own houses"):
         suite_files.find_sources([str(tmp_path / "birch.json")])
     assert suite_files.find_sources(["alder"])[0].file is None
     for name in ("smoke", "a b", "", "../x"):

@@ -77,7 +77,7 @@ def test_a_fresh_salt_is_random_readable_by_its_owner_alone_and_never_written_ov
     assert salts.read_salt(one).commitment() != salts.read_salt(two).commitment()
     assert len(bytes.fromhex(one.read_text().strip())) == 32
     held = one.read_bytes()
-    with pytest.raises(HthorError, match="never written over"):
+    with pytest.raises(HthorError, match="never overwritten"):
         salts.create_salt(one)
     assert one.read_bytes() == held
     one.chmod(0o640)
@@ -92,7 +92,7 @@ def test_a_fresh_salt_is_random_readable_by_its_owner_alone_and_never_written_ov
         (b"a" * 64, "0 bits, at least 128"),
         (b"salt" * 16, "bits, at least 128"),
         (b"0123456789abcdefghijklmnopqrstuv" * 9, None),
-        (f"{TEXT}\n{TEXT}".encode(), "more than one"),
+        (f"{TEXT}\n{TEXT}".encode(), "the file has several"),
         ("ä".encode() * 40, "ASCII"),
         (None, "No such file"),
     ],

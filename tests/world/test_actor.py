@@ -227,7 +227,7 @@ def test_a_message_is_sent_shown_and_answered(world: World) -> None:
     human.reply(accept=False)
     assert robot.receipt().status == "declined"
     assert human.inbox() == ()
-    with pytest.raises(HthorError, match="no message waits for an answer of human"):
+    with pytest.raises(HthorError, match="there is no message for human to answer"):
         human.reply(accept=True)
     assert [(m.id, r.status) for m, r in world.messages] == [(message.id, "declined")]
     assert [event.kind for event in world.events] == ["sent", "shown", "declined"]

@@ -67,7 +67,7 @@ def _zip(path: Path) -> Iterator[_Member]:
             if one.is_dir():
                 continue
             if kind not in (0, stat.S_IFREG):
-                raise _refused(path, one.filename, "is not a plain file")
+                raise _refused(path, one.filename, "is a link or not a plain file")
             if one.flag_bits & 0x1:
                 raise _refused(path, one.filename, "is encrypted")
             yield _Member(one.filename, lambda one=one: held.open(one))  # type: ignore[misc]
@@ -79,7 +79,7 @@ def _tar(path: Path) -> Iterator[_Member]:
             if one.isdir():
                 continue
             if not one.isreg() or one.issparse():
-                raise _refused(path, one.name, "is not a plain file")
+                raise _refused(path, one.name, "is a link or not a plain file")
             yield _Member(one.name, lambda one=one: held.extractfile(one))  # type: ignore[misc]
 
 

@@ -47,7 +47,7 @@ def test_without_ray_one_sentence_says_what_to_install():
 def test_unknown_engines_and_needless_addresses_are_refused():
     with pytest.raises(HthorError, match=r"unknown engine 'rey'. Did you mean 'ray'\? Valid: local, ray\."):
         engines.find_engine("rey")
-    with pytest.raises(HthorError, match=r"--address 10\.0\.0\.1:6379: the engine 'local' has none"):
+    with pytest.raises(HthorError, match=r"--address 10\.0\.0\.1:6379: the engine 'local' takes no address"):
         engines.find_engine("local", address="10.0.0.1:6379")
 
 

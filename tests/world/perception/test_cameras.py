@@ -69,9 +69,9 @@ def test_a_camera_is_named_in_one_spelling(name, size, tidied, pixels, degrees) 
     [
         ("thr", "", "unknown camera 'thr'. Did you mean 'thor'? Valid: own, square, thor, habitat, realsense"),
         ("own", "0x10", "'0x10' is not a picture size. Expected WIDTHxHEIGHT in pixels, such as 320x240"),
-        ("own", "10", "'10' is no size of pictures"),
+        ("own", "10", "'10' is not a picture size"),
         ("thor", "5000x10", "pictures of 5000x10 are too large: at most 4096 pixels a side"),
-        ("thor:", "", "'' is no size of pictures"),
+        ("thor:", "", "'' is not a picture size"),
         ("thor:10x10", "20x20", "the camera 'thor:10x10' has a size already; leave out the size '20x20'"),
     ],
 )
