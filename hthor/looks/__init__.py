@@ -1,4 +1,4 @@
-"""What things look like: meshes, textures, materials, made by numbers alone."""
+"""The looks of things: meshes, textures and materials, all computed without files."""
 
 import importlib
 from functools import lru_cache
@@ -15,15 +15,15 @@ __all__ = ["Material", "Mesh", "Piece", "look", "textures"]
 
 @lru_cache(maxsize=2048)
 def look(kind: str, size: Vec3 | None = None, variant: int = 0) -> tuple[Piece, ...]:
-    """The pieces of a thing of ``kind`` at ``size`` [m] (the kind's own when None), in its local frame, closed.
+    """The pieces of a thing of ``kind`` at ``size`` [m] (None: the kind's own size): closed meshes in its local frame.
 
-    They fill the thing's bounding box, and lie at the heights where its surfaces are. Pieces that move name their
-    joint. One is made a material and joint, so there are few.
+    They fill the thing's bounding box, and match the heights of its surfaces. Pieces that move name their joint. There
+    is one piece for each material and joint, so there are few.
 
     Raises:
-        UnknownName: when there is no such kind.
+        UnknownName: if no kind has this name.
     """
-    from hthor.looks import build  # only who draws needs the shapes of everything
+    from hthor.looks import build  # only drawing needs the shapes of all kinds
 
     return build.build_pieces(catalog.kind(kind), size, variant)
 

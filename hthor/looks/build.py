@@ -1,4 +1,4 @@
-"""From a kind to its pieces: who builds what, and how the pieces are put together."""
+"""Builds the pieces of a thing of any kind: finds the kind's builder, and merges the pieces that it makes."""
 
 from collections.abc import Callable, Iterable, Mapping
 from types import ModuleType
@@ -14,11 +14,11 @@ from hthor.types import Vec3
 _CLOSE_M = 1e-4
 
 Builder = Callable[[Draft], Iterable[Piece]]
-"""Makes the pieces of a thing that stands on z = 0, its middle over the origin."""
+"""Makes the pieces of a thing that stands on z = 0 with its middle above the origin."""
 
 
 def _named(module: ModuleType, kinds: str) -> dict[str, Builder]:
-    """The builders of these kinds: functions of the module that have their names."""
+    """The builders of these kinds: the functions of the module that have the kinds' names."""
     return {kind: getattr(module, kind) for kind in kinds.split()}
 
 
@@ -56,7 +56,7 @@ _BUILDERS: Mapping[str, Builder] = {
 
 
 def build_pieces(kind: Kind, size: Vec3 | None, variant: int) -> tuple[Piece, ...]:
-    """The pieces of a thing of ``kind`` in its local frame, one for each material and joint."""
+    """Build a thing of ``kind`` in its local frame: one piece for each material and joint."""
     form = kind.form(size, variant)
     extent = kind.size if size is None else size
     draft = Draft.standing(kind.name, extent, form, variant)
@@ -66,7 +66,7 @@ def build_pieces(kind: Kind, size: Vec3 | None, variant: int) -> tuple[Piece, ..
 
 
 def _boxed(pieces: list[Piece], size: Vec3) -> list[Piece]:
-    """Pieces that miss their bounding box, moved and stretched into it."""
+    """The pieces, moved and stretched into their bounding box if they do not fill it."""
     w, d, h = size
     lo, hi = (-w / 2, -d / 2, 0.0), (w / 2, d / 2, h)
     low, high = shaping.bounds(pieces)
@@ -75,7 +75,7 @@ def _boxed(pieces: list[Piece], size: Vec3) -> list[Piece]:
 
 
 def merge_by_material(pieces: Iterable[Piece], lift: float = 0.0) -> list[Piece]:
-    """Pieces of the same material and joint made one, and lifted by ``lift`` [m]."""
+    """Merge pieces of the same material and joint, and lift them by ``lift`` [m]."""
     groups: dict[tuple[Material, str], list[Mesh]] = {}
     for piece in pieces:
         groups.setdefault((piece.material, piece.moves), []).append(piece.mesh)

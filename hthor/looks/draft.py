@@ -1,4 +1,4 @@
-"""What a builder of looks works from: a thing's size, solids and surfaces, set on the floor."""
+"""The input of a builder of looks: a thing's size, solids and surfaces, with the floor at z = 0."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from hthor.types import Joint, Part, Rgba, Surface, Vec3
 
 
 class Draft(NamedTuple):
-    """A thing to be built, its middle over the origin and its lowest point at z = 0 [m], front towards +y."""
+    """A thing to be built, its middle above the origin and its lowest point at z = 0 [m], its front towards +y."""
 
     name: str
     size: Vec3
@@ -22,7 +22,7 @@ class Draft(NamedTuple):
 
     @classmethod
     def standing(cls, name: str, size: Vec3, form: Form, variant: int = 0) -> Draft:
-        """The draft of a form, whose records are in the thing's local frame."""
+        """The draft of a form, whose solids, surfaces and joints are given in the thing's local frame."""
         lift = size[2] / 2.0
 
         def up(at: Vec3) -> Vec3:
@@ -38,10 +38,10 @@ class Draft(NamedTuple):
         )
 
     def colors(self) -> tuple[Rgba, ...]:
-        """The colors of its parts, each once, in the order of the parts."""
+        """The colors of the thing's parts, each once, in the order of the parts."""
         return tuple(dict.fromkeys(part.rgba for part in self.parts))
 
     def color(self, index: int = 0) -> Rgba:
-        """Its color of that number, or its last one when it has fewer."""
+        """The thing's color number ``index``, or its last color if it has fewer."""
         every = self.colors()
         return every[min(index, len(every) - 1)]

@@ -1,11 +1,11 @@
-"""What the names that houses give floors and walls stand for, a texture and a color."""
+"""Textures and colors for the names that houses give to floors and walls."""
 
 from functools import lru_cache
 
 from hthor.types import Vec3
 
 Finish = tuple[str, Vec3]
-"""Name of a texture, and the color that it has on the whole."""
+"""Name of a texture, and the color that it should have on average."""
 
 _FLOORS: tuple[tuple[str, str, Vec3], ...] = (
     ("checker", "checker", (1.0, 1.0, 1.0)),
@@ -57,7 +57,7 @@ _FLOORS: tuple[tuple[str, str, Vec3], ...] = (
     ("oak", "planks", (0.66, 0.51, 0.37)),
     ("", "planks", (0.62, 0.48, 0.34)),
 )
-"""The first row whose word is in a floor's name, without spaces and in small letters, says what it is."""
+"""Word, texture and color. The first row whose word is in a floor's name (lower-case letters only) decides."""
 
 _WALLS: tuple[tuple[str, str, Vec3], ...] = (
     ("redbrick", "brick", (0.62, 0.36, 0.29)),
@@ -102,13 +102,13 @@ _WALLS: tuple[tuple[str, str, Vec3], ...] = (
 
 @lru_cache(maxsize=256)
 def floor(name: str) -> Finish:
-    """A floor's finish by its name; names that speak of no known material count as wooden boards."""
+    """A floor's finish by its name; if the name contains no known material, it is wooden boards."""
     return _row(_FLOORS, name)
 
 
 @lru_cache(maxsize=256)
 def wall(name: str) -> Finish:
-    """A wall's or a ceiling's finish by its name; names that speak of none count as light plaster."""
+    """A wall's or a ceiling's finish by its name; if the name contains no known material, it is light plaster."""
     return _row(_WALLS, name)
 
 

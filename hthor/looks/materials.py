@@ -1,4 +1,4 @@
-"""What surfaces are made of: wood, cloth, metal, glass; floors and walls by the names that houses use; no shapes."""
+"""Materials of surfaces: wood, cloth, metal, glass; floors and walls by the names that houses use. No shapes."""
 
 from functools import lru_cache
 
@@ -14,44 +14,44 @@ _OTHERS = {"CARDBOARD": "cardboard", "LINEN": "linen", "TERRACOTTA": "concrete"}
 
 
 def tinted(texture: str, rgba: Rgba, specular: float = 0.1, shininess: float = 0.2) -> Material:
-    """``texture`` colored so that on the whole it looks ``rgba``, as far as it can be that bright."""
+    """``texture`` colored so that its average color is ``rgba``, as far as the texture can be that bright."""
     mean = textures.mean(texture)
     r, g, b = (round(min(1.0, channel / max(m, 0.05)), 4) for channel, m in zip(rgba, mean, strict=False))
     return Material(rgba=(r, g, b, rgba[3]), texture=texture, specular=specular, shininess=shininess)
 
 
 def paint(rgba: Rgba, gloss: float = 0.25) -> Material:
-    """A plain coat; ``gloss`` is 0 for chalk, 1 for a mirror's polish."""
+    """A plain coat of paint; ``gloss`` is from 0 for chalk to 1 for a mirror."""
     return Material(rgba=rgba, specular=gloss, shininess=0.2 + 0.6 * gloss)
 
 
 def wood(rgba: Rgba) -> Material:
-    """Lacquered wood of that color."""
+    """Lacquered wood of this color."""
     return tinted("wood", rgba, 0.18, 0.35)
 
 
 def cloth(rgba: Rgba, weave: str = "weave") -> Material:
-    """A textile of that color."""
+    """A textile of this color."""
     return tinted(weave, rgba, 0.02, 0.05)
 
 
 def leather(rgba: Rgba) -> Material:
-    """Leather of that color."""
+    """Leather of this color."""
     return tinted("leather", rgba, 0.25, 0.35)
 
 
 def metal(rgba: Rgba) -> Material:
-    """Brushed metal of that color."""
+    """Brushed metal of this color."""
     return tinted("brushed", rgba, 0.6, 0.6)
 
 
 def chrome(rgba: Rgba = colors.STEEL) -> Material:
-    """Polished metal of that color."""
+    """Polished metal of this color."""
     return Material(rgba=rgba, specular=0.9, shininess=0.85)
 
 
 def ceramic(rgba: Rgba) -> Material:
-    """Glazed ware of that color."""
+    """Glazed ceramic of this color."""
     return Material(rgba=rgba, specular=0.55, shininess=0.75)
 
 
@@ -61,12 +61,12 @@ def glass(rgba: Rgba = colors.GLASS) -> Material:
 
 
 def stone(rgba: Rgba) -> Material:
-    """A polished worktop of that color."""
+    """A polished stone worktop of this color."""
     return tinted("granite", rgba, 0.4, 0.6)
 
 
 def glow(rgba: Rgba, strength: float = 0.75) -> Material:
-    """A shade or a bulb with its own light."""
+    """A lamp shade or a bulb that gives light."""
     return Material(rgba=rgba, emission=strength)
 
 
@@ -80,7 +80,7 @@ _NAMES = {value: name for name, value in reversed(list(vars(colors).items())) if
 
 @lru_cache(maxsize=1024)
 def guess(rgba: Rgba) -> Material:
-    """The material that a color of the catalog speaks of: oak is wood, steel is metal; others are paint."""
+    """The material that a catalogue color suggests: oak is wood, steel is metal; other colors are paint."""
     name = _NAMES.get(rgba, "")
     if rgba[3] < 0.99:
         return glass(rgba)
@@ -94,7 +94,7 @@ def guess(rgba: Rgba) -> Material:
 
 
 def wooden(rgba: Rgba) -> bool:
-    """Whether a color is that of some wood."""
+    """Whether a color is that of a wood."""
     return guess(rgba).texture == "wood"
 
 
@@ -104,7 +104,7 @@ def _brown(rgba: Rgba) -> bool:
 
 
 def piece(shape: Mesh, material: Material, moves: str = "") -> Piece:
-    """A mesh of a material: its texture coordinates turn from metres into repeats of the texture."""
+    """A mesh with a material; its texture coordinates are converted from metres into repeats of the texture."""
     repeat = textures.scale(material.texture)
     return Piece(shape._replace(uv=(shape.uv / np.float32(repeat)) if repeat else shape.uv), material, moves)
 
@@ -114,7 +114,7 @@ def piece(shape: Mesh, material: Material, moves: str = "") -> Piece:
 
 @lru_cache(maxsize=256)
 def floor(name: str) -> Material:
-    """A floor's material by its name; names that speak of no known material count as wooden boards."""
+    """A floor's material by its name; if the name contains no known material, it is wooden boards."""
     texture, (r, g, b) = finishes.floor(name)
     shine = 0.04 if texture in ("carpet", "wicker") else 0.3
     return tinted(texture, (r, g, b, 1.0), shine, 1.5 * shine)
@@ -122,7 +122,7 @@ def floor(name: str) -> Material:
 
 @lru_cache(maxsize=256)
 def wall(name: str, rgb: Vec3 | None = None) -> Material:
-    """A wall's or a ceiling's material by its name, in its own color where the house gives one."""
+    """A wall's or a ceiling's material by its name, in the house's own color if it gives one."""
     texture, (r, g, b) = finishes.wall(name)
     own = (r, g, b) if rgb is None else rgb
     shine = 0.3 if texture.startswith(("tile", "subway", "marble", "checker")) else 0.03

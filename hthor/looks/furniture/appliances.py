@@ -1,4 +1,4 @@
-"""Machines with a window in their door: stoves, microwave ovens, safes, washers; range hoods."""
+"""Stoves, microwave ovens and other machines with a window in their door, such as washers and safes; range hoods."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from hthor.types import Part
 
 
 def stove(draft: Draft) -> list[Piece]:
-    """Its own solids with a hob of four rings on top, knobs over the door, and a window in the door."""
+    """The catalogue's solids with a hob of four rings on top, knobs over the door, and a window in the door."""
     w, d, h = draft.size
     found = _machine(draft)
     found.append(materials.piece(sweeps.lying((0.0, 0.0, h + 0.0008), 0.97 * w, 0.96 * d), materials.picture("hob")))
@@ -28,7 +28,7 @@ def stove(draft: Draft) -> list[Piece]:
 
 
 def microwave(draft: Draft) -> list[Piece]:
-    """Its own solids with a window, keys and a display."""
+    """The catalogue's solids with a window, keys and a display."""
     d = draft.size[1]
     found = _machine(draft)
     still = [part for part in draft.parts if not part.moves and part.half[1] < 0.05 * d]
@@ -46,7 +46,7 @@ def microwave(draft: Draft) -> list[Piece]:
 
 
 def _machine(draft: Draft) -> list[Piece]:
-    """A thing with a flat door: the door has a dark window in a frame, unless a handle or a panel is all there is."""
+    """A machine with a flat door: a broad door gets a dark window in a frame, a narrow moving part becomes a handle."""
     found = []
     for part in draft.parts:
         broad = part.moves and min(part.half[0], part.half[2]) > 0.08

@@ -13,7 +13,7 @@ from hthor.looks.meshes.mesh import Mesh, Piece
 
 
 def _oval(rows: list[tuple[float, float, float, float]], sides: int = 28) -> Mesh:
-    """A body whose level cuts are egg-shaped: rows of (half width, back y, front y, z), from the bottom up."""
+    """A body with egg-shaped horizontal sections: rows of (half width, back y, front y, z), from the bottom up."""
     angle = np.linspace(0.0, 2 * math.pi, sides + 1)
     points = []
     for half, back, front, z in rows:
@@ -72,7 +72,7 @@ def bathtub(draft: Draft) -> list[Piece]:
 
 
 def _rounded(x: float, y: float, radius: float, z: float, steps: int = 5) -> np.ndarray:
-    """A level rectangle with round corners, counter-clockwise, closed."""
+    """A closed horizontal rectangle with round corners, counter-clockwise."""
     points, inner_x, inner_y = [], (x - radius) * (x > radius), (y - radius) * (y > radius)
     for quarter, (sx, sy) in enumerate(((1, 1), (-1, 1), (-1, -1), (1, -1))):
         for k in range(steps):
@@ -82,7 +82,7 @@ def _rounded(x: float, y: float, radius: float, z: float, steps: int = 5) -> np.
 
 
 def shower(draft: Draft) -> list[Piece]:
-    """A tray with a drain, glass on two sides in slim rails, a pipe with a broad head and a valve."""
+    """A tray with a drain, glass in slim rails on two sides, and a pipe with a broad head and a valve."""
     w, d, h = draft.size
     x, y = w / 2, d / 2
     low = 0.05 * h
@@ -117,7 +117,7 @@ def shower(draft: Draft) -> list[Piece]:
 
 
 def shower_head(draft: Draft) -> list[Piece]:
-    """A round head on a bent pipe out of the wall."""
+    """A round head on a bent pipe that comes out of the wall."""
     w, d, h = draft.size
     r = w / 2
     path = sweeps.bend(
@@ -169,7 +169,7 @@ def towel(draft: Draft) -> list[Piece]:
 
 
 def toilet_paper(draft: Draft) -> list[Piece]:
-    """A roll on its end with a cardboard core."""
+    """A roll that stands on its end, with a cardboard core."""
     r, h = min(draft.size[:2]) / 2, draft.size[2]
     paper = [(0.40 * r, 0.02 * h), (0.94 * r, 0.0), (r, 0.03 * h), (r, 0.97 * h), (0.94 * r, h), (0.40 * r, 0.98 * h)]
     core = [(0.40 * r, 0.99 * h), (0.36 * r, 0.99 * h), (0.36 * r, 0.01 * h)]
@@ -180,7 +180,7 @@ def toilet_paper(draft: Draft) -> list[Piece]:
 
 
 def soap(draft: Draft) -> list[Piece]:
-    """A worn bar."""
+    """A worn bar of soap."""
     w, d, h = draft.size
     shape = solids.box((-w / 2, -d / 2, 0.0), (w / 2, d / 2, h), 0.42 * h, 3)
     mark = sweeps.ring((0.0, 0.0, 0.985 * h), 0.22 * w, 0.03 * h, "z", 18, 5)

@@ -12,9 +12,9 @@ from hthor.looks.meshes.mesh import Mesh, Piece
 
 
 def bed(draft: Draft) -> list[Piece]:
-    """A headboard, a frame, a mattress, a duvet turned down, and pillows that lean on the headboard.
+    """A headboard, a frame, a mattress, a duvet turned down, and pillows that lean against the headboard.
 
-    The pillows stand where the surface has not begun, so that nothing is drawn where an object may lie.
+    The pillows are outside the surface for objects, so that nothing is drawn where an object may lie.
     """
     w, d, h = draft.size
     rest = draft.surfaces[0]
@@ -53,7 +53,7 @@ def bed(draft: Draft) -> list[Piece]:
 
 
 def _draped(x: float, start: float, y: float, low: float, top: float) -> Mesh:
-    """A cover over a mattress from ``start`` to the foot: flat on top, its sides hanging down to ``low`` in folds."""
+    """A cover on a mattress from ``start`` to the foot: flat on top, with sides that hang down to ``low`` in folds."""
     across = np.array([-1.0, -1.0, -1.0, -0.995, -0.97, -0.90, -0.45, 0.0, 0.45, 0.90, 0.97, 0.995, 1.0, 1.0, 1.0])
     fall = np.array([1.0, 0.55, 0.22, 0.08, 0.015, 0.0, 0.0, 0.0, 0.0, 0.0, 0.015, 0.08, 0.22, 0.55, 1.0])
     down = np.concatenate([np.linspace(0.0, 0.93, 13), [0.97, 0.99, 1.0, 1.0, 1.0]])

@@ -1,8 +1,8 @@
-"""What is built into a house: door leaves and ceiling lamps.
+"""Parts of a house: door leaves and ceiling lamps.
 
-Every function returns pieces in one local frame: x runs along the wall with 0 in the middle of the opening, y is across
-the wall with 0 in the middle of its thickness and the room that is looked from towards +y, z is up from the floor (from
-the lower edge, for windows). All measures are in metres.
+Every function returns pieces in a local frame: x is along the wall, with 0 in the middle of the opening; y is across
+the wall, with 0 in the middle of its thickness and the viewer's room towards +y; z is up from the floor (for windows,
+from the lower edge). All lengths are in metres.
 """
 
 import math
@@ -16,7 +16,7 @@ from hthor.types import Rgba
 TRIM: Rgba = (0.94, 0.93, 0.91, 1.0)
 """The color of doors and their frames."""
 LEAF_M = 0.04
-"""How thick a door leaf is."""
+"""Thickness of a door leaf [m]."""
 _TRIM = materials.paint(TRIM, 0.3)
 
 
@@ -25,9 +25,9 @@ def _plain(*shapes: Mesh, of: Material = _TRIM) -> list[Piece]:
 
 
 def door_leaf(width: float, height: float, rgba: Rgba = TRIM, panels: int = 2) -> list[Piece]:
-    """A leaf ``LEAF_M`` thick, x from -width/2 (its hinges) to width/2, z from 0 to ``height``; a lever on both sides.
+    """A leaf ``LEAF_M`` thick, x from -width/2 (hinges) to width/2, z from 0 to ``height``; a lever on both sides.
 
-    Stiles and rails stand proud of ``panels`` sunken panels, one above the other. A wooden ``rgba`` shows its grain.
+    It has ``panels`` sunken panels, one above the other, in a raised frame. A wooden ``rgba`` shows its grain.
     """
     x, y, stile = width / 2, LEAF_M / 2, min(0.11, 0.16 * width)
     coat = materials.wood(rgba) if materials.wooden(rgba) else materials.paint(rgba, 0.3)
@@ -59,7 +59,7 @@ def _levers(x: float, z: float) -> list[Piece]:
 
 
 def ceiling_lamp(radius: float = 0.19) -> list[Piece]:
-    """A flat glass bowl under a ceiling: z from 0 (the ceiling) down to about -radius/2, lit."""
+    """A flat, lit glass bowl under a ceiling: z from 0 (the ceiling) down to about -radius/2."""
     bowl = [(0.0, -0.5 * radius)] + [
         (radius * math.sin(a), -0.5 * radius * math.cos(a)) for a in (math.pi / 2 * k / 6 for k in range(1, 7))
     ]

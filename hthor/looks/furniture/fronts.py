@@ -1,6 +1,6 @@
-"""Cabinet makers' work on a kind's own solids: panelled fronts with handles, tapered legs, eased tops.
+"""Turns a kind's solids into cabinet makers' work: panelled fronts with handles, tapered legs, rounded tops.
 
-What moves in the solids moves here, and every solid stays where it is, so that both looks of a thing agree.
+Parts that move in the solids also move here, and every solid keeps its place, so that both looks of a thing agree.
 """
 
 from collections.abc import Iterable
@@ -18,12 +18,12 @@ from hthor.looks.meshes.mesh import Material, Mesh, Piece
 from hthor.types import Part, Vec3
 
 _FRONT_M = 0.05
-"""A box no thicker than this from back to front may be a front."""
+"""A box may be a front if it is no thicker than this from back to front."""
 _PROUD_M = 0.004
 
 
 def joinery(draft: Draft) -> list[Piece]:
-    """Every part as what it seems to be: a leg, a front, a handle, else a board."""
+    """Draw each part by its shape and place: as a leg, a front or a handle, else as a board."""
     return [piece for part in draft.parts for piece in _worked(draft, part)]
 
 
@@ -40,7 +40,7 @@ def counter(draft: Draft) -> list[Piece]:
 
 
 def cabinet(draft: Draft) -> list[Piece]:
-    """A closed cabinet on feet: what stands for furniture of no particular kind."""
+    """A closed cabinet on feet, used for furniture of no particular kind."""
     w, d, h = draft.size
     x, y, foot, lip = w / 2, d / 2, min(0.08, 0.1 * h), min(0.02, 0.05 * d)
     coat, wood = materials.paint(draft.color(0), 0.2), materials.wood(c.OAK)
@@ -66,7 +66,7 @@ def cabinet(draft: Draft) -> list[Piece]:
 
 
 def _blind(draft: Draft, part: Part) -> list[Piece]:
-    """Doors drawn on the front of a body that does not open."""
+    """Doors drawn on the front of a body that cannot be opened."""
     lo, hi = _lo(part), _hi(part)
     room = draft.size[1] / 2 - hi[1]
     if part.moves or part.half[1] < 0.1 or part.half[2] < 0.15 or not 0.008 < room < 0.06 or hi[0] - lo[0] < 0.15:
@@ -127,7 +127,7 @@ def _is_front(draft: Draft, part: Part) -> bool:
 
 
 def _leg(part: Part) -> Mesh:
-    """A leg that tapers to the floor on the sides that look to the middle of the thing."""
+    """A leg that tapers towards the floor on the sides that face the middle of the thing."""
     shape = plain.solid(part)
     points = shape.vertices.astype(float)
     share = (points[:, 2] - _lo(part)[2]) / (2 * part.half[2])
@@ -138,7 +138,7 @@ def _leg(part: Part) -> Mesh:
 
 
 def bar(part: Part) -> Mesh:
-    """A round bar on two feet that fills the part, standing off to the front."""
+    """A round bar on two feet that fills the part; its feet are at the back."""
     lo, hi = _lo(part), _hi(part)
     long = 2 if part.half[2] > part.half[0] else 0
     radius = 0.5 * min(2 * part.half[0], 2 * part.half[2], 0.9 * 2 * part.half[1], 0.022)
@@ -154,7 +154,7 @@ def bar(part: Part) -> Mesh:
 
 
 def _front(draft: Draft, part: Part) -> list[Piece]:
-    """A panel in a frame; a handle of its own only where the solids have none and there is room for it."""
+    """A panel in a frame; it gets a handle if the solids have none and there is room for it."""
     lo, hi, coat = _lo(part), _hi(part), _grain(part)
     owned = any(_is_handle(draft, other) and other.moves == part.moves for other in draft.parts if part.moves)
     room = draft.size[1] / 2 - hi[1]
@@ -169,10 +169,10 @@ def _front(draft: Draft, part: Part) -> list[Piece]:
 
 
 def panelled(lo: Vec3, hi: Vec3) -> list[Mesh]:
-    """A leaf from ``lo`` to ``hi`` with a frame around it, 4 mm proud of it to the front."""
+    """A leaf from ``lo`` to ``hi`` with a frame around it that stands out 4 mm to the front."""
     wide = min(0.055, 0.16 * (hi[0] - lo[0]), 0.22 * (hi[2] - lo[2]))
     (x0, y0, z0), (x1, y, z1) = lo, hi
-    e = 0.0015  # the frames of doors side by side do not touch
+    e = 0.0015  # so that the frames of neighbouring doors do not touch
     y1, a = y + _PROUD_M, min(y, y0 + 0.5 * (y - y0))
     return [
         solids.box((x0, y0, z0), (x1, y, z1), 0.001),
@@ -184,7 +184,7 @@ def panelled(lo: Vec3, hi: Vec3) -> list[Mesh]:
 
 
 def _knobs(lo: Any, hi: Any, face: float, front: float) -> Mesh:
-    """Two knobs on a broad front, one on a narrow one, in its middle."""
+    """Two knobs in the middle of a broad front, or one in the middle of a narrow front."""
     out = max(0.006, front - face)
     r = min(0.016, 0.2 * float(hi[2] - lo[2]))
     middle, wide = (lo + hi) / 2, float(hi[0] - lo[0])
@@ -202,7 +202,7 @@ def corners(part: Part) -> tuple[Vec3, Vec3]:
 
 
 def grip(x: float, y: float, front: float, low: float, high: float) -> Mesh:
-    """An upright bar at ``x`` on two feet, from a face at ``y`` to ``front`` [m], between two heights."""
+    """An upright bar at ``x`` on two feet, from a face at ``y`` to ``front`` and from ``low`` to ``high`` [m]."""
     r = min(0.010, 0.32 * (front - y))
     rod = sweeps.tube([(x, front - r, low), (x, front - r, high)], r, 8)
     feet = [sweeps.tube([(x, y - 0.003, z), (x, front - r, z)], 0.7 * r, 6) for z in (low + 0.03, high - 0.03)]

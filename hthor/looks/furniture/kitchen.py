@@ -10,7 +10,7 @@ from hthor.types import Part
 
 
 def fridge(draft: Draft) -> list[Piece]:
-    """A shell with a lit inside and glass shelves; its door looks like two, a freezer's below a fridge's."""
+    """A shell with a lit interior and glass shelves; its door looks like a fridge's door above a freezer's."""
     shell = [part for part in draft.parts if not part.moves]
     moving = [part for part in draft.parts if part.moves]
     leaf = max(moving, key=lambda part: part.half[0] * part.half[2])
@@ -33,7 +33,7 @@ def fridge(draft: Draft) -> list[Piece]:
 
 
 def _liner(draft: Draft, part: Part) -> list[Mesh]:
-    """A white sheet on the inside of a wall that has the body's color."""
+    """A white sheet on the inner side of a wall that has the body's color."""
     (x0, y0, z0), (x1, y1, z1) = fronts.corners(part)
     thin, low, high = 0.002, z0 + 0.05, z1 - 0.05
     if part.rgba != draft.color(0) or part.half[2] < 0.3 * draft.size[2]:
@@ -51,7 +51,7 @@ def _lining(draft: Draft, part: Part) -> Material:
 
 
 def coffee_machine(draft: Draft) -> list[Piece]:
-    """A tank behind, a head with keys over a drip tray, a glass jug with coffee in it between them."""
+    """A tank at the back, a head with keys over a drip tray, and between them a glass jug with coffee."""
     w, d, h = draft.size
     x, y = w / 2, d / 2
     body, steel = materials.paint(draft.color(0), 0.4), materials.metal(c.STEEL)
@@ -80,7 +80,7 @@ def coffee_machine(draft: Draft) -> list[Piece]:
 
 
 def toaster(draft: Draft) -> list[Piece]:
-    """A round-shouldered box with two slots, toast in one, and a lever."""
+    """A box with rounded shoulders, two slots, toast in one slot, and a lever."""
     w, d, h = draft.size
     x, y, edge = w / 2, d / 2, 0.94
     dark, steel = materials.paint(c.BLACK, 0.3), materials.chrome(draft.color(0))

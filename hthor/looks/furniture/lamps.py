@@ -10,7 +10,7 @@ _BULB = materials.glow((1.0, 0.95, 0.8, 1.0), 1.0)
 
 
 def _shade(low_r: float, top_r: float, low: float, high: float) -> Mesh:
-    """An open cone, seen from inside too."""
+    """An open cone that is also visible from inside."""
     t = 0.003
     profile = [(low_r - t, low), (low_r, low), (top_r, high), (top_r - t, high), (low_r - t, low)]
     return solids.lathe(profile, 28)
@@ -32,7 +32,7 @@ def table_lamp(draft: Draft) -> list[Piece]:
 
 
 def floor_lamp(draft: Draft) -> list[Piece]:
-    """A round foot, a slim pole, a drum of a shade that is lit."""
+    """A round foot, a slim pole and a lit, drum-shaped shade."""
     w, d, h = draft.size
     r, low = min(w, d) / 2, 0.80 * h
     foot = [(0.0, 0.0), (0.60, 0.0), (0.62, 0.008), (0.56, 0.020), (0.12, 0.030), (0.06, 0.05), (0.0, 0.05)]
@@ -48,7 +48,7 @@ def floor_lamp(draft: Draft) -> list[Piece]:
 
 
 def candle(draft: Draft) -> list[Piece]:
-    """A pillar of wax with a wick."""
+    """A thick wax candle with a wick."""
     r, h = min(draft.size[:2]) / 2, draft.size[2]
     wax = [(0.0, 0.0), (0.96, 0.0), (1.0, 0.03), (1.0, 0.86), (0.94, 0.90), (0.7, 0.88), (0.0, 0.85)]
     wick = sweeps.tube([(0.0, 0.0, 0.84 * h), (0.0, 0.0, 0.93 * h), (0.06 * r, 0.0, h)], 0.04 * r, 6)
@@ -59,7 +59,7 @@ def candle(draft: Draft) -> list[Piece]:
 
 
 def vacuum_cleaner(draft: Draft) -> list[Piece]:
-    """An upright one: a broad nozzle, a body with a dust bin, a slim handle."""
+    """An upright vacuum cleaner: a broad nozzle, a body with a dust bin, and a slim handle."""
     w, d, h = draft.size
     x, y = w / 2, d / 2
     coat, dark = materials.paint(draft.colors()[-1], 0.5), materials.paint(c.IRON, 0.4)

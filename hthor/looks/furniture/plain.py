@@ -1,4 +1,4 @@
-"""The look of last resort: a kind's own solids with rounded edges, in what their colors speak of."""
+"""The default look: a kind's own solids with rounded edges, in materials guessed from their colors."""
 
 from collections.abc import Iterable
 
@@ -11,17 +11,17 @@ from hthor.types import Part
 
 
 def plain_pieces(parts: Iterable[Part]) -> list[Piece]:
-    """One piece a part."""
+    """One piece per part."""
     return [piece(part) for part in parts]
 
 
 def piece(part: Part, material: Material | None = None) -> Piece:
-    """A part as a piece, of ``material`` or of what its color speaks of."""
+    """A part as a piece, of ``material`` or, if that is None, of the material guessed from its color."""
     return materials.piece(solid(part), materials.guess(part.rgba) if material is None else material, part.moves)
 
 
 def solid(part: Part, radius: float | None = None) -> Mesh:
-    """A part's mesh, the edges of boxes rounded by ``radius`` [m]."""
+    """A part's mesh; boxes have edges rounded by ``radius`` [m]."""
     if part.shape == "box":
         lo, hi = (tuple(np.array(part.centre) + sign * np.array(part.half)) for sign in (-1.0, 1.0))
         return solids.box(lo, hi, radius)

@@ -47,7 +47,7 @@ def sofa(draft: Draft) -> list[Piece]:
 
 
 def chair(draft: Draft) -> list[Piece]:
-    """Four tapered legs, a dished seat, and a back of slats between two posts that lean a little."""
+    """Four tapered legs, a hollowed seat, and a back of slats between two posts that lean a little."""
     w, d, h = draft.size
     top = draft.surfaces[0].centre[2]
     x, y, t, r = w / 2, d / 2, min(0.03, 0.08 * h), min(0.02, 0.06 * w)

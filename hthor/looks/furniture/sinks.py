@@ -45,7 +45,7 @@ def sink(draft: Draft) -> list[Piece]:
 
 
 def _around(outer: Rect, hole: Rect, low: float, high: float, radius: float) -> list[Mesh]:
-    """A level slab with a hole, of four boxes; rectangles are (left, back, right, front) [m]."""
+    """A horizontal slab with a hole, made of four boxes; rectangles are (left, back, right, front) [m]."""
     (x0, y0, x1, y1), (a, b, e, f) = outer, hole
     return [
         solids.box((x0, y0, low), (a, y1, high), radius),
@@ -56,7 +56,7 @@ def _around(outer: Rect, hole: Rect, low: float, high: float, radius: float) -> 
 
 
 def _basin(left: float, right: float, near: float, far: float, floor: float, rim: float) -> list[Mesh]:
-    """The inside of a trough: a floor with a drain and four walls, leaning a little."""
+    """The inside of a basin: a floor with a drain, and four walls that lean a little."""
     t = 0.014
     walls = [
         solids.box((left - t, near - t, floor), (left + 0.001, far + t, rim - 0.002), 0.001),

@@ -1,4 +1,4 @@
-"""What hangs on walls, and rugs: paintings, mirrors, clocks, curtains, switches."""
+"""Paintings, mirrors, clocks, curtains and switches, which hang on walls; rugs."""
 
 import zlib
 
@@ -13,16 +13,16 @@ from hthor.looks.meshes.mesh import Material, Mesh, Piece
 _ART = ("landscape_1", "landscape_2", "abstract_1", "landscape_3", "still_life", "landscape_4", "abstract_2")
 _RUGS = ("rug_red", "rug_blue", "rug_green")
 _NARROW_M = 0.6
-"""Less than this, and a curtain is one of two, one at either side of a window."""
+"""A curtain narrower than this hangs at one side of a window and is a single panel."""
 
 
 def _of(draft: Draft, choices: tuple[str, ...]) -> str:
-    """One of the choices, by the size and variant of a thing: the same thing always looks the same."""
+    """A choice that depends on the size and variant of a thing, so that the same thing always looks the same."""
     return choices[(zlib.crc32(repr(draft.size).encode()) + draft.variant) % len(choices)]
 
 
 def _frame(w: float, d: float, h: float, broad: float) -> list[Mesh]:
-    """Four mouldings around an upright rectangle, their backs at -d/2, z from 0 to ``h``."""
+    """Four strips of a frame around an upright rectangle, their backs at -d/2, z from 0 to ``h``."""
     x, y, r = w / 2, d / 2, min(0.006, 0.2 * d)
     return [
         solids.box((-x, -y, 0.0), (broad - x, y, h), r),
@@ -33,7 +33,7 @@ def _frame(w: float, d: float, h: float, broad: float) -> list[Mesh]:
 
 
 def painting(draft: Draft) -> list[Piece]:
-    """A picture in a mat in a frame; which one depends on the thing's size and variant."""
+    """A framed picture with a mat around it; the picture depends on the thing's size and variant."""
     w, d, h = draft.size
     broad, mat = min(0.045, 0.09 * min(w, h)), min(0.05, 0.09 * min(w, h))
     y = 0.1 * d
@@ -77,7 +77,7 @@ def clock(draft: Draft) -> list[Piece]:
 
 
 def curtain(draft: Draft) -> list[Piece]:
-    """Two pleated panels drawn a little aside, one where it is narrow, on a rod with knobs."""
+    """Two pleated panels, drawn a little aside (one panel if narrow), on a rod with knobs."""
     w, d, h = draft.size
     coat, iron = Material(rgba=draft.color(0), specular=0.0, shininess=0.0), materials.metal(c.IRON)
     found = [materials.piece(sweeps.tube([(-0.49 * w, 0.0, h - 0.03), (0.49 * w, 0.0, h - 0.03)], 0.010, 10), iron)]
@@ -90,7 +90,7 @@ def curtain(draft: Draft) -> list[Piece]:
         u, v = np.meshgrid(np.linspace(0.0, 1.0, 37), np.linspace(0.0, 1.0, 5), indexing="ij")
         breadth = ((0.31 if pair else 0.95) - 0.03 * np.sin(np.pi * v)) * w
         x = s * (0.475 * w - breadth * u)
-        y = (0.20 + (0.14 + 0.10 * v) * np.sin(2 * np.pi * 6.0 * u + 0.5 * v)) * d  # clear of a window's trim
+        y = (0.20 + (0.14 + 0.10 * v) * np.sin(2 * np.pi * 6.0 * u + 0.5 * v)) * d  # keeps clear of a window's trim
         z = (h - 0.012) * (1.0 - v)
         points, uv = np.stack([x, y, z], -1), np.stack([u * w * 0.6, z], -1)
         if s < 0:

@@ -1,1 +1,1 @@
-"""Triangle meshes: solids, sweeps and how to shape them."""
+"""Triangle meshes: solids, sweeps, and functions that shape them."""

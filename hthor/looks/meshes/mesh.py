@@ -1,4 +1,4 @@
-"""Triangle meshes with texture coordinates, and what they are made of."""
+"""Triangle meshes with texture coordinates, and their materials."""
 
 from typing import Any, NamedTuple
 
@@ -9,8 +9,8 @@ from hthor.types import Rgba
 
 class Mesh(NamedTuple):
     """Triangles. ``vertices`` (V, 3) float32 [m]; ``faces`` (F, 3) int32, counter-clockwise seen from outside; ``uv``
-    (V, 2) float32, one unit a repeat of the texture, (0, 0) the picture's upper left corner; ``normals`` (V, 3) float32
-    unit vectors.
+    (V, 2) float32, where one unit is one repeat of the texture and (0, 0) is its upper left corner; ``normals`` (V, 3)
+    float32 unit vectors.
     """
 
     vertices: Any
@@ -20,9 +20,9 @@ class Mesh(NamedTuple):
 
 
 class Material(Struct, frozen=True, kw_only=True):
-    """What a mesh is made of. ``texture`` names one of `hthor.looks.textures`, empty for plain ``rgba``.
+    """The material of a mesh. ``texture`` names one of `hthor.looks.textures`; if it is empty, ``rgba`` is the color.
 
-    A texture is multiplied by ``rgba``. ``specular`` and ``shininess`` are 0 to 1, as is ``emission``, its own light.
+    A texture is multiplied by ``rgba``. ``specular``, ``shininess`` and ``emission`` (light of its own) are 0 to 1.
     """
 
     rgba: Rgba = (1.0, 1.0, 1.0, 1.0)
@@ -33,7 +33,7 @@ class Material(Struct, frozen=True, kw_only=True):
 
 
 class Piece(NamedTuple):
-    """One mesh of a thing in the thing's local frame; ``moves`` names the `hthor.types.Joint` it moves with."""
+    """One mesh of a thing in the thing's local frame; ``moves`` names the `hthor.types.Joint` that moves it."""
 
     mesh: Mesh
     material: Material

@@ -1,6 +1,6 @@
-"""Moving, turning, stretching and joining meshes, and surfaces from grids of points.
+"""Moves, turns, stretches and joins meshes, and makes surfaces from grids of points.
 
-Texture coordinates are in metres until `hthor.looks.materials.piece` turns them into repeats of a texture.
+Texture coordinates are in metres until `hthor.looks.materials.piece` converts them into repeats of a texture.
 """
 
 import math
@@ -16,9 +16,9 @@ _NO_AREA = 1e-11
 
 
 def surface(points: Any, uv: Any, normals: Any = None) -> Mesh:
-    """A mesh from ``points`` (N, M, 3) and ``uv`` (N, M, 2); outside is where d/dN x d/dM points.
+    """A mesh from ``points`` (N, M, 3) and ``uv`` (N, M, 2); the outside is in the direction d/dN x d/dM of the points.
 
-    ``normals`` (N, M, 3) default to smooth ones, also across seams where points coincide.
+    ``normals`` (N, M, 3) are smooth by default, also across seams where points coincide.
     """
     n, m = points.shape[:2]
     corner = np.arange(n * m).reshape(n, m)
@@ -31,7 +31,7 @@ def surface(points: Any, uv: Any, normals: Any = None) -> Mesh:
 
 
 def mesh(vertices: Any, faces: Any, uv: Any, normals: Any) -> Mesh:
-    """A mesh of the types that `Mesh` promises, its normals made unit."""
+    """A mesh with the types of `Mesh`, its normals scaled to unit length."""
     length = np.linalg.norm(normals, axis=1, keepdims=True)
     unit = np.where(length > 0.0, normals / np.maximum(length, 1e-12), (0.0, 0.0, 1.0))
     floats = (np.ascontiguousarray(array, "f4") for array in (vertices, uv, unit))
@@ -40,7 +40,7 @@ def mesh(vertices: Any, faces: Any, uv: Any, normals: Any) -> Mesh:
 
 
 def smooth(vertices: Any, faces: Any) -> Any:
-    """Area-weighted normals (V, 3), not yet unit; vertices at the same place share theirs."""
+    """Area-weighted normals (V, 3), not of unit length; vertices at the same place have the same normal."""
     _, same = np.unique(np.round(vertices, 6), axis=0, return_inverse=True)
     same = same.reshape(-1)
     cross = _crosses(vertices, faces)
@@ -60,7 +60,7 @@ def _areas(vertices: Any, faces: Any) -> Any:
 
 
 def moved(shape: Mesh, x: float = 0.0, y: float = 0.0, z: float = 0.0) -> Mesh:
-    """The mesh elsewhere."""
+    """The mesh, moved by (``x``, ``y``, ``z``) [m]."""
     return shape._replace(vertices=shape.vertices + np.array((x, y, z), np.float32))
 
 
@@ -80,7 +80,7 @@ def turned(shape: Mesh, axis: str, angle: float) -> Mesh:
 
 
 def merged(*shapes: Mesh) -> Mesh:
-    """One mesh of several, which must be at least one."""
+    """One mesh made of several, at least one."""
     starts = np.cumsum([0, *(len(shape.vertices) for shape in shapes[:-1])])
     faces = np.concatenate([shape.faces + start for shape, start in zip(shapes, starts, strict=True)])
     joined = (np.concatenate([shape[k] for shape in shapes]) for k in (0, 2, 3))
@@ -89,13 +89,13 @@ def merged(*shapes: Mesh) -> Mesh:
 
 
 def bounds(pieces: Iterable[Piece]) -> tuple[Any, Any]:
-    """The lowest and the highest corner [m] of pieces."""
+    """The lowest and the highest corner of all pieces [m]."""
     corners = np.concatenate([piece.mesh.vertices for piece in pieces])
     return corners.min(0).astype(float), corners.max(0).astype(float)
 
 
 def fitted(pieces: Iterable[Piece], lo: Vec3, hi: Vec3) -> list[Piece]:
-    """The pieces moved and stretched together so that they fill the box from ``lo`` to ``hi`` [m]."""
+    """The pieces, moved and stretched together so that they fill the box from ``lo`` to ``hi`` [m]."""
     every = list(pieces)
     low, high = bounds(every)
     factors = (np.array(hi) - lo) / np.maximum(high - low, 1e-9)

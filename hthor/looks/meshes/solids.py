@@ -12,7 +12,7 @@ from hthor.looks.meshes.mesh import Mesh
 from hthor.types import Vec2, Vec3
 
 BEVEL_M = 0.012
-"""The largest radius of an edge that nobody asked to be rounder."""
+"""The largest edge radius of boxes that are made without a radius [m]."""
 _SHARP_M = 0.004
 _CREASE = math.cos(math.radians(40.0))
 
@@ -21,8 +21,8 @@ def box(lo: Vec3, hi: Vec3, radius: float | None = None, steps: int = 1, cells: 
     """A box from corner ``lo`` to ``hi`` [m] with rounded edges; u of its texture runs along its longest side.
 
     Args:
-        radius: [m] of the edges; None takes a tenth of the smallest side, at most `BEVEL_M`.
-        steps: how many strips make up half an edge. cells: into how many its flat sides are divided each way.
+        radius: of the edges [m]; None takes a tenth of the smallest side, at most `BEVEL_M`.
+        steps: number of strips in half an edge. cells: number of strips of the flat sides in each direction.
     """
     half, middle = (np.array(hi) - lo) / 2.0, (np.array(hi) + lo) / 2.0
     least = float(half.min())
@@ -37,7 +37,7 @@ def box(lo: Vec3, hi: Vec3, radius: float | None = None, steps: int = 1, cells: 
 
 
 def _cuts(steps: int, cells: int) -> tuple[Any, Any]:
-    """Along one side of a box: how much each point leans outward, and where on the flat part it starts, -1 to 1."""
+    """For points along one side of a box: their outward lean, and their place on the flat part, -1 to 1."""
     lean = np.tan(np.linspace(math.pi / 4, 0.0, steps + 1))[:-1]
     edge = np.ones(steps)
     lean = np.concatenate([-lean, np.zeros(cells + 1), lean[::-1]])
@@ -62,7 +62,7 @@ def _side(half: Any, radius: float, lean: Any, side: Any, axis: int, sign: int) 
 
 
 def soft(lo: Vec3, hi: Vec3, radius: float, puff: float = 0.0, steps: int = 2, cells: int = 3) -> Mesh:
-    """A padded block: rounder edges, and flat sides that sink by ``puff`` [m] towards their rims."""
+    """A padded block: very round edges, and flat sides that sink by ``puff`` [m] towards their rims."""
     half, middle = (np.array(hi) - lo) / 2.0, (np.array(hi) + lo) / 2.0
     x, y, z = (float(a) for a in half)
     body = box((-x, -y, -z), (x, y, z), radius, steps, cells)
@@ -76,10 +76,10 @@ def soft(lo: Vec3, hi: Vec3, radius: float, puff: float = 0.0, steps: int = 2, c
 
 
 def lathe(profile: Sequence[Vec2], sides: int = 20, unit: Vec2 = (1.0, 1.0), *, whole: bool = False) -> Mesh:
-    """A solid of revolution about z from ``profile``, (radius, height) in ``unit`` [m], upwards along its outside.
+    """A solid of revolution about z; ``profile`` is its outside from the bottom up, (radius, height) in ``unit`` [m].
 
-    Creases of more than 40 degrees stay sharp. ``whole`` lays the texture once around and once from end to end instead
-    of in metres.
+    Creases of more than 40 degrees stay sharp. If ``whole``, the texture goes once around and once from end to end;
+    otherwise it is in metres.
     """
     angle = np.linspace(0.0, 2.0 * math.pi, sides + 1)
     rows = np.array(profile, float) * unit
@@ -91,7 +91,7 @@ def lathe(profile: Sequence[Vec2], sides: int = 20, unit: Vec2 = (1.0, 1.0), *, 
 
 
 def _runs(rows: Any) -> list[tuple[int, int]]:
-    """Stretches of a profile without a crease."""
+    """First and last rows of the parts of a profile without a crease."""
     step = np.diff(rows, axis=0)
     step = step / np.maximum(np.linalg.norm(step, axis=1, keepdims=True), 1e-12)
     creases = [k for k in range(1, len(step)) if float(step[k - 1] @ step[k]) < _CREASE]
@@ -114,7 +114,7 @@ def _strip(rows: Any, length: Any, first: int, last: int, angle: Any, scale: Vec
 
 
 def cylinder(centre: Vec3, radius: float, length: float, axis: str = "z", sides: int = 20, top: float = -1.0) -> Mesh:
-    """A cylinder, or a cone with another ``top`` radius [m], around ``centre``, with bevelled rims."""
+    """A cylinder around ``centre`` with bevelled rims, or a cone whose upper radius is ``top`` [m]."""
     r, t, z = radius, radius if top < 0.0 else top, length / 2.0
     b = min(0.004, 0.15 * max(r, t), 0.15 * length)
     low, high = max(r - b, 0.0), max(t - b, 0.0)
@@ -123,14 +123,14 @@ def cylinder(centre: Vec3, radius: float, length: float, axis: str = "z", sides:
 
 
 def along(shape: Mesh, axis: str) -> Mesh:
-    """A shape that stands along z, laid along x or y instead."""
+    """A shape that stands along z, turned to lie along x or y."""
     if axis == "x":
         return shaping.turned(shape, "y", math.pi / 2)
     return shaping.turned(shape, "x", -math.pi / 2) if axis == "y" else shape
 
 
 def ball(centre: Vec3, half: Vec3, sides: int = 20, *, whole: bool = False) -> Mesh:
-    """An ellipsoid of half extents ``half`` [m] around ``centre``."""
+    """An ellipsoid with half extents ``half`` [m] around ``centre``."""
     angle = np.linspace(-math.pi / 2, math.pi / 2, max(6, sides * 2 // 3) + 1)
     profile = [(max(0.0, math.cos(a)), math.sin(a)) for a in angle]
     shape = shaping.stretched(lathe(profile, sides, whole=True), *half)
@@ -140,7 +140,7 @@ def ball(centre: Vec3, half: Vec3, sides: int = 20, *, whole: bool = False) -> M
 
 
 def blob(radius: Callable[[Any, Any], Any], sides: int = 24, rows: int = 16) -> Mesh:
-    """A lumpy ball around the origin; ``radius(longitude, latitude)`` [rad] gives [m]. Its texture goes once around."""
+    """A lumpy ball around the origin; ``radius(longitude, latitude)`` [rad] is in [m]. Its texture goes around once."""
     lon, lat = np.meshgrid(np.linspace(0.0, 2 * math.pi, sides + 1), np.linspace(-math.pi / 2, math.pi / 2, rows + 1))
     lon, lat = lon.T, lat.T
     way = np.stack([np.cos(lat) * np.cos(lon), np.cos(lat) * np.sin(lon), np.sin(lat)], -1)
@@ -153,7 +153,7 @@ def blob(radius: Callable[[Any, Any], Any], sides: int = 24, rows: int = 16) -> 
 
 
 def cushion(centre: Vec3, size: Vec3, cells: int = 12, edge: float = 4.0) -> Mesh:
-    """A pillow: two height fields that meet in a seam; a higher ``edge`` makes it fuller towards its rim."""
+    """A pillow: two curved sheets that meet in a seam; a higher ``edge`` makes it fuller towards its rim."""
     line = np.sin(np.linspace(-math.pi / 2, math.pi / 2, cells + 1))
     x, y = (a.T for a in np.meshgrid(line, line))
     height = np.sqrt(np.maximum((1.0 - np.abs(x) ** edge) * (1.0 - np.abs(y) ** edge), 0.0))

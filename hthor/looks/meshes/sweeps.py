@@ -1,4 +1,4 @@
-"""Shapes swept from lines and outlines: tubes, rings, sheets, extrusions, picture panels."""
+"""Shapes made by sweeping lines and outlines: tubes, rings, sheets, extrusions; picture panels."""
 
 import math
 from collections.abc import Sequence
@@ -13,7 +13,7 @@ from hthor.types import Vec2, Vec3
 
 
 def tube(path: Sequence[Vec3] | Any, radius: float | Sequence[float], sides: int = 8, *, closed: bool = False) -> Mesh:
-    """A round bar along ``path`` (N, 3) [m] with flat ends, or none when ``closed``; ``radius`` [m] may change."""
+    """A round bar along ``path`` (N, 3) [m] with flat ends, or ``closed`` without ends; ``radius`` [m] may vary."""
     line = np.array(path, float)
     if closed:
         line = np.concatenate([line, line[:1]])
@@ -37,7 +37,7 @@ def tube(path: Sequence[Vec3] | Any, radius: float | Sequence[float], sides: int
 
 
 def _frames(ways: Any, closed: bool) -> tuple[Any, Any]:
-    """Two unit vectors across each way, carried along it without twisting."""
+    """Two unit vectors perpendicular to each direction of a path, carried along it without twisting."""
     first = np.eye(3)[int(np.argmin(np.abs(ways[0])))]
     across = np.empty_like(ways)
     for index, way in enumerate(ways):
@@ -50,7 +50,7 @@ def _frames(ways: Any, closed: bool) -> tuple[Any, Any]:
 
 
 def _disc(ring: Any, normal: Any) -> Mesh:
-    """A cap over a ring (N, 3) of points, the last of which is the first."""
+    """A cap on a ring (N, 3) of points, whose last point is its first."""
     count = len(ring) - 1
     vertices = np.concatenate([ring[:-1], ring[:-1].mean(0, keepdims=True)])
     faces = np.array([(k, (k + 1) % count, count) for k in range(count)])
@@ -62,21 +62,21 @@ def _disc(ring: Any, normal: Any) -> Mesh:
 
 
 def ring(centre: Vec3, radius: float, thickness: float, axis: str = "z", sides: int = 20, round_sides: int = 8) -> Mesh:
-    """A torus of middle ``radius`` and tube radius ``thickness`` [m] whose hole looks along ``axis``."""
+    """A torus with ring radius ``radius`` and tube radius ``thickness`` [m]; ``axis`` goes through its hole."""
     angle = np.linspace(0.0, 2 * math.pi, sides, endpoint=False)
     path = np.stack([radius * np.cos(angle), radius * np.sin(angle), np.zeros(sides)], -1)
     return shaping.moved(solids.along(tube(path, thickness, round_sides, closed=True), axis), *centre)
 
 
 def sheet(points: Any, uv: Any, thickness: float = 0.001) -> Mesh:
-    """A thin skin seen from both sides: ``points`` (N, M, 3) [m] are its front."""
+    """A thin sheet that is visible from both sides: ``points`` (N, M, 3) [m] are its front."""
     front = shaping.surface(points, uv)
     behind = points - thickness * front.normals.reshape(points.shape)
     return shaping.merged(front, shaping.surface(behind.swapaxes(0, 1), np.asarray(uv).swapaxes(0, 1)))
 
 
 def extruded(outline: Sequence[Vec2] | Any, low: float, high: float, bevel: float = 0.0) -> Mesh:
-    """An upright prism over a counter-clockwise, star-shaped ``outline`` [m], its edges cut by ``bevel`` [m]."""
+    """An upright prism on a counter-clockwise, star-shaped ``outline`` [m], its edges cut by ``bevel`` [m]."""
     flat = np.array(outline, float)
     middle = flat.mean(0)
     inner = middle + (flat - middle) * (1.0 - bevel / max(1e-9, float(np.abs(flat - middle).max())))
@@ -96,7 +96,7 @@ def extruded(outline: Sequence[Vec2] | Any, low: float, high: float, bevel: floa
 
 
 def panel(centre: Vec3, width: float, height: float, lean: float = 0.0) -> Mesh:
-    """An upright picture that looks towards +y; its texture fills it once. ``lean`` [rad] tips its top backwards."""
+    """An upright picture that faces +y; its texture fills it once. ``lean`` [rad] tips its top backwards."""
     x, z = width / 2.0, height / 2.0
     points = np.array([[(x, 0.0, -z), (x, 0.0, z)], [(-x, 0.0, -z), (-x, 0.0, z)]])
     flat = shaping.surface(points, [[(0.0, 1.0), (0.0, 0.0)], [(1.0, 1.0), (1.0, 0.0)]])
@@ -104,12 +104,12 @@ def panel(centre: Vec3, width: float, height: float, lean: float = 0.0) -> Mesh:
 
 
 def lying(centre: Vec3, width: float, depth: float) -> Mesh:
-    """A picture lying flat, seen from above; its upper edge is towards -y, as for a reader in front of it."""
+    """A flat picture that is seen from above; its upper edge is towards -y, as for a reader in front of it."""
     return shaping.moved(shaping.turned(panel((0.0, 0.0, 0.0), width, depth), "x", math.pi / 2), *centre)
 
 
 def bend(start: Vec3, *through: Vec3, steps: int = 6) -> Any:
-    """Points (N, 3) of a smooth line from ``start`` through the others (Catmull-Rom)."""
+    """Points (N, 3) of a smooth line from ``start`` through the other points (Catmull-Rom)."""
     knots = np.array([start, *through], float)
     padded = np.concatenate([2 * knots[:1] - knots[1:2], knots, 2 * knots[-1:] - knots[-2:-1]])
     t = np.linspace(0.0, 1.0, steps, endpoint=False)[:, None]

@@ -1,4 +1,4 @@
-"""Food that reads as food: apple, tomato, lettuce, bread, egg, potato."""
+"""Food that is easy to recognize: apple, tomato, lettuce, bread, egg, potato."""
 
 import math
 from typing import Any
@@ -20,7 +20,7 @@ def _skin(texture: str, specular: float) -> Material:
 
 
 def _upright(shape: Mesh) -> Mesh:
-    """A skin's first row belongs to the top."""
+    """Flip the texture of a shape, so that its first row is at the top."""
     return shape._replace(uv=np.stack([shape.uv[:, 0], 1.0 - shape.uv[:, 1]], -1))
 
 
@@ -48,7 +48,7 @@ def apple(_: Draft) -> list[Piece]:
 
 
 def _blade(length: float, width: float, sag: float) -> Mesh:
-    """A leaf from the origin along x, seen from both sides; its texture's rib runs along it."""
+    """A leaf that grows from the origin along x, visible from both sides; the rib of its texture is along it."""
     t, s = np.linspace(0.0, 1.0, 6), np.linspace(-1.0, 1.0, 5)
     half = width * np.sin(np.pi * t**0.8) ** 0.8
     x = np.broadcast_to(length * t[:, None], (6, 5))
@@ -79,7 +79,7 @@ def tomato(_: Draft) -> list[Piece]:
 
 
 def lettuce(_: Draft) -> list[Piece]:
-    """A head of leaves: a lumpy heart in three rings of ruffled leaves that wrap it."""
+    """A lumpy heart in three rings of ruffled leaves around it."""
 
     def radius(lon: Any, lat: Any) -> Any:
         return 0.74 + 0.05 * np.sin(3 * lon + 2 * lat) + 0.04 * np.sin(5 * lon - 3 * lat)
@@ -98,7 +98,7 @@ def lettuce(_: Draft) -> list[Piece]:
 
 
 def _wrap(reach: float, flare: float, height: float, seed: int) -> Mesh:
-    """One leaf that starts below the heart and curls up around it to a latitude ``height`` [rad], its rim ruffled."""
+    """A ruffled leaf that starts below the heart and curls around it up to the latitude ``height`` [rad]."""
     rows, columns = np.array([0.0, 0.35, 0.65, 0.87, 1.0]), np.linspace(-1.0, 1.0, 17)
     tt, ss = np.meshgrid(rows, columns, indexing="ij")
     rim = np.maximum(tt**5, 0.7 * np.abs(ss) ** 6)
@@ -112,7 +112,7 @@ def _wrap(reach: float, flare: float, height: float, seed: int) -> Mesh:
 
 
 def bread(draft: Draft) -> list[Piece]:
-    """A long loaf, flat below, with slashes across its back."""
+    """A long loaf, flat at the bottom, with cuts across its top."""
     w, d, h = draft.size
     t, a = np.linspace(-1.0, 1.0, 23), np.linspace(0.0, 2 * math.pi, 17)
     tt, aa = np.meshgrid(t, a, indexing="ij")
@@ -128,7 +128,7 @@ def bread(draft: Draft) -> list[Piece]:
 
 
 def egg(_: Draft) -> list[Piece]:
-    """An egg on its broad end."""
+    """An egg that stands on its broad end."""
     angle = np.linspace(0.0, math.pi, 15)
     profile = [(math.sin(a) * (1.0 + 0.16 * math.cos(a)), -math.cos(a)) for a in angle]
     profile[0], profile[-1] = (0.0, -1.0), (0.0, 1.0)

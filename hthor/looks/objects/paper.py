@@ -11,15 +11,15 @@ from hthor.looks.meshes import shaping, solids, sweeps
 from hthor.looks.meshes.mesh import Material, Mesh, Piece
 
 _COVERS = {c.BLUE: 2, c.TEAL: 2, c.LEAF: 3, c.SAGE: 3, c.MUSTARD: 4, c.CREAM: 4}
-"""Which cover a book of that color has; the others have the first."""
+"""The number of the cover of a book of that color; books of other colors have the first cover."""
 
 
 def book(draft: Draft) -> list[Piece]:
-    """A hardback lying on its back: a printed cover, a rounded spine on the left, leaves that show at three edges."""
+    """A hardback that lies on its back: a printed cover, a rounded spine on the left, pages visible at three edges."""
     w, d, h = draft.size
     x, y, t = w / 2, d / 2, min(0.0035, 0.12 * h)
     cloth = materials.paint(draft.color(0), 0.12)
-    # Seen from the front of the thing, y towards the reader, the spine is on the left: at +x.
+    # Seen from the thing's front, with y towards the reader, the spine is on the left: at +x.
     boards = [solids.box((-x, -y, 0.0), (x, y, t), 0.001), solids.box((-x, -y, h - t), (x, y, h), 0.001)]
     angle = np.linspace(-math.pi / 2, math.pi / 2, 9)
     spine = [(x - 0.006 + 0.006 * math.cos(a), h / 2 + (h / 2) * math.sin(a)) for a in angle]
@@ -63,7 +63,7 @@ def carton(draft: Draft) -> list[Piece]:
 
 
 def tissue_box(draft: Draft) -> list[Piece]:
-    """A box with a tissue standing out of it."""
+    """A box with a tissue that sticks out of it."""
     w, d, h = draft.size
     top = 0.72 * h
     box = solids.box((-w / 2, -d / 2, 0.0), (w / 2, d / 2, top), 0.003)
@@ -80,7 +80,7 @@ def tissue_box(draft: Draft) -> list[Piece]:
 
 
 def paper_roll(draft: Draft) -> list[Piece]:
-    """A kitchen roll standing on end."""
+    """A kitchen roll that stands on its end."""
     r, h = min(draft.size[:2]) / 2, draft.size[2]
     paper = [(0.30 * r, 0.0), (0.97 * r, 0.0), (r, 0.01 * h), (r, 0.99 * h), (0.97 * r, h), (0.30 * r, h)]
     core = [(0.30 * r, h), (0.26 * r, h), (0.26 * r, 0.0)]
@@ -89,7 +89,7 @@ def paper_roll(draft: Draft) -> list[Piece]:
 
 
 def cloth(draft: Draft) -> list[Piece]:
-    """A folded cloth: soft layers, the folds at one side."""
+    """A folded cloth: soft layers, with the folds at one side."""
     w, d, h = draft.size
     layers: list[Mesh] = []
     for k in range(3):

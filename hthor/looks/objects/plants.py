@@ -15,7 +15,7 @@ _STEM = (0.30, 0.36, 0.18, 1.0)
 
 
 def leaf(length: float, width: float, rise: float, sag: float, rows: int = 6) -> Mesh:
-    """A leaf from the origin out along x that rises and then hangs, folded a little along its rib."""
+    """A leaf that grows from the origin along x, rises and then hangs, folded a little along its rib."""
     t, s = np.linspace(0.0, 1.0, rows), np.linspace(-1.0, 1.0, 3)
     half = width * np.sin(np.pi * np.clip(0.06 + 0.94 * t, 0.0, 1.0) ** 0.75)
     x = np.broadcast_to(length * t[:, None], (rows, 3))
@@ -26,7 +26,7 @@ def leaf(length: float, width: float, rise: float, sag: float, rows: int = 6) ->
 
 
 def house_plant(draft: Draft) -> list[Piece]:
-    """A plant in a tapered pot; its variant says of which sort: broad leaves, swords, or a palm."""
+    """A plant in a tapered pot; its variant decides the sort: broad leaves, sword-shaped leaves, or a palm."""
     w, d, h = draft.size
     r = min(w, d) / 2
     pot_r, pot_h = 0.46 * r, min(0.30 * h, 0.9 * r)
@@ -60,7 +60,7 @@ def _broad(r: float, low: float, high: float) -> tuple[list[Mesh], list[Mesh]]:
 
 
 def _swords(r: float, low: float, high: float) -> tuple[list[Mesh], list[Mesh]]:
-    """Stiff upright blades that stand close together."""
+    """Stiff, upright, sword-shaped leaves that stand close together."""
     blades = []
     for k in range(15):
         tall = (high - low) * (1.0 - 0.45 * (k / 14.0)) * (0.9 + 0.2 * seeds.draw(_ROOT, "tall", k))

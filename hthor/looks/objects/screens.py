@@ -13,7 +13,7 @@ _LIT = 0.85
 
 
 def _screen(w: float, low: float, high: float, back: float, front: float, picture: str, body: Rgba) -> list[Piece]:
-    """A thin panel with a dark rim, its middle glowing with a picture."""
+    """A thin panel with a dark rim around a glowing picture."""
     edge = min(0.012, 0.03 * w)
     slab = solids.box((-w / 2, back + 0.35 * (front - back), low), (w / 2, front, high), 0.004)
     bulge = solids.box(
@@ -57,7 +57,7 @@ def computer(draft: Draft) -> list[Piece]:
 
 
 def laptop(draft: Draft) -> list[Piece]:
-    """An open laptop: keys and a touchpad below, a lit screen that leans back a little."""
+    """An open laptop: keys and a touchpad below, and a lit screen that leans back a little."""
     w, d, h = draft.size
     t = min(0.016, 0.1 * h)
     shell, dark = materials.metal(draft.color(0)), materials.paint(c.BLACK, 0.4)
@@ -85,7 +85,7 @@ def laptop(draft: Draft) -> list[Piece]:
 
 
 def phone(draft: Draft) -> list[Piece]:
-    """A phone lying on its back."""
+    """A phone that lies on its back."""
     w, d, h = draft.size
     slab = solids.box((-w / 2, -d / 2, 0.0), (w / 2, d / 2, h), 0.45 * h, 2)
     show = sweeps.lying((0.0, 0.0, h + 0.0003), 0.90 * w, 0.92 * d)

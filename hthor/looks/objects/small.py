@@ -1,4 +1,4 @@
-"""Small things of a household: clocks, bins, baskets, boots, keys, pens."""
+"""Small household things: clocks, bins, baskets, boots, keys, pens."""
 
 import math
 
@@ -98,7 +98,7 @@ def keys(_: Draft) -> list[Piece]:
 
 
 def watch(draft: Draft) -> list[Piece]:
-    """A wrist watch standing on its strap."""
+    """A wrist watch that stands on its strap."""
     w, d, h = draft.size
     angle = np.linspace(0.0, 2 * math.pi, 25)
     outer = np.stack([np.cos(angle) * w / 2, np.sin(angle) * h / 2], -1)

@@ -1,4 +1,4 @@
-"""What food is cooked in and eaten from: mugs, bowls, plates, pots, bottles, cutlery."""
+"""Tableware and cookware: mugs, bowls, plates, pots, bottles, cutlery."""
 
 import math
 from collections.abc import Sequence
@@ -14,7 +14,7 @@ from hthor.types import Vec2
 
 
 def hollow(outer: Sequence[Vec2], wall: float, floor: float, sides: int = 24) -> Mesh:
-    """A vessel with an ``outer`` profile from the middle of its foot up to its rim, ``wall`` [m] thick."""
+    """A vessel; ``outer`` is its profile from the middle of the foot up to the rim, ``wall`` its thickness [m]."""
     rim, high = outer[-1]
     inner = [(max(r - wall, 0.0), max(z, floor)) for r, z in reversed(outer[1:-1]) if z > floor]
     lip = [(rim - 0.3 * wall, high + 0.3 * wall), (rim - 0.7 * wall, high + 0.3 * wall), (rim - wall, high)]
@@ -124,7 +124,7 @@ def kettle(draft: Draft) -> list[Piece]:
 
 
 def bottle(draft: Draft) -> list[Piece]:
-    """A wine bottle's shape with a label and a cap."""
+    """A wine-bottle shape with a label and a cap."""
     r, h = min(draft.size[:2]) / 2, draft.size[2]
     body = [(0.0, 0.01), (0.5, 0.0), (0.93, 0.0), (1.0, 0.02), (1.0, 0.56), (0.94, 0.62), (0.62, 0.71), (0.38, 0.77),
         (0.33, 0.90), (0.38, 0.91), (0.0, 0.91)]  # fmt: skip

@@ -1,4 +1,4 @@
-"""Balls, bears, bats and other things to play, train or decorate with."""
+"""Balls, bears, bats and other things for play, training or decoration."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""A packed trunk to be carried by two."""
+"""A packed trunk that two people carry together."""
 
 from hthor.catalog import colors as c
 from hthor.looks import materials
@@ -7,7 +7,7 @@ from hthor.looks.meshes import solids, sweeps
 from hthor.looks.meshes.mesh import Mesh, Piece
 
 _RIM = 0.7
-"""How high the lid begins, as a share of the height."""
+"""Height at which the lid begins, as a share of the whole height."""
 
 
 def trunk(draft: Draft) -> list[Piece]:
@@ -28,7 +28,7 @@ def trunk(draft: Draft) -> list[Piece]:
 
 
 def _battens(draft: Draft, x: float, y: float) -> list[Mesh]:
-    """Slats round the foot and the rim, and along the lid."""
+    """Slats around the foot and the rim, and along the lid."""
     h, t = draft.size[2], 0.008
     found = [
         solids.box((-x - t, -y - t, z * h), (x + t, y + t, (z + tall) * h), 0.004)
@@ -58,7 +58,7 @@ def _lock(h: float, y: float) -> list[Mesh]:
 
 
 def _straps(draft: Draft, y: float) -> list[Mesh]:
-    """Two belts all the way round."""
+    """Two belts that go all the way around."""
     w, _, h = draft.size
     return [
         solids.box((s * 0.27 * w - 0.024, -y - 0.012, 0.0), (s * 0.27 * w + 0.024, y + 0.012, h), 0.008)
@@ -67,7 +67,7 @@ def _straps(draft: Draft, y: float) -> list[Mesh]:
 
 
 def _handles(draft: Draft, x: float) -> list[Mesh]:
-    """A bow at either end."""
+    """A bow at each end."""
     w, d, h = draft.size
     r, a, z = 0.011, 0.15 * d, 0.54 * h
     out = w / 2 - r

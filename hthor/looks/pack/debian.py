@@ -1,4 +1,4 @@
-"""Getting the library's files: from a Debian package, from where one is installed, or through apt."""
+"""Gets the library's files: from a Debian package file, from an installed package, or through apt."""
 
 import io
 import shutil
@@ -22,13 +22,13 @@ _HOW = (
 
 
 def libraries(deb: Path | None) -> tuple[dict[str, bytes], str]:
-    """Every library by name, and in words where they came from.
+    """Every library by name, and a description of where they came from.
 
     Args:
-        deb: the Debian package's file; None takes what is installed, or else what apt downloads.
+        deb: the Debian package's file; None uses the installed package, or else downloads it with apt.
 
     Raises:
-        PackError: when there is no package, or it is broken or another one.
+        PackError: if there is no package, or it is broken or a different package.
     """
     if deb is not None:
         return _of_file(deb), deb.name

@@ -1,7 +1,7 @@
-"""Making a model of one size look right at another: what may be stretched, and how.
+"""Stretches a model of one size to another size: which models may be stretched, and how.
 
-A model is stretched along its three axes to fill the thing's box, piece by piece, so that the level place where things
-lie on it is exactly where the kind's own surface is: things that rest there neither float nor sink.
+A model is stretched along its three axes to fill the thing's box. Each axis is stretched in pieces, so that the level
+place for objects on the model is exactly at the kind's own surface: objects on it neither float nor sink.
 """
 
 from collections.abc import Sequence
@@ -17,13 +17,13 @@ _DISTORTION = 1.7
 """How much more a model may be stretched along one axis than along another."""
 _SCALE = (0.4, 2.0)
 _BEND = (0.12, 3.0)
-"""Bounds of a stretch between two knots, as shares of the model's own."""
+"""Bounds of the stretch between two knots, relative to the stretch of the whole model."""
 _EDGE = 0.015
-"""A knot nearer to an end of the model than this share of its length is left out."""
+"""A knot is left out if its distance from an end of the model is below this share of the model's length."""
 
 
 class Rest(Struct, frozen=True, kw_only=True):
-    """A level place of a model, all as shares of its box: ``height`` above its bottom, ``low`` and ``high`` corners."""
+    """A level place of a model, as shares of its box: ``height`` above the bottom, ``low`` and ``high`` corners."""
 
     height: float
     low: tuple[float, float]
@@ -31,13 +31,13 @@ class Rest(Struct, frozen=True, kw_only=True):
 
 
 class Stretch(NamedTuple):
-    """For each axis, places of the model ``given`` [m] become those ``wanted`` [m], straight in between."""
+    """For each axis, places ``given`` on the model [m] move to ``wanted`` [m]; places in between move linearly."""
 
     given: tuple[tuple[float, ...], ...]
     wanted: tuple[tuple[float, ...], ...]
 
     def apply(self, vertices: Any) -> tuple[Any, Any]:
-        """The vertices (V, 3) stretched, and by how much (V, 3) along each axis there."""
+        """Stretch the vertices (V, 3); also return the stretch factors at each vertex along each axis (V, 3)."""
         points = np.array(vertices, float)
         slopes = np.empty_like(points)
         for axis, (given, wanted) in enumerate(zip(self.given, self.wanted, strict=True)):
@@ -50,15 +50,15 @@ class Stretch(NamedTuple):
 
 
 def fits(model: Vec3, size: Vec3) -> bool:
-    """Whether a model of that size [m] still looks like itself at another."""
+    """Whether a model of size ``model`` [m] still looks like itself at ``size`` [m]."""
     scale = [wanted / given for wanted, given in zip(size, model, strict=True)]
     return _SCALE[0] <= min(scale) and max(scale) <= min(_SCALE[1], _DISTORTION * min(scale))
 
 
 def stretch(kind: str, model: Vec3, rests: Sequence[Rest], size: Vec3) -> Stretch | None:
-    """How a model is stretched to ``size`` [m], its ``rests`` onto the kind's own places; None when it must not be.
+    """How to stretch a model to ``size`` [m], with its ``rests`` at the kind's own surfaces; None if not allowed.
 
-    Coordinates count from the middle of the box, as in every local frame.
+    Coordinates are relative to the middle of the box, as in every local frame.
     """
     places = supports(kind, size)
     given: list[tuple[float, ...]] = []
@@ -87,10 +87,10 @@ def _ends(place: Surface, axis: int) -> tuple[float, float]:
 
 
 def supports(kind: str, size: Vec3 | None = None) -> tuple[Surface, ...]:
-    """The kind's places where things can lie, lowest first, except behind doors and in drawers."""
+    """The kind's surfaces for objects, lowest first, except behind doors and in drawers."""
     return tuple(place for place in catalog.kind(kind).surfaces(size) if not place.inside and not place.moves)
 
 
 def opens(kind: str) -> bool:
-    """Whether a kind has doors or drawers; no model of a pack can open."""
+    """Whether a kind has doors or drawers; models of packs cannot open."""
     return catalog.kind(kind).openable

@@ -14,9 +14,9 @@ _ESCAPE = re.compile(r"\\u([0-9a-fA-F]{4})")
 
 
 class Entry(NamedTuple):
-    """A model's line in the catalogue. ``size`` [m] is (width, depth, height); ``rotation`` the model's own, 9 numbers.
+    """A model's line in the catalogue. ``size`` [m] is (width, depth, height); ``rotation`` has 9 numbers of a matrix.
 
-    ``path`` is that of its OBJ file, without a leading slash.
+    ``path`` is the path of its OBJ file, without a leading slash.
     """
 
     model: str
@@ -31,7 +31,7 @@ class Library:
     """A library, read from its bytes.
 
     Raises:
-        PackError: when it is no library.
+        PackError: if the bytes are not a library.
     """
 
     def __init__(self, name: str, data: bytes) -> None:
@@ -45,24 +45,24 @@ class Library:
         self.entries = {entry.model: entry for entry in _entries(name, text)}
 
     def entry(self, model: str) -> Entry:
-        """The model's line.
+        """The catalogue line of a model.
 
         Raises:
-            PackError: when the library has no such model.
+            PackError: if the library has no such model.
         """
         if model not in self.entries:
             raise PackError(f"library '{self.name}' has no model '{model}'; it is a different version than expected.")
         return self.entries[model]
 
     def has(self, path: str) -> bool:
-        """Whether there is such a file."""
+        """Whether the library has a file of this path."""
         return path in self._files
 
     def read(self, path: str) -> bytes:
-        """A file's content.
+        """The content of a file.
 
         Raises:
-            PackError: when it is not there or broken.
+            PackError: if the file is missing or broken.
         """
         try:
             return self._zip.read(path)

@@ -1,4 +1,4 @@
-"""Making a pack of the library: pick, bring into shape, check, write."""
+"""Makes a pack from the library: picks models, converts them, checks them, and writes the pack."""
 
 import hashlib
 import io
@@ -19,16 +19,16 @@ from hthor.looks.pack.picks import FREE, LICENCES, PICKS, Pick
 from hthor.looks.pack.store import LIST, MESHES, SCHEMA, TEXTURES, Contents, Model, Pack, PackError, Surface
 
 TRIANGLES = 4000
-"""About the most that one model keeps."""
+"""Triangles that are kept of one model at most, approximately."""
 PIXELS = 512
 _QUALITY = 85
 _CLEAR = 0.02
-"""A picture with a larger transparent share than this needs cut-outs, which are not supported."""
+"""A picture whose transparent share is larger than this needs cut-outs, which are not supported."""
 _SOFT = ("bed", "sofa", "armchair", "chair")
 
 
 class ModelSkipped(NamedTuple):
-    """A model that is not in the pack, and why."""
+    """A model that is not in the pack, and the reason."""
 
     pick: Pick
     reason: str
@@ -56,14 +56,14 @@ def convert_models(
     cc_by: bool,
     picks: Iterable[Pick] | None = None,
 ) -> ConvertedModel:
-    """Write a pack into ``folder``, over one that may be there.
+    """Write a pack into ``folder``; an earlier pack in it is replaced.
 
     Args:
-        files: the libraries by name. source: in words where they came from. cc_by: take what asks for attribution too.
-        picks: which models, `PICKS` by default.
+        files: the libraries by name. source: where they came from, in words. cc_by: whether to use models that require
+        attribution too. picks: which models to use, `PICKS` by default.
 
     Raises:
-        PackError: when a library that is needed is missing or broken, or nothing at all could be taken.
+        PackError: if a needed library is missing or broken, or no model could be used.
     """
     wanted = [pick for pick in (PICKS if picks is None else picks) if cc_by or LICENCES[pick.library][0] == FREE]
     needed = sorted({pick.library for pick in wanted})
@@ -146,7 +146,7 @@ def _surface(library: Library, entry: Entry, paint: obj.Paint, pictures: dict[st
 
 
 def _picture(data: bytes, name: str) -> bytes:
-    """A picture of at most `PIXELS` a side, as JPEG."""
+    """The picture as JPEG, with sides of at most `PIXELS`."""
     import cv2
 
     image = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
@@ -203,7 +203,7 @@ def _write(taken: list[_Piece], source: str, folder: Path, name: str) -> None:
 
 
 def _archive(taken: list[_Piece]) -> bytes:
-    """All meshes as an npz whose bytes depend on nothing else; vertices in 16 bits of their box would save little."""
+    """All meshes as an npz whose bytes depend only on the meshes; 16-bit vertices would save little."""
     arrays = {
         f"{piece.model.kind}/{piece.model.name}/{part}/{field}": getattr(mesh, field)
         for piece in taken
@@ -224,7 +224,7 @@ def _licences(taken: list[_Piece]) -> str:
 
 
 def _attribution(taken: list[_Piece]) -> str:
-    """What has to be shown with any picture of the pack."""
+    """The text that must be shown with any picture of the pack."""
     lines = ["# Attribution", "", "Pictures that show this pack contain these models, changed in size and detail:", ""]
     addresses = dict(LICENCES.values())
     for model in (piece.model for piece in taken):

@@ -1,4 +1,4 @@
-"""Reading Wavefront OBJ and MTL: triangles by material, in the model's own frame."""
+"""Reads Wavefront OBJ and MTL files: triangles by material, in the model's own frame."""
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
@@ -6,11 +6,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 Corner = tuple[int, int, int]
-"""Index of a corner's vertex, texture coordinate and normal; -1 where it has none."""
+"""Indices of a corner's vertex, texture coordinate and normal; -1 if the corner has none."""
 
 
 class Paint(NamedTuple):
-    """A material: color and opacity 0 to 1, name of its picture (empty for none), specular 0 to 1."""
+    """A material: color and opacity 0 to 1, name of its picture (empty if it has none), specular 0 to 1."""
 
     rgba: tuple[float, float, float, float] = (0.7, 0.7, 0.7, 1.0)
     picture: str = ""
@@ -28,13 +28,13 @@ class Group(NamedTuple):
 
 
 def read_obj(text: str, materials: Callable[[str], str]) -> list[Group]:
-    """The groups of an OBJ file, one a material, in order of appearance; corners that are equal are one vertex.
+    """The groups of an OBJ file, one per material, in order of appearance; equal corners share one vertex.
 
     Args:
-        materials: gives the text of an MTL file by name.
+        materials: returns the text of an MTL file by its name.
 
     Raises:
-        ValueError: names the line that is not understood.
+        ValueError: if a line is not understood; names the line.
     """
     data: dict[str, list[list[float]]] = {"v": [], "vt": [], "vn": []}
     paints: dict[str, Paint] = {}

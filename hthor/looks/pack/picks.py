@@ -1,13 +1,13 @@
-"""Which models of the library stand for which kinds.
+"""Which models of the library are used for which kinds.
 
-Kinds that open are not here, for no model of the library can, nor kinds with several shelves, where things would float.
+Kinds that open are not here (no model can open), nor kinds with several shelves (objects on them would float).
 """
 
 from typing import NamedTuple
 
 
 class Pick(NamedTuple):
-    """A model for a kind: its library, the name of its folder, and by how many quarter turns it has to be turned."""
+    """A model for a kind: its library, its folder's name, and by how many quarter turns it must be turned."""
 
     kind: str
     library: str
@@ -26,9 +26,9 @@ LICENCES = {
     KATOR: ("CC-BY-3.0-US", "https://creativecommons.org/licenses/by/3.0/us/"),
     SCOPIA: ("CC-BY-3.0", "https://creativecommons.org/licenses/by/3.0/"),
 }
-"""Licence and its address, by library."""
+"""Licence and its web address, by library."""
 FREE = "CC0-1.0"
-"""The licence that asks for nothing."""
+"""The licence that requires nothing."""
 
 _MODELS: tuple[tuple[str, str, str], ...] = (
     ("bed", CC0, "bed1 bed2 bedWithTexture"),

@@ -1,4 +1,4 @@
-"""Bringing a model into our frame, and finding where things lie on it."""
+"""Brings a model into hthor's frame, and finds the places on it where objects can lie."""
 
 from typing import Any
 
@@ -14,17 +14,17 @@ _CELL_M = 0.015
 _CREASE = 0.5
 _SOFT_M = (0.035, 0.06)
 _HARD_M = (0.012, 0.02)
-"""How far below and above its height a resting place may be: what lies there floats or sinks by no more."""
+"""How far a surface may be below and above the height of its resting place [m]: objects float or sink by no more."""
 _HELD = 0.96
-"""Share of a resting place that must be as level as that."""
+"""The share of a resting place that must be level to within these limits."""
 _LEAST = 0.5
-"""A resting place must be at least this share of the kind's own along either side."""
+"""Smallest share of the kind's own surface that a resting place must cover along each side."""
 
 
 def place_shape(groups: list[Group], size: Vec3, rotation: tuple[float, ...], turns: int) -> tuple[list[Group], Vec3]:
-    """The groups centred at the middle of their box, z up, front towards +y, as large as the catalogue says; the size.
+    """The groups with their box's middle at 0, z up, front towards +y, in the catalogue's size; also returns the size.
 
-    The library's own frame has y up and its front towards +z.
+    The library's own frame has y up and the front towards +z.
     """
     turn = np.array(rotation).reshape(3, 3)
     points = [group.vertices @ turn.T for group in groups]
@@ -43,7 +43,7 @@ def place_shape(groups: list[Group], size: Vec3, rotation: tuple[float, ...], tu
 
 
 def mesh(group: Group) -> Mesh:
-    """The group as a mesh; normals that it lacks are flat across creases and smooth elsewhere."""
+    """The group as a mesh; missing normals are made smooth except across creases."""
     uv = group.uv * (1.0, -1.0) + (0.0, 1.0)
     if group.normals is not None:
         return shaping.mesh(group.vertices, group.faces, uv, group.normals)
@@ -54,7 +54,7 @@ def mesh(group: Group) -> Mesh:
 
 
 def _normals(vertices: Any, faces: Any) -> Any:
-    """A normal for each corner: the mean of the faces at its place that lean less than a crease from its own."""
+    """A normal for each corner: the mean over the faces at its place that form no crease with its own face."""
     a, b, c = (vertices[faces[:, k]] for k in range(3))
     cross = np.cross(b - a, c - a)
     unit = cross / np.maximum(np.linalg.norm(cross, axis=1, keepdims=True), 1e-12)
@@ -73,13 +73,13 @@ def _normals(vertices: Any, faces: Any) -> Any:
 def find_surfaces(
     meshes: list[Mesh], size: Vec3, places: tuple[Surface, ...], own: Vec3, *, soft: bool
 ) -> tuple[Rest, ...]:
-    """Where things lie on a model: the level part of what is under each of the kind's ``places``.
+    """The places of a model where objects can lie: the level parts below the kind's ``places``.
 
     Args:
-        size: of the model [m]. places: the kind's, at its ``own`` size [m]. soft: whether cushions may give.
+        size: of the model [m]. places: those of the kind at its size ``own`` [m]. soft: whether cushions may yield.
 
     Raises:
-        ValueError: says which place the model does not have.
+        ValueError: if the model lacks one of the places; names it.
     """
     if not places:
         return ()
@@ -88,7 +88,7 @@ def find_surfaces(
 
 
 def _rest(field: Any, size: Vec3, place: Surface, own: Vec3, give: tuple[float, float]) -> Rest:
-    """Start from where the kind has its place, and give up the sides that are least level until the rest is."""
+    """Start with the kind's own place, and cut off the least level sides until the rest is level."""
     shape, (x0, x1), (y0, y1) = field.shape, *(_span(field.shape[axis], place, own, axis) for axis in (0, 1))
     height = float(np.median(field[x0:x1, y0:y1]))
     level = (field >= height - give[0]) & (field <= height + give[1])
@@ -109,7 +109,7 @@ def _span(count: int, place: Surface, own: Vec3, axis: int) -> tuple[int, int]:
 
 
 def _heights(meshes: list[Mesh], size: Vec3) -> Any:
-    """The height of the topmost surface [m] over a grid of the footprint, minus infinity where there is none."""
+    """The height of the topmost surface [m] on a grid over the footprint; minus infinity where there is no surface."""
     shape = (max(8, round(size[0] / _CELL_M)), max(8, round(size[1] / _CELL_M)))
     field = np.full(shape, -np.inf)
     step = np.array((size[0] / shape[0], size[1] / shape[1]))
@@ -122,7 +122,7 @@ def _heights(meshes: list[Mesh], size: Vec3) -> Any:
 
 
 def _raise(field: Any, points: Any, heights: Any) -> None:
-    """One triangle into the field."""
+    """Raise the height field by one triangle."""
     low = np.maximum(np.ceil(points.min(0) - 1e-9), 0).astype(int)
     high = np.minimum(np.floor(points.max(0) + 1e-9), np.array(field.shape) - 1).astype(int)
     if (high < low).any():

@@ -1,7 +1,7 @@
-"""Where packs lie, what is in one, and reading it.
+"""Where packs are stored, what they contain, and how to read them.
 
-A pack is a folder: ``pack.json``, ``meshes.npz``, ``textures/*.jpg``, ``LICENCES.md``, and ``ATTRIBUTION.md`` where a
-licence asks for it. Its hash is that of ``pack.json``, which holds the hashes of all other files.
+A pack is a folder: ``pack.json``, ``meshes.npz``, ``textures/*.jpg``, ``LICENCES.md``, and ``ATTRIBUTION.md`` if a
+licence requires it. Its hash is that of ``pack.json``, which contains the hashes of all other files.
 """
 
 import functools
@@ -26,15 +26,15 @@ LIST = "pack.json"
 MESHES = "meshes.npz"
 TEXTURES = "textures"
 RESERVED = "procedural"
-"""What the furniture that ships with hthor is called."""
+"""The name of the furniture that is part of hthor."""
 
 
 class PackError(HthorError):
-    """A pack that cannot be used or made: names the file and what is wrong with it."""
+    """A pack cannot be used or made; names the file and the problem."""
 
 
 class Surface(Struct, frozen=True, kw_only=True):
-    """What one part of a model is made of; ``texture`` is a file in ``textures``, empty for plain color."""
+    """The material of one part of a model; ``texture`` is a file in ``textures``, empty for a plain color."""
 
     rgba: Rgba
     texture: str = ""
@@ -43,10 +43,10 @@ class Surface(Struct, frozen=True, kw_only=True):
 
 
 class Model(Struct, frozen=True, kw_only=True):
-    """One model of a pack and who made it.
+    """One model of a pack and its author.
 
-    ``size`` [m] is (width, depth, height) in our local frame, front towards +y. ``rests`` are the level places where
-    things can lie, lowest first. ``parts`` are what its meshes in ``meshes.npz`` are made of, in order.
+    ``size`` [m] is (width, depth, height) in hthor's local frame, front towards +y. ``rests`` are the level places for
+    objects, lowest first. ``parts`` are the materials of its meshes in ``meshes.npz``, in order.
     """
 
     kind: str
@@ -61,7 +61,7 @@ class Model(Struct, frozen=True, kw_only=True):
 
 
 class Contents(Struct, frozen=True, kw_only=True):
-    """The pack's ``pack.json``. ``files`` maps the name of every other file to the hash of its content."""
+    """The content of ``pack.json``. ``files`` maps the name of every other file to the hash of its content."""
 
     schema: str = SCHEMA
     name: str
@@ -72,10 +72,10 @@ class Contents(Struct, frozen=True, kw_only=True):
 
 
 class Pack:
-    """A pack, ready to draw with.
+    """A pack that is ready for drawing.
 
     Attributes:
-        name, folder: what it is called and where it lies. sha256: hash of its content. contents: what is in it.
+        name, folder: of the pack. sha256: hash of its content. contents: its ``pack.json``.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -91,13 +91,13 @@ class Pack:
 
     @property
     def kinds(self) -> tuple[str, ...]:
-        """The kinds that it has a model of, in alphabetic order."""
+        """The kinds for which the pack has a model, in alphabetical order."""
         return tuple(sorted(self._models))
 
     def look(self, kind: str, size: Vec3, variant: int = 0) -> tuple[Piece, ...] | None:
-        """A thing's pieces as `hthor.looks.look` gives them; None for a kind or a size that the pack has no model for.
+        """A thing's pieces, like those of `hthor.looks.look`; None if the pack has no model for this kind or size.
 
-        The model is stretched to ``size`` [m], its resting places to the heights of the kind's own surfaces.
+        The model is stretched to ``size`` [m], with its resting places at the heights of the kind's own surfaces.
         """
         models = [model for model in self._models.get(kind, ()) if fitting.fits(model.size, size)]
         ways = [(model, way) for model in models if (way := fitting.stretch(kind, model.size, model.rests, size))]
@@ -118,10 +118,10 @@ class Pack:
         return np.ascontiguousarray(image[..., ::-1])
 
     def check(self) -> None:
-        """See that every file is there and as it was written.
+        """Check that every file exists and has not changed since it was written.
 
         Raises:
-            PackError: names the first that is not.
+            PackError: names the first file that is missing or was changed.
         """
         for name in self.contents.files:
             self._checked(name)
@@ -164,16 +164,16 @@ def _stretched(mesh: Mesh, stretch: fitting.Stretch) -> Mesh:
 
 
 def home() -> Path:
-    """The folder of all packs, in the user's cache."""
+    """The folder of all packs, in the user's cache folder."""
     cache = os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache"
     return Path(cache) / "hthor" / "packs"
 
 
 def tidy(name: str) -> str:
-    """A name that can be a folder's and an option's.
+    """Check that a name can be used for a folder and in an option; return the name.
 
     Raises:
-        PackError: when it cannot.
+        PackError: if it cannot.
     """
     if not re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,59}", name) or name == RESERVED:
         raise PackError(f"'{name}' cannot be a pack's name; use letters, digits, '-', '_', '.', but not '{RESERVED}'.")
@@ -181,10 +181,10 @@ def tidy(name: str) -> str:
 
 
 def overwritable(folder: Path) -> None:
-    """See that a pack may be written to a folder: absent, empty, or a pack.
+    """Check that a pack may be written to a folder: it must be absent, empty, or a pack.
 
     Raises:
-        PackError: when it holds something else.
+        PackError: if it contains something else.
     """
     if folder.exists() and not (folder / LIST).is_file() and (folder.is_file() or any(folder.iterdir())):
         raise PackError(f"{folder} exists and is not a furniture pack. Choose another folder with --out.")
@@ -199,7 +199,7 @@ def find(name: str) -> Path:
     """The folder of a pack, given its name or the folder itself.
 
     Raises:
-        UnknownName: when there is none.
+        UnknownName: if there is no such pack.
     """
     for folder in (home() / name, Path(name)):
         if (folder / LIST).is_file():
@@ -211,17 +211,17 @@ def load(name: str) -> Pack:
     """The pack with this name, or in this folder.
 
     Raises:
-        UnknownName: when there is none.
-        PackError: when it cannot be read.
+        UnknownName: if there is no such pack.
+        PackError: if the pack cannot be read.
     """
     return Pack(find(name))
 
 
 def remove(name: str) -> Path:
-    """Delete a pack of the user's cache; the folder that it was in.
+    """Delete a pack from the user's cache; return its former folder.
 
     Raises:
-        UnknownName: when there is none.
+        UnknownName: if there is no such pack.
     """
     if name not in installed():
         raise UnknownName("furniture pack", name, installed(), "'hthor assets list' shows what there is.")

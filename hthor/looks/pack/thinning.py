@@ -1,4 +1,4 @@
-"""Fewer triangles for detailed models, with their pictures kept in place."""
+"""Reduces the triangles of detailed models, with their pictures kept in place."""
 
 from typing import Any
 
@@ -13,10 +13,10 @@ _FEWEST = 60
 
 
 def decimate(groups: list[Group], most: int) -> list[Group]:
-    """The groups with about ``most`` triangles together, each losing the same share, or themselves if they have fewer.
+    """The groups, reduced in equal shares to about ``most`` triangles together; unchanged if they have fewer.
 
     Raises:
-        MissingExtra: when that takes a library that is not installed.
+        MissingExtra: if this needs a library that is not installed.
     """
     total = sum(len(group.faces) for group in groups)
     if total <= most:
@@ -47,7 +47,7 @@ def _thinned(group: Group, wanted: int) -> Group:
 
 
 def _welded(group: Group) -> tuple[Any, Any]:
-    """Points and faces with one vertex a place, whatever the pictures and the normals do there."""
+    """Points and faces with one vertex per place, even where pictures and normals have seams."""
     _, first, of = np.unique(np.round(group.vertices / _SAME_M), axis=0, return_index=True, return_inverse=True)
     faces = of.reshape(-1)[group.faces]
     whole = (faces[:, 0] != faces[:, 1]) & (faces[:, 1] != faces[:, 2]) & (faces[:, 2] != faces[:, 0])
@@ -55,7 +55,7 @@ def _welded(group: Group) -> tuple[Any, Any]:
 
 
 def _mapped(group: Group, points: Any, faces: Any) -> Any:
-    """Where the corners (3 F, 2) of new faces are in the picture: each face goes by the old one that it lies on."""
+    """The picture coordinates of the corners of new faces (3 F, 2): each face uses the old face on which it lies."""
     from scipy.spatial import KDTree
 
     old = group.vertices[group.faces]

@@ -1,7 +1,7 @@
-"""Pictures made by numbers alone, for surfaces of every sort.
+"""Computed pictures for all sorts of surfaces.
 
-Each is (H, W, 3) uint8 and at most 512 pixels a side; row 0 lies at v = 0, column 0 at u = 0. Those with a `scale`
-repeat without a seam and are near white, to be multiplied by a color; the others fill what they are on.
+Each is (H, W, 3) uint8 with at most 512 pixels per side; row 0 is at v = 0, column 0 at u = 0. Textures with a `scale`
+repeat without a seam and are nearly white, to be multiplied by a color; the others are stretched over a surface.
 """
 
 from functools import lru_cache
@@ -16,16 +16,16 @@ _BOOK = {**woods.TEXTURES, **stones.TEXTURES, **cloths.TEXTURES, **nature.TEXTUR
 
 
 def names() -> tuple[str, ...]:
-    """Every texture's name."""
+    """The names of all textures."""
     return tuple(_BOOK)
 
 
 @lru_cache(maxsize=128)
 def image(name: str) -> Any:
-    """The picture, (H, W, 3) uint8, the same bytes every time; do not write to it.
+    """The picture, (H, W, 3) uint8; it has the same bytes every time, and must not be written to.
 
     Raises:
-        UnknownName: when there is no such texture.
+        UnknownName: if there is no such texture.
     """
     picture = np.clip(_entry(name)[0](), 0.0, 1.0)
     pixels = np.ascontiguousarray(np.round(picture * 255.0), np.uint8)
@@ -34,7 +34,7 @@ def image(name: str) -> Any:
 
 
 def scale(name: str) -> float:
-    """How many metres one repeat covers; 0 for a picture that is stretched over what it is on, or for no name."""
+    """How many metres one repeat covers; 0 if the picture is stretched over its surface, or for an empty name."""
     return _entry(name)[1] if name else 0.0
 
 

@@ -1,4 +1,4 @@
-"""Soft surfaces: weaves, terry, carpet, leather, stripes, rugs, wicker."""
+"""Textures of soft surfaces: weaves, terry, carpet, leather, stripes, rugs, wicker."""
 
 from functools import partial
 from typing import Any
@@ -11,7 +11,7 @@ _SIZE = (256, 256)
 
 
 def _weave(threads: int, depth: float, seed: int) -> Any:
-    """Over and under by turns."""
+    """Threads that go over and under each other in turn."""
     y, x = places(_SIZE)
     warp, weft = np.abs(np.sin(np.pi * threads * x)), np.abs(np.sin(np.pi * threads * y))
     over = ((np.floor(threads * x) + np.floor(threads * y)) % 2) == 0
@@ -32,13 +32,13 @@ def _terry() -> Any:
 
 
 def _leather() -> Any:
-    """Cells between fine creases."""
+    """Cells between fine creases, as in leather."""
     creases = np.minimum(np.abs(field(_SIZE, 1.7, 114) - 0.5), np.abs(field(_SIZE, 1.7, 115) - 0.5))
     return grey(0.84 + 0.10 * np.clip(creases / 0.05, 0.0, 1.0) + 0.08 * (fractal(_SIZE, 50, 116, 3) - 0.5))
 
 
 def _stripes(bands: int, low: float) -> Any:
-    """Stripes that run along the rows' direction, on fine cloth."""
+    """Stripes along the rows, on fine cloth."""
     y, _ = places(_SIZE)
     stripe = 0.5 + 0.5 * np.tanh(14.0 * np.sin(2 * np.pi * bands * y))
     return np.clip(grey(low + (1.0 - low) * stripe) * (0.90 + 0.10 * _weave(64, 0.4, 117)), 0.0, 1.0)
@@ -58,7 +58,7 @@ def _dots() -> Any:
 
 
 def _quilt() -> Any:
-    """Stitched lozenges, shaded as if puffed."""
+    """Stitched diamonds, shaded as if padded."""
     y, x = places(_SIZE)
     u, v = (x + y) * 4 % 1.0, (x - y) * 4 % 1.0
     puff = (np.sin(np.pi * u) * np.sin(np.pi * v)) ** 0.35
@@ -74,7 +74,7 @@ def _wicker() -> Any:
 
 
 def _rug(seed: int, ground: tuple[float, float, float], accent: tuple[float, float, float]) -> Any:
-    """A whole rug: borders, a field of lozenges, a medallion."""
+    """A whole rug: borders, a field of diamonds, a medallion."""
     y, x = places((256, 384))
     edge = np.minimum(np.minimum(x, 1.0 - x) * 1.5, np.minimum(y, 1.0 - y))
     cream, night = (0.90, 0.85, 0.74), (0.17, 0.18, 0.26)

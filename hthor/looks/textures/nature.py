@@ -1,6 +1,6 @@
-"""Skins of what grows, fruit, bread, leaves, soil, and of what is made plainly: cardboard, metal, balls.
+"""Textures of natural surfaces (fruit, bread, leaves, soil) and of simple materials (cardboard, metal, balls).
 
-Skins of food go once around a thing: rows run from its top (first) to its bottom, columns around it.
+Textures of food go once around a thing: rows run from its top (first row) to its bottom, columns around it.
 """
 
 from functools import partial
@@ -14,7 +14,7 @@ _SIZE = (128, 256)
 
 
 def _apple() -> Any:
-    """Red with yellow around the stem and the eye, streaked from pole to pole."""
+    """Red with yellow around both poles, and streaks from pole to pole."""
     y, _ = places(_SIZE)
     streak, cloud = field(_SIZE, (22, 1.2), 201), fractal(_SIZE, 26, 202, 3)
     red = np.clip(1.6 * cloud + 0.7 * streak - 0.35, 0.0, 1.0)
@@ -31,7 +31,7 @@ def _tomato() -> Any:
 
 
 def _lettuce() -> Any:
-    """Pale at the heart and at the ribs, deep green at the rim of the leaves."""
+    """Pale in the middle and at the ribs, deep green at the rim of the leaves."""
     size = (256, 256)
     y, _ = places(size)
     ribs = np.exp(-((np.abs(fractal(size, 20, 207, 4) - 0.5) / 0.03) ** 1.2))
@@ -60,7 +60,7 @@ def _egg() -> Any:
 
 
 def _leaf(rows: int) -> Any:
-    """A leaf's blade: its rib runs along the middle of the columns, side veins slant from it."""
+    """The blade of a leaf: its rib runs along the middle of the columns, and side veins slant from it."""
     size = (128, 128)
     y, x = places(size)
     rib = np.abs(x - 0.5)

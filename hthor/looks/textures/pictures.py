@@ -1,4 +1,4 @@
-"""Pictures that fill what they are on: paintings, screens, book covers, print, dials, keys."""
+"""Pictures that are stretched over a surface: paintings, screens, book covers, print, dials, keys."""
 
 import math
 from functools import partial
@@ -13,7 +13,7 @@ _SIZE = (192, 256)
 
 
 def _ridge(x: Any, seed: int, level: float, height: float) -> Any:
-    """The skyline of hills: a row for each column."""
+    """The skyline of hills: the row at each column."""
     chance = dice(seed)
     waves = [math.pow(0.55, k) * np.sin(2 * np.pi * (x * (1.3 + 1.7 * k) + float(chance.uniform()))) for k in range(5)]
     return level - height * 0.5 * (1.0 + np.sum(waves, axis=0) / 2.0)
@@ -82,7 +82,7 @@ def _bars(picture: Any, boxes: list[tuple[float, float, float, float, Vec3]]) ->
 
 
 def _text(picture: Any, seed: int, area: tuple[float, float, float, float], lines: int, ink: Vec3) -> Any:
-    """Lines of something like words in an area (left, top, right, bottom)."""
+    """Lines that look like words in an area (left, top, right, bottom)."""
     chance = dice(seed)
     left, top, right, bottom = area
     step = (bottom - top) / lines
@@ -96,7 +96,7 @@ def _text(picture: Any, seed: int, area: tuple[float, float, float, float], line
 
 
 def _show() -> Any:
-    """A nature film on a television."""
+    """A scene of a nature film, for a television."""
     picture = _landscape(
         311,
         ((0.20, 0.50, 0.85), (0.75, 0.88, 0.96)),
@@ -128,7 +128,7 @@ _ICONS: tuple[Vec3, ...] = ((0.26, 0.56, 0.90), (0.94, 0.70, 0.24), (0.36, 0.72,
 
 
 def _cover(seed: int, ground: Vec3, accent: Vec3, style: int) -> Any:
-    """A book's front: a title, a drawing, an author's name."""
+    """A book's front cover: a title, a drawing, an author's name."""
     size = (192, 128)
     y, x = places(size)
     picture = np.broadcast_to(np.array(ground), (*size, 3)) * (0.90 + 0.10 * field(size, 1, seed))[..., None]
@@ -145,7 +145,7 @@ def _cover(seed: int, ground: Vec3, accent: Vec3, style: int) -> Any:
 
 
 def _pages() -> Any:
-    """The edges of many leaves, one above the other."""
+    """The edges of many pages, one above the other."""
     return mix(field((64, 64), (0.5, 30), 331), (0.80, 0.76, 0.66), (0.98, 0.96, 0.90))
 
 
@@ -179,7 +179,7 @@ def _dial(face: Vec3, ink: Vec3) -> Any:
 
 
 def _keys(rows: int, columns: int, body: Vec3, key: Vec3, ink: Vec3) -> Any:
-    """A field of keys with a mark on each."""
+    """A block of keys with a mark on each key."""
     y, x = places((128, 256))
     u, v = x * columns % 1.0, y * rows % 1.0
     inside = (np.abs(u - 0.5) < 0.42) & (np.abs(v - 0.5) < 0.40)
@@ -216,7 +216,7 @@ def _hob() -> Any:
 
 
 def _glaze() -> Any:
-    """What a mirror shows to nobody in particular: light from above, fading, with slanting gleams."""
+    """The reflection in every mirror: light from above that fades downwards, with slanting gleams."""
     y, x = places((128, 128))
     gleam = 0.06 * np.exp(-(((x + y - 0.7) / 0.10) ** 2)) + 0.04 * np.exp(-(((x + y - 1.15) / 0.05) ** 2))
     return mix(y, (0.84, 0.88, 0.90), (0.62, 0.66, 0.68)) + gleam[..., None]

@@ -1,4 +1,4 @@
-"""Mineral surfaces: tiles, marble, granite, brick, plaster, concrete."""
+"""Textures of mineral surfaces: tiles, marble, granite, brick, plaster, concrete."""
 
 from functools import partial
 from typing import Any
@@ -9,7 +9,7 @@ from hthor.looks.textures.noise import Book, dice, field, fractal, grey, mix, pl
 
 
 def _tiles(across: int, down: int, grout: float, spread: float, seed: int, shift: bool = False, size: int = 256) -> Any:
-    """Tiles with grout: ``grout`` is its brightness, ``shift`` moves every other row by half a tile."""
+    """Tiles with grout: ``grout`` is the grout's brightness, ``shift`` moves every second row by half a tile."""
     y, x = np.mgrid[0:size, 0:size]
     row = y * down // size
     x = (x + np.where(shift & (row % 2 == 1), size // across // 2, 0)) % size
@@ -33,7 +33,7 @@ def _checker(cells: int = 4, size: int = 256) -> Any:
 
 
 def _veins(size: tuple[int, int], seed: int) -> Any:
-    """Thin dark lines (H, W), 0 to 1, where two fields of noise agree."""
+    """Thin dark lines (H, W), 0 to 1, where two noise fields have equal values."""
     flow = fractal(size, size[0] / 6, seed, 4)
     return np.exp(-((np.abs(flow - 0.5) / 0.028) ** 1.2)) * field(size, size[0] / 9, seed + 9)
 
@@ -73,7 +73,7 @@ def _brick(mortar: float = 1.0, size: int = 256) -> Any:
 
 
 def _plaster() -> Any:
-    """A wall that was rolled: light from the side on shallow bumps, hardly there."""
+    """A wall painted with a roller: faint, shallow bumps in light from the side."""
     bumps = fractal((256, 256), 9, 33, 4)
     relief = np.roll(bumps, 1, axis=0) - bumps
     return grey(0.955 + 0.03 * (bumps - 0.5) + 0.28 * relief)
@@ -94,7 +94,7 @@ def _wallpaper() -> Any:
 
 
 def _panels() -> Any:
-    """Painted tongue-and-groove boards, upright."""
+    """Painted, upright tongue-and-groove boards."""
     _, x = places((256, 256))
     near = np.abs(x * 8 % 1.0 - 0.5)
     return grey(np.where(near > 0.47, 0.74, 0.97 - 0.25 * np.maximum(near - 0.42, 0.0)))

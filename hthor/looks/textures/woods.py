@@ -1,4 +1,4 @@
-"""Wood: grain for furniture, and boards for floors, in tones to be colored."""
+"""Textures of wood: grain for furniture, and boards for floors, in tones that a color is multiplied with."""
 
 from functools import partial
 from typing import Any
@@ -11,7 +11,7 @@ _DARK, _LIGHT = (0.66, 0.58, 0.50), (1.0, 1.0, 1.0)
 
 
 def grain(size: tuple[int, int] = (256, 256), seed: int = 1, rings: float = 26.0) -> Any:
-    """How light the wood is (H, W), 0 to 1; the fibres run along the rows."""
+    """Lightness of the wood (H, W), 0 to 1; the fibres run along the rows."""
     fibre, streak = field(size, (0.8, 30.0), seed), field(size, (2.5, 60.0), seed + 1)
     flow = field(size, (size[0] / 18, size[1] / 3), seed + 2)
     ring = 0.5 + 0.5 * np.sin(rings * flow + 4.0 * streak)
@@ -43,7 +43,7 @@ def _boards(rows: int, joints: int, seed: int, gap: float, contrast: float, size
 
 
 def _parquet() -> Any:
-    """Square blocks whose strips run along and across by turns."""
+    """Square blocks whose strips run along and across in turn."""
     size, blocks, strips = 512, 4, 5
     chance = dice(41)
     share = 0.35 + 0.65 * grain((size, size), 42, 60.0)
@@ -63,7 +63,7 @@ def _parquet() -> Any:
 
 
 def _herringbone() -> Any:
-    """Boards of one by four units laid in zigzag; the pattern repeats after eight units both ways."""
+    """Boards of one by four units in a zigzag; the pattern repeats after eight units in both directions."""
     size, unit = 512, 64
     y, x = np.mgrid[0:size, 0:size]
     cx, cy = x // unit, y // unit
