@@ -102,6 +102,7 @@ def test_folders_and_files_are_small() -> None:
     assert not {str(path): count for path, count in lengths.items() if count > MOST_LINES}
 
 
+@pytest.mark.slow
 def test_the_median_function_is_short() -> None:
     trees = [ast.parse(path.read_text(encoding="utf-8")) for path in FILES]
     functions = [node for tree in trees for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]
@@ -117,6 +118,7 @@ def texts(path: Path) -> Iterator[str]:
     yield from re.findall(r"(?<!['\"])#[^'\"\n]*$", source, flags=re.MULTILINE)
 
 
+@pytest.mark.slow
 def test_private_words_do_not_come_back() -> None:
     pattern = re.compile(rf"\b({'|'.join(PRIVATE_WORDS)})\b", re.IGNORECASE)
     found = [

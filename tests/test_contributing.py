@@ -219,6 +219,7 @@ WORDS = st.lists(
 )
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(st.lists(st.tuples(st.sampled_from(["", "- ", "12. ", "  * "]), WORDS), max_size=4))
 def test_wrapping_changes_white_space_alone_and_is_done_after_once(parts: list[tuple[str, list[str]]]):

@@ -164,6 +164,7 @@ def a_task(kind: str, limit: float) -> TaskSpec:
     return task(kind, (mug,), (Job(target="mug", relation="on", destinations=destinations, place=place),), limit=limit)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("agent", [name for name in plugins.names("agent") if name in ("frontier", "oracle", "none")])
 def test_every_agent_takes_part_in_every_kind_with_every_body(kind: str, agent: str) -> None:
@@ -173,6 +174,7 @@ def test_every_agent_takes_part_in_every_kind_with_every_body(kind: str, agent: 
     assert not [reason for reason in reasons if "cannot" in reason or "at most" in reason or "no object" in reason]
 
 
+@pytest.mark.slow
 def test_the_same_trial_goes_the_same_way() -> None:
     made = a_task("multi_robot_collection", 25.0)
     logs = [run(made, "tender:oracle", "puck:frontier")[0] for _ in range(2)]
@@ -182,6 +184,7 @@ def test_the_same_trial_goes_the_same_way() -> None:
 # ------------------------------------------------------------------------------------------------------------ carrying
 
 
+@pytest.mark.slow
 def test_the_oracle_gathers_what_lies_about_and_opens_the_fridge_for_it() -> None:
     log, share = run(task("multi_robot_collection", *apples(("fridge", 1), ("desk", 0))), "tender:oracle")
     assert (log.met, share) == (True, 1.0)
@@ -189,6 +192,7 @@ def test_the_oracle_gathers_what_lies_about_and_opens_the_fridge_for_it() -> Non
     assert said(log)[0].startswith("I put the apple on the dining table"), "so that nobody looks for it any longer"
 
 
+@pytest.mark.slow
 def test_two_oracles_do_not_fetch_the_same_thing() -> None:
     log, _ = run(task("multi_robot_collection", *apples(("fridge", 1), ("desk", 0))), "tender:oracle", "tender:oracle")
     picked = {event.seat: event.data["object"] for event in log.events if event.kind == "picked"}
@@ -196,6 +200,7 @@ def test_two_oracles_do_not_fetch_the_same_thing() -> None:
     assert sorted(picked.values()) == ["apple", "apple_2"], "each has fetched one"
 
 
+@pytest.mark.slow
 def test_the_oracle_puts_things_back_exactly() -> None:
     made = a_task("room_rearrangement", 180.0)
     log, _ = run(made, "tender:oracle")
@@ -207,6 +212,7 @@ def test_the_oracle_puts_things_back_exactly() -> None:
     assert math.dist(state.position[:2], place[:2]) < 0.05
 
 
+@pytest.mark.slow
 def test_what_is_out_of_place_is_tidied_up() -> None:
     log, _ = run(a_task("tidying_up", 180.0), "tender:oracle")
     assert log.met
@@ -221,6 +227,7 @@ def test_the_frontier_robot_carries_what_it_has_seen_to_where_it_has_seen() -> N
     assert log.met
 
 
+@pytest.mark.slow
 def test_what_lies_well_is_left_alone() -> None:
     mug, apple = lying("mug", "mug", "desk"), lying("apple", "apple", "dining_table")
     jobs = (
@@ -231,6 +238,7 @@ def test_what_lies_well_is_left_alone() -> None:
     assert [event.data["object"] for event in log.events if event.kind == "picked"] == ["mug"]
 
 
+@pytest.mark.slow
 def test_two_robots_carry_what_is_too_heavy_for_one() -> None:
     log, _ = run(a_task("collaborative_carrying", 120.0), "porter:oracle", "porter:oracle")
     kinds = [event.kind for event in log.events]
@@ -239,6 +247,7 @@ def test_two_robots_carry_what_is_too_heavy_for_one() -> None:
     assert log.met
 
 
+@pytest.mark.slow
 def test_one_robot_asks_for_a_hand() -> None:
     log, _ = run(a_task("collaborative_carrying", 40.0), "porter:oracle")
     assert said(log) == [help_carry_text("trunk", held=False)]
@@ -249,6 +258,7 @@ def test_one_robot_asks_for_a_hand() -> None:
 # ------------------------------------------------------------------------------------------------------------- telling
 
 
+@pytest.mark.slow
 def test_who_cannot_open_the_fridge_asks_the_person_to_look_inside() -> None:
     made = task("multi_robot_collection", *apples(("fridge", 1), ("desk", 0)), limit=60.0)
     log, _ = run(made, "puck:oracle")
@@ -257,6 +267,7 @@ def test_who_cannot_open_the_fridge_asks_the_person_to_look_inside() -> None:
     assert event.data["object"] == "apple"
 
 
+@pytest.mark.slow
 def test_it_asks_again_ten_seconds_after_it_was_turned_down() -> None:
     made = task("multi_robot_collection", *apples(("fridge", 1)), limit=60.0)
     log, _ = run(made, "puck:oracle", human=Bystander(accept=False))
@@ -266,6 +277,7 @@ def test_it_asks_again_ten_seconds_after_it_was_turned_down() -> None:
     assert declined[0] + 100 <= sent[1] <= declined[0] + 150
 
 
+@pytest.mark.slow
 def test_the_frontier_robot_asks_for_what_it_has_not_seen() -> None:
     made = task("multi_robot_collection", *apples(("fridge", 1)), limit=15.0)
     made = starting(made, Pose(x=1.3, y=4.1, yaw=math.pi))
@@ -275,6 +287,7 @@ def test_the_frontier_robot_asks_for_what_it_has_not_seen() -> None:
     assert event.data["object"] == "fridge", "it does not claim that the apple is there"
 
 
+@pytest.mark.slow
 def test_in_the_papers_kinds_nobody_asks() -> None:
     (apple,), _ = apples(("fridge", 1))
     for agent in ("oracle", "frontier"):
@@ -352,6 +365,7 @@ def test_points_to_put_things_on_lie_on_the_thing() -> None:
         assert z == pytest.approx(table.centre[2] + table.size[2] / 2, abs=0.05)
 
 
+@pytest.mark.slow
 def test_the_closest_thing_is_the_one_with_the_shortest_way() -> None:
     house = houses.load(HOUSE)
     routes = HouseRoutes(house, body("tall"))

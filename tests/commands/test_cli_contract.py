@@ -50,15 +50,18 @@ def failed(said: tuple[int, object, str], code: int) -> str:
     return document["error"]
 
 
+@pytest.mark.slow
 def test_1_is_a_fault_of_our_own(tmp_path: Path) -> None:
     said = run("eval", "--agent", "none", "--suite", "fake", "--out", str(tmp_path / "a"), play="failing_player:own")
     assert "ZeroDivisionError" in failed(said, 1)
 
 
+@pytest.mark.slow
 def test_2_is_a_wrong_word() -> None:
     assert "--agent" in failed(run("eval", "--agnet", "none"), 2)
 
 
+@pytest.mark.slow
 def test_3_is_an_agent_that_failed(tmp_path: Path) -> None:
     words = ("--agent", "clumsy", "--suite", "fake", "--out", str(tmp_path / "a"), "--no-control")
     code, document, _ = run("eval", *words)
@@ -66,10 +69,12 @@ def test_3_is_an_agent_that_failed(tmp_path: Path) -> None:
     assert document["runs"][0]["result"]["counts"]["faults"] == 2
 
 
+@pytest.mark.slow
 def test_4_is_an_agent_that_does_not_load(tmp_path: Path) -> None:
     failed(run("eval", "--agent", str(tmp_path / "none.py"), "--suite", "fake"), 4)
 
 
+@pytest.mark.slow
 def test_5_is_too_little_isolation(tmp_path: Path) -> None:
     agent = tmp_path / "mine.py"
     agent.write_text(plugins.Path(plugins.__file__).with_name("agents").joinpath("_template.py.txt").read_text())
@@ -77,12 +82,14 @@ def test_5_is_too_little_isolation(tmp_path: Path) -> None:
     assert "L2 is required" in failed(run("eval", *words), 5)
 
 
+@pytest.mark.slow
 def test_6_is_a_run_that_is_worse(both: Path) -> None:
     code, document, _ = run("compare", str(both / "helper"), str(both / "none"), "--fail-if-worse")
     assert code == 6
     assert document["pairs"][0]["better"] == "helper"
 
 
+@pytest.mark.slow
 def test_75_is_a_run_that_another_process_writes(both: Path) -> None:
     with (both / "none" / ".lock").open("rb") as file:
         fcntl.flock(file, fcntl.LOCK_EX)
@@ -90,6 +97,7 @@ def test_75_is_a_run_that_another_process_writes(both: Path) -> None:
         assert "is being written" in failed(run("eval", *words), 75)
 
 
+@pytest.mark.slow
 def test_130_is_an_interruption_and_the_same_command_resumes(tmp_path: Path) -> None:
     words = ("eval", "--agent", "none", "--suite", "fake", "--out", str(tmp_path / "a"), "--jobs", "1")
     process = start(*words, "--json", play="slow_player:0.4")
@@ -125,6 +133,7 @@ def test_the_page_has_every_command(root: Path) -> None:
     assert text == cli_reference.page(text), "write it anew: python scripts/cli_reference.py docs/cli.md"
 
 
+@pytest.mark.slow
 def test_a_dry_run_tells_all_and_writes_nothing(both: Path, tmp_path: Path) -> None:
     def files(folder: Path) -> dict[str, int]:
         return {str(path): path.stat().st_mtime_ns for path in folder.rglob("*")}
@@ -177,6 +186,7 @@ def complete(words: str, folder: Path, shell: str = "bash") -> list[str]:
     return done.stdout.split()
 
 
+@pytest.mark.slow
 def test_the_shell_completes_values(both: Path) -> None:
     assert complete("hthor eval --agent fr", both) == ["frontier"]
     assert complete("hthor compare n", both) == ["none"]
@@ -205,6 +215,7 @@ def test_what_is_offered_is_what_there_is(tmp_path: Path, monkeypatch: pytest.Mo
     assert completion.runs("nowhere/") == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "words", [["robots", "list"], ["agent", "check", "nowhere.py"], ["replay", "nowhere", "0", "--mind"]]
 )
@@ -215,6 +226,7 @@ def test_every_command_keeps_compiled_code_in_one_place(words: list[str], monkey
     assert os.environ["NUMBA_CACHE_DIR"] == str(code_identity.compiled())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("within", [False, True])
 def test_names_that_are_no_text_are_refused_at_once(tmp_path: Path, within: bool) -> None:
     folder = Path(os.fsdecode(os.fsencode(tmp_path) + b"/d\xff"))

@@ -125,6 +125,7 @@ def copied(reference: Path, tmp_path: Path) -> Path:
 # ----------------------------------------------------------------------------------------------- the same bytes, always
 
 
+@pytest.mark.slow
 def test_one_worker_writes_the_same_records_as_two(reference: Path, tmp_path: Path):
     done = hthor(*EVAL, "--jobs", "1", "--out", "run", "--json", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
@@ -181,6 +182,7 @@ def processes(tmpdir: Path) -> list[str]:
 linux = pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc")
 
 
+@pytest.mark.slow
 @linux
 def test_killed_three_times_and_resumed_by_the_same_command(reference: Path, tmp_path: Path):
     words = (*EVAL, "--jobs", "2", "--out", "run")
@@ -212,6 +214,7 @@ class Agent:
 """
 
 
+@pytest.mark.slow
 @linux
 def test_not_even_what_an_agent_started_outlives_the_run(tmp_path: Path):
     (tmp_path / "parent.py").write_text(PARENT)
@@ -238,6 +241,7 @@ def test_not_even_what_an_agent_started_outlives_the_run(tmp_path: Path):
     until(lambda: not processes(tmp_path), "processes outlived their run")
 
 
+@pytest.mark.slow
 def test_what_an_early_death_leaves_is_cleared_away(copied: Path, say: Callable[..., Said]):
     (copied / ".run.json.k1ll3d").write_text("{")
     said = say(*EVAL, "--out", copied)
@@ -253,6 +257,7 @@ def test_what_an_early_death_leaves_is_cleared_away(copied: Path, say: Callable[
 # --------------------------------------------------------------------------------------------------------- agents
 
 
+@pytest.mark.slow
 def test_a_new_agent_works_unedited_from_anywhere_beside_one_that_fails(tmp_path: Path):
     (tmp_path / "far").mkdir()
     assert hthor("agent", "new", "far/mine.py", cwd=tmp_path).returncode == 0
@@ -294,6 +299,7 @@ def played(agent: str, count: int = 2) -> list[TrialRecord]:
     return [done.record for done in trial_runner.make_runner(sources)(session)]
 
 
+@pytest.mark.slow
 def test_the_example_works(root: Path):
     records = played(str(root / "examples" / "sweeper.py"))
     assert not any(record.faults for record in records)
@@ -349,6 +355,7 @@ def idle_robot(tmp_path_factory: pytest.TempPathFactory) -> list[TrialRecord]:
     return played(written(tmp_path_factory.mktemp("idle"), act="pass"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", HARMLESS)
 def test_harmless_agents_have_no_faults(name: str, tmp_path: Path, idle_robot: list[TrialRecord]):
     records = played(written(tmp_path, **HARMLESS[name]))
@@ -356,6 +363,7 @@ def test_harmless_agents_have_no_faults(name: str, tmp_path: Path, idle_robot: l
     assert [record.paths[HUMAN] for record in records] == [record.paths[HUMAN] for record in idle_robot]
 
 
+@pytest.mark.slow
 def test_a_robot_that_does_nothing_is_as_no_robot_until_its_body_is_in_the_way(idle_robot: list[TrialRecord]):
     _, session = dealt("silent")
     alone = [done.record for done in trial_runner.make_runner()(session)]
@@ -369,6 +377,7 @@ def test_a_robot_that_does_nothing_is_as_no_robot_until_its_body_is_in_the_way(i
         assert not any(event.kind in ("sent", "fault") for event in idle.events)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", FAULTY)
 def test_a_failing_agent_leaves_the_person_alone(
     name: str, tmp_path: Path, idle_robot: list[TrialRecord], monkeypatch: pytest.MonkeyPatch
@@ -384,6 +393,7 @@ def test_a_failing_agent_leaves_the_person_alone(
         assert record.metrics == idle.metrics
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("text", "told"),
     [
@@ -404,6 +414,7 @@ def test_an_agent_that_does_not_load(text: str, told: str, tmp_path: Path, say: 
     assert not (tmp_path / "run").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("words", "code", "told"),
     [
@@ -434,6 +445,7 @@ def test_a_run_has_the_weakest_isolation_of_its_commands(tmp_path: Path):
         run_isolation.weakest_isolation(tmp_path, held["L3"], "L2")
 
 
+@pytest.mark.slow
 def test_a_file_that_changes_during_its_run_ends_it(tmp_path: Path):
     sources, session = dealt(written(tmp_path))
     written(tmp_path, act="return None")
@@ -444,6 +456,7 @@ def test_a_file_that_changes_during_its_run_ends_it(tmp_path: Path):
 # ----------------------------------------------------------------------------------------------------- what a run holds
 
 
+@pytest.mark.slow
 def test_scoring_again_gives_the_same_result(copied: Path, say: Callable[..., Said]):
     before = (copied / "result.json").read_bytes()
     assert say("score", copied, "--json").out.encode() == before
@@ -454,6 +467,7 @@ def test_scoring_again_gives_the_same_result(copied: Path, say: Callable[..., Sa
     assert now == then
 
 
+@pytest.mark.slow
 def test_a_log_that_was_changed(copied: Path, say: Callable[..., Said]):
     whole, path = lines(copied), copied / "trials.jsonl"
     alien = json.loads(whole[7])
@@ -474,6 +488,7 @@ def test_a_log_that_was_changed(copied: Path, say: Callable[..., Said]):
             assert "Traceback" not in said.err
 
 
+@pytest.mark.slow
 def test_a_torn_last_line_is_one_trial_less(copied: Path, say: Callable[..., Said], tmp_path: Path):
     whole = lines(copied)
     (copied / "trials.jsonl").write_bytes(b"".join(whole)[:-9])
@@ -485,6 +500,7 @@ def test_a_torn_last_line_is_one_trial_less(copied: Path, say: Callable[..., Sai
     assert not (tmp_path / "board").exists()
 
 
+@pytest.mark.slow
 def test_folders_that_cannot_be_used(copied: Path, say: Callable[..., Said], tmp_path: Path):
     with TrialLog(copied):
         busy = say(*EVAL, "--out", copied)
@@ -516,6 +532,7 @@ def board(reference: Path, brief: tasks.Suite) -> Path:
     return FOLDER / "board"
 
 
+@pytest.mark.slow
 def test_leaderboard(
     board: Path,
     reference: Path,
@@ -579,6 +596,7 @@ def test_leaderboard(
     assert f"{entry}: hashes.run" in said.err
 
 
+@pytest.mark.slow
 def test_a_trial_is_found_by_any_of_its_names(reference: Path, say: Callable[..., Said]):
     record = find.find_trial(RunFolder(reference), "3")
     for name in (record.key[:8], record.spec.task.id):
@@ -592,6 +610,7 @@ def test_a_trial_is_found_by_any_of_its_names(reference: Path, say: Callable[...
     )  # so long that no key begins with it
 
 
+@pytest.mark.slow
 def test_a_process_without_standard_streams(reference: Path):
     line = f"{sys.executable} -m hthor score {reference} --json >&- 2>&- <&-"
     assert subprocess.run(["sh", "-c", line], timeout=60).returncode == 0
@@ -644,12 +663,14 @@ def _refused(file: Path, told: str, say: Callable[..., Said]) -> None:
     assert "Traceback" not in said.err
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", houses.names())
 def test_damaged_copies_of_our_own_houses(name: str, root: Path, tmp_path: Path, say: Callable[..., Said]):
     assert say("houses", "check", name).code == 0
     _spoiled(root / "hthor" / "houses" / "data" / f"{name}.json", tmp_path, say)
 
 
+@pytest.mark.slow
 def test_damaged_copies_of_a_sample_house(samples: list[Path], tmp_path: Path, say: Callable[..., Said]):
     assert say("houses", "check", samples[-1]).code == 0
     _spoiled(samples[-1], tmp_path, say)

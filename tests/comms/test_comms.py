@@ -167,6 +167,7 @@ acts = st.one_of(
 )
 
 
+@pytest.mark.slow
 @given(st.lists(acts, max_size=30))
 def test_laws_of_every_history(history):
     box, before, ends = Mailbox(ROBOTS), {}, []

@@ -73,6 +73,7 @@ def _run(folder: Path, name: str, *, absent: bool = False) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_a_metric_is_added_by_one_file(tmp_path: Path) -> None:
     ignored = shutil.ignore_patterns("__pycache__", "data", "unseen", "suites.json")
     shutil.copytree(code_identity.PACKAGE, tmp_path / "hthor", ignore=ignored)

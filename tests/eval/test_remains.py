@@ -62,6 +62,7 @@ def test_the_last_looks_and_the_last_words_are_kept_and_read_again(tmp_path: Pat
         fault_report.load_fault_report(tmp_path / "faults" / "ab.json")
 
 
+@pytest.mark.slow
 def test_a_thousand_faults_fill_no_disk(tmp_path: Path):
     for command in range(2):  # the second one resumes
         keeper = fault_report.FaultArchive(tmp_path)

@@ -132,6 +132,7 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
+@pytest.mark.slow
 def test_a_module_is_imported_by_its_name(package: Path) -> None:
     with Guest("minds.careful:Agent") as mind:
         info = mind.load()
@@ -145,6 +146,7 @@ def test_a_module_is_imported_by_its_name(package: Path) -> None:
         load_info("minds.careful:Brave")
 
 
+@pytest.mark.slow
 def test_a_module_that_hides_behind_another_is_refused(package: Path) -> None:
     (package / "minds" / "__init__.py").write_text(
         "import sys\nimport minds.speed\nsys.modules['minds.careful'] = minds.speed\n"
@@ -153,6 +155,7 @@ def test_a_module_that_hides_behind_another_is_refused(package: Path) -> None:
         load_info("minds.careful:Agent")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("level", LEVELS)
 @pytest.mark.parametrize("words", [f"{sys.executable} wire_agent.py", "perl wire_agent.pl"], ids=["python", "perl"])
 def test_the_examples_of_the_wire_play(level: str, words: str, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -198,6 +201,7 @@ def perl(tmp_path: Path) -> Callable[[str, str], str]:
     return write
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("level", ["L2", "L3"])
 def test_a_hostile_program_comes_to_nothing(level: str, perl: Callable[..., str], tmp_path: Path) -> None:
     (tmp_path / "salt.txt").write_text("pepper")
@@ -219,6 +223,7 @@ def test_a_hostile_program_comes_to_nothing(level: str, perl: Callable[..., str]
         assert mind.act(look()) == Action(motion=Wait(seconds=1.0)), mind.log
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("act", "kind", "told"),
     [
@@ -255,6 +260,7 @@ def test_a_program_leaves_nothing_behind_where_it_may_fork(perl: Callable[..., s
     assert not living(group)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("persistent", [False, True])
 def test_a_program_has_a_process_a_trial_unless_it_says_otherwise(perl: Callable[..., str], persistent: bool) -> None:
     ended = "if ($message->{type} eq 'end') { next }"
@@ -277,6 +283,7 @@ def test_a_program_has_a_process_a_trial_unless_it_says_otherwise(perl: Callable
         assert last.seconds == (2.0 if persistent else 1.0)
 
 
+@pytest.mark.slow
 def test_an_agent_that_asks_for_gpus_gets_what_there_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(paths, "gpu_devices", lambda: ("/dev/null",))
     monkeypatch.setenv("CUDA_VISIBLE_DEVICES", "3")

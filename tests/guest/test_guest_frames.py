@@ -23,6 +23,7 @@ SHAPES = arrays.array_shapes(min_dims=0, max_dims=4, max_side=9, min_side=0)
 TYPES = st.sampled_from(["u1", "<f4", "<i4", "<f8", "?"])
 
 
+@pytest.mark.slow
 @given(st.lists(TYPES.flatmap(lambda dtype: arrays.arrays(dtype, SHAPES)), max_size=4))
 def test_what_is_put_in_comes_out_the_same(given_arrays: list[Any]) -> None:
     window = shared_frames.FrameWriter()

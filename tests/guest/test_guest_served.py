@@ -56,6 +56,7 @@ def lying(talk: Callable[[Any], None]) -> Iterator[str]:
         yield url
 
 
+@pytest.mark.slow
 def test_a_served_agent_plays(tmp_path: Path) -> None:
     path = tmp_path / "my_agent.py"
     act = (
@@ -89,6 +90,7 @@ class Small(Sensors):
         return super().rgb()[:1, :1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("talk", "kind", "told"),
     [
@@ -117,6 +119,7 @@ def test_what_a_server_does_wrong_is_a_fault(talk: Callable[[Any], None], kind: 
         mind.begin(BRIEFING)
 
 
+@pytest.mark.slow
 def test_a_server_that_reads_nothing_is_given_up(tmp_path: Path) -> None:
     stop = threading.Event()
     picture = wire.encode(wire.Ask(what="rgb"))
@@ -147,6 +150,7 @@ def test_where_nobody_serves_the_run_does_not_begin_and_a_trial_has_a_fault() ->
         Guest(url).load()
 
 
+@pytest.mark.slow
 def test_a_server_that_never_listens_runs_out_of_time() -> None:
     """It answers looks that it has not read; what is sent to it piles up until nothing more fits."""
 
@@ -161,6 +165,7 @@ def test_a_server_that_never_listens_runs_out_of_time() -> None:
             all(mind.act(words) for _ in range(20_000))
 
 
+@pytest.mark.slow
 def test_what_says_what_cannot_be_is_refused() -> None:
     for ready, told in (
         (wire.Ready(privileges=("x_ray",)), "names? 'x_ray'. Valid: house_map"),
@@ -225,6 +230,7 @@ def _message(words: object) -> bytes:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("answers", [True, False])
 def test_a_flood_of_pings_comes_to_an_end(answers: bool) -> None:
     """Nobody reads what the library answers to them, so that its own thread waits while it holds all that it has."""

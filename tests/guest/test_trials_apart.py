@@ -114,6 +114,7 @@ def source(case: Case) -> str:
     return HEAD.format(pipe=PIPE, **code)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
 @pytest.mark.parametrize("level", ["L2", "L3"])
 def test_an_agent_finds_nothing_of_the_trial_before(level: str, name: str, tmp_path: Path) -> None:

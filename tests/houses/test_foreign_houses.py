@@ -153,6 +153,7 @@ def test_an_asset_without_a_known_size_is_named_with_its_field():
         built(objaverse)
 
 
+@pytest.mark.slow
 def test_nearly_every_room_of_the_samples_can_be_reached_by_broader_bodies_too(samples: list[Path]):
     specs = [spec for spec in map(houses.load, samples) if len(spec.rooms) >= 3]
     for radius, share in ((0.20, 1.0), (0.25, 0.97)):
@@ -160,6 +161,7 @@ def test_nearly_every_room_of_the_samples_can_be_reached_by_broader_bodies_too(s
         assert sum(reached) >= share * len(specs)
 
 
+@pytest.mark.slow
 def test_what_the_generator_writes_is_read_back():
     document = generate(1, 4)
     house = loader.house_from_document(document, "made")

@@ -32,6 +32,7 @@ def entries(made: BehaviourRecorder, *own: Event, events: tuple[Event, ...] = ()
     return {event.kind: event for event in made.journal(own, events)}
 
 
+@pytest.mark.slow
 @given(st.lists(st.floats(0.0, 1.0), min_size=1, max_size=60))
 def test_stick_unfolds_to_what_was_pushed(shares: list[float]) -> None:
     made = recorder()
@@ -97,6 +98,7 @@ def played() -> list[TrialRecord]:
     ]
 
 
+@pytest.mark.slow
 def test_nobody_goes_farther_than_the_stick_says(played: list[TrialRecord]) -> None:
     went = 0.0
     for one in played:
@@ -111,6 +113,7 @@ def test_nobody_goes_farther_than_the_stick_says(played: list[TrialRecord]) -> N
     assert went > 5.0, "nobody walked, so this test showed nothing"
 
 
+@pytest.mark.slow
 def test_every_deed_of_the_hands_was_an_attempt(played: list[TrialRecord]) -> None:
     done = {"picked", "placed", "opened"}
     deeds_done = [e for one in played for e in one.events if e.seat == HUMAN and e.kind in done]

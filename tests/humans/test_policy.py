@@ -97,6 +97,7 @@ def played(policy=None, support: str = "Fridge|1", ticks: int = 700, listener=No
 # ------------------------------------------------------------------------------------------------------ the interface
 
 
+@pytest.mark.slow
 def test_a_policy_is_told_what_the_person_knows_and_nothing_else():
     policy = Recording()
     played(policy)
@@ -115,6 +116,7 @@ def test_a_policy_is_told_what_the_person_knows_and_nothing_else():
         assert sum(choice.knowledge for choice in one.options) <= 1.0 + 1e-9
 
 
+@pytest.mark.slow
 def test_a_policy_decides_where_the_person_goes_and_what_they_answer():
     first, last = Recording(), Recording()
     first.choose = lambda situation: 0
@@ -134,6 +136,7 @@ def test_an_index_that_is_none_of_the_options_is_an_error(answer):
         option_description.checked_index(answer, situation())
 
 
+@pytest.mark.slow
 def test_listening_to_the_mind_changes_nothing_and_tells_every_choice():
     heard = []
     model, trace, _ = played(listener=heard.append)
@@ -150,6 +153,7 @@ def test_listening_to_the_mind_changes_nothing_and_tells_every_choice():
 # --------------------------------------------------------------------------------------------------------- the journal
 
 
+@pytest.mark.slow
 def test_the_journal_holds_what_the_law_made_of_each_option():
     """Worked out from the journal alone, with the person's numbers, the options rank as they did for the person."""
     heard = []
@@ -170,6 +174,7 @@ def test_the_journal_holds_what_the_law_made_of_each_option():
         )
 
 
+@pytest.mark.slow
 def test_choices_are_plain_json_and_small():
     model, _, _ = played()
     choices = [event for event in model.journal if event.kind == "choice"]
@@ -189,6 +194,7 @@ def crowded(root: int, chosen: int, count: int = 40):
     return option_description.features(root, "target", 0, options, options[chosen], shares, shares)
 
 
+@pytest.mark.slow
 def test_of_many_options_chance_keeps_some_all_as_likely():
     counts: Counter[int] = Counter()
     for root in range(1500):
@@ -461,6 +467,7 @@ def made(count: int, weights, root: int = 5):
     return found
 
 
+@pytest.mark.slow
 def test_a_clone_recovers_the_weights_that_made_the_choices():
     weights = np.array([1.5, 0.5, -2.0, -1.0, -0.7, 0.8])
     values, there, chosen = clone.table(made(4000, weights))
@@ -487,6 +494,7 @@ def test_a_clone_chooses_as_often_as_its_weights_say():
     assert said["ignore"] / (3000 - said["confirm"]) == pytest.approx(0.25, abs=0.06)
 
 
+@pytest.mark.slow
 def test_what_the_journal_has_and_what_a_policy_is_told_are_the_same_numbers():
     policy = Recording()
     model, _, _ = played(policy, messages=True)

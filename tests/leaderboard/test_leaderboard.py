@@ -60,6 +60,7 @@ def test_half_and_twice_the_people_of_a_shipped_suite_are_a_setting_of_its_own()
         assert overrides.overridden_settings(some) == found
 
 
+@pytest.mark.slow
 def test_twice_is_once_in_any_order_and_the_control_comes_too(whole: Path, runs: Path, tmp_path: Path):
     other = committed(tmp_path / "other")
     for name in ("clumsy", "helper", "clumsy"):
@@ -69,6 +70,7 @@ def test_twice_is_once_in_any_order_and_the_control_comes_too(whole: Path, runs:
     assert [path.name.partition("-")[0] for path in files.entry_paths(other)] == ["clumsy", "helper", "silent"]
 
 
+@pytest.mark.slow
 def test_every_file_is_as_the_schema_says(whole: Path):
     schema = json.loads((whole / "schema.json").read_bytes())
     jsonschema.Draft202012Validator.check_schema(schema)
@@ -109,6 +111,7 @@ def test_parts_and_departures_are_refused(runs: Path, tmp_path: Path):
     assert not (tmp_path / "board").exists()
 
 
+@pytest.mark.slow
 def test_what_is_refused_leaves_the_board_as_it_was(runs: Path, tmp_path: Path):
     with pytest.raises(files.BoardError, match=r"to no suite of hthor"):
         enter.add_runs(runs, tmp_path / "board")
@@ -179,6 +182,7 @@ def _split(one: dict) -> dict:
     return one["splits"]["kind"]["mobile_manipulation"]["sr"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("change", CHANGES)
 def test_what_was_changed_is_named(board: Path, change: str):
     field, spoil = CHANGES[change]
@@ -239,6 +243,7 @@ def test_numbers_of_older_statistics_are_worked_out_anew(board: Path, whole: Pat
     assert publish.rescore(board) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tier", ["V1", "V2"])
 def test_one_false_outcome_in_twenty_is_caught_by_two_hundred_trials(tier: Literal["V1", "V2"]):
     assert forging.caught(tier, 0.05, 30) == 30
@@ -291,6 +296,7 @@ def test_the_page_says_what_the_list_says_and_needs_nothing_else(whole: Path):
     assert "no ranked entry yet" in page.render(listing.make_board([]))
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("chromium") is None, reason="Chromium is not installed")
 def test_a_browser_shows_the_page_without_complaint(whole: Path, tmp_path: Path):
     options = ["--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--enable-logging=stderr"]
@@ -303,6 +309,7 @@ def test_a_browser_shows_the_page_without_complaint(whole: Path, tmp_path: Path)
 # ---------------------------------------------------------------------------------------------------- small parts
 
 
+@pytest.mark.slow
 @given(st.lists(st.integers(0, 2**24 - 1), min_size=1, max_size=40))
 def test_columns_come_back(values: list[int]):
     column = np.array(values)
@@ -316,6 +323,7 @@ def test_columns_come_back(values: list[int]):
     )
 
 
+@pytest.mark.slow
 @given(st.lists(st.binary(max_size=6), min_size=1, max_size=12), st.data())
 def test_no_row_can_be_changed_moved_or_left_out(rows: list[bytes], data: st.DataObject):
     root = trial_outcomes.merkle_root(rows)
@@ -390,6 +398,7 @@ def test_names_of_submissions(handed_in: Path):
     assert any("cannot be a submission's name" in one.problem for one in submission.submission_problems(other))
 
 
+@pytest.mark.slow
 def test_the_entry_is_of_the_file_that_was_handed_in(handed_in: Path, runs: Path, tmp_path: Path):
     played = submission.list_files(handed_in)
     mine = shutil.copytree(runs, tmp_path / "runs") / "helper"
@@ -406,9 +415,7 @@ def test_the_entry_is_of_the_file_that_was_handed_in(handed_in: Path, runs: Path
     assert entry.agents == plan.agents
     assert not board_check.check_board(board, [path], submissions=handed_in.parent)
     (handed_in / "agent.py").write_text("class Agent: pass\n")
-    with pytest.raises(
-        files.BoardError, match=r"agents\[0\]\.files: differs from .*agent\.py is another file"
-    ):
+    with pytest.raises(files.BoardError, match=r"agents\[0\]\.files: differs from .*agent\.py is another file"):
         enter.add_runs(mine, board, submission.read_submission(handed_in))
     found = board_check.check_board(board, [path], submissions=handed_in.parent)
     assert [(one.field, "agent.py has changed" in one.problem) for one in found] == [("files", True)]

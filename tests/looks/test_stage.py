@@ -76,6 +76,7 @@ def undressed(world: World, pack: Any = None) -> Any:
 # ------------------------------------------------------------------------------------------------- without any OpenGL
 
 
+@pytest.mark.slow
 @given(st.floats(0.1, 9.0), st.floats(0.1, 9.0), st.floats(-3.0, 3.0))
 def test_a_facet_has_its_area_and_faces_one_way(width: float, height: float, yaw: float) -> None:
     along = (width * math.cos(yaw), width * math.sin(yaw), 0.0)
@@ -138,6 +139,7 @@ def test_every_room_has_lamps_of_its_own(name: str) -> None:
         assert len(set(places[room.id])) == len(places[room.id])
 
 
+@pytest.mark.slow
 def test_the_sky_is_bright_blue_above_and_the_same_every_time() -> None:
     sky = lights.sky()
     assert np.array_equal(sky, lights.sky())
@@ -148,6 +150,7 @@ def test_the_sky_is_bright_blue_above_and_the_same_every_time() -> None:
     assert right[200, 128, 1] > right[200, 128, 2]  # grass below the horizon
 
 
+@pytest.mark.slow
 def test_the_stage_touches_no_physics_and_everything_has_its_owner(world: World) -> None:
     dressed = undressed(world)
     assert not dressed.model.geom_contype.any()
@@ -157,6 +160,7 @@ def test_the_stage_touches_no_physics_and_everything_has_its_owner(world: World)
     assert things | {"apple", "mug", HUMAN, "robot", "window|1", "outdoors"} <= set(dressed.owner)
 
 
+@pytest.mark.slow
 def test_a_pack_comes_first_and_brings_its_own_textures(world: World) -> None:
     plain, packed = undressed(world).model, undressed(world, Pack()).model
     red = [bool((packed.tex_data[at : at + 3] == (255, 0, 0)).all()) for at in packed.tex_adr]
@@ -179,6 +183,7 @@ def test_puppets_follow_doors(world: World) -> None:
 # ------------------------------------------------------------------------------------------------------- with OpenGL
 
 
+@pytest.mark.slow
 def test_both_profiles_show_the_same_world(drawn: World) -> None:
     fast, nice = (drawn.picture(HUMAN, "segmentation", profile=profile) for profile in ("fast", "nice"))
     assert (fast == nice).mean() > 0.85
@@ -190,6 +195,7 @@ def test_both_profiles_show_the_same_world(drawn: World) -> None:
     assert np.median(np.abs(depths[0] - depths[1])) < 0.03
 
 
+@pytest.mark.slow
 def test_no_picture_is_dark_or_has_a_hole(drawn: World) -> None:
     for x, y in ((1.0, 1.0), (4.2, 3.3), (6.0, 3.0)):
         for turn in range(0, 4, 2) if x < 5.0 else range(1, 4, 2):
@@ -202,6 +208,7 @@ def test_no_picture_is_dark_or_has_a_hole(drawn: World) -> None:
             assert (ahead > 12.0).mean() < 0.25  # only through the window can one look far
 
 
+@pytest.mark.slow
 def test_drawing_leaves_the_world_alone_and_is_repeatable(drawn: World) -> None:
     before, qpos = drawn.snapshot(), drawn._env.data.qpos.copy()
     first = drawn.picture("robot", size=(96, 64)), drawn.top_view(20.0)
@@ -211,6 +218,7 @@ def test_drawing_leaves_the_world_alone_and_is_repeatable(drawn: World) -> None:
     assert np.array_equal(drawn._env.data.qpos, qpos)
 
 
+@pytest.mark.slow
 def test_bodies_are_seen_by_others_only(drawn: World) -> None:
     human = drawn.names.index(HUMAN)
     assert human not in drawn.picture(HUMAN, "segmentation")
@@ -239,6 +247,7 @@ def test_the_plan_is_to_scale(drawn: World) -> None:
     assert lettuce[1] > max(lettuce[0], lettuce[2])
 
 
+@pytest.mark.slow
 def test_a_sheet_has_four_views_and_a_plan(drawn: World, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(contact_sheet, "_PLACES", 8)
     monkeypatch.setattr(contact_sheet, "_TURNS", 4)
@@ -256,6 +265,7 @@ def test_a_house_that_cannot_be_read_is_an_error(tmp_path: Any, capsys: pytest.C
     assert "none.json" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_an_observation_is_of_one_profile(drawn: World) -> None:
     drawn.teleport(HUMAN, AT_THE_FRIDGE)
     senses, view = drawn.senses(HUMAN), drawn.look(HUMAN)

@@ -59,6 +59,7 @@ def log() -> EpisodeLog:
     return EpisodeLog(events=tuple(events), paths=paths, ticks=141, met=True, trust=5, faults=())
 
 
+@pytest.mark.slow
 def test_a_picture_names_rooms_target_times_and_messages(spec: TrialSpec, log: EpisodeLog) -> None:
     house = houses.load(TASK.house)
     sheet = trial_figure.trial_figure(spec, log, house)
@@ -72,6 +73,7 @@ def test_a_picture_names_rooms_target_times_and_messages(spec: TrialSpec, log: E
         assert words in told, words
 
 
+@pytest.mark.slow
 def test_a_t_star_beyond_the_time_limit_is_not_drawn(spec: TrialSpec, log: EpisodeLog, tmp_path: Path) -> None:
     """Its words would stand a page away and squeeze the picture."""
     short = msgspec.structs.replace(spec, task=msgspec.structs.replace(TASK, time_limit=15.0, t_star=300.0))
@@ -80,6 +82,7 @@ def test_a_t_star_beyond_the_time_limit_is_not_drawn(spec: TrialSpec, log: Episo
     sheet.savefig(tmp_path / "trial.png", dpi=40)
 
 
+@pytest.mark.slow
 def test_a_film_lasts_as_long_as_the_trial(spec: TrialSpec, log: EpisodeLog, tmp_path: Path) -> None:
     path = tmp_path / "film.webm"
     trial_video.write_video(path, spec, log, houses.load(TASK.house))
@@ -102,6 +105,7 @@ def failed(log: EpisodeLog) -> EpisodeLog:
     return msgspec.structs.replace(log, events=(*sent, *log.events[-4:]), faults=(fault,))
 
 
+@pytest.mark.slow
 def test_words_of_agents_are_no_formulas(spec: TrialSpec, failed: EpisodeLog, tmp_path: Path) -> None:
     house = houses.load(TASK.house)
     for suffix in (".png", ".svg", ".pdf"):
@@ -122,6 +126,7 @@ def test_no_picture_is_made_without_plain_words(root: Path) -> None:
         assert ".savefig(" not in text or path.name in ("lettering.py", "ink.py"), path
 
 
+@pytest.mark.slow
 def test_a_robot_that_failed_is_a_cross_and_its_way_ends_there(spec: TrialSpec, failed: EpisodeLog) -> None:
     sheet = trial_figure.trial_figure(spec, failed, houses.load(TASK.house))
     told = "\n".join(text.get_text() for text in sheet.findobj(Text))
@@ -134,6 +139,7 @@ def test_a_robot_that_failed_is_a_cross_and_its_way_ends_there(spec: TrialSpec, 
     assert trial_trace.position_at(failed, "robot", 141)[0] > last + 1.0, "the body has gone on, in the log"
 
 
+@pytest.mark.slow
 def test_messages_that_would_hide_one_another_share_a_badge(spec: TrialSpec, failed: EpisodeLog) -> None:
     sheet = trial_figure.trial_figure(spec, failed, houses.load(TASK.house))
     sheet.canvas.draw()
@@ -152,6 +158,7 @@ def test_numbers_are_written_as_ranges(numbers: list[int], words: str) -> None:
     assert trial_trace.number_ranges(numbers) == words
 
 
+@pytest.mark.slow
 def test_a_badge_at_the_edge_takes_no_room_from_the_plan(spec: TrialSpec, log: EpisodeLog) -> None:
     house = houses.load(TASK.house)
     far = {seat: [(-300, y, yaw) for _, y, yaw in way] for seat, way in log.paths.items()}
@@ -162,6 +169,7 @@ def test_a_badge_at_the_edge_takes_no_room_from_the_plan(spec: TrialSpec, log: E
     assert first == pytest.approx(second)
 
 
+@pytest.mark.slow
 def test_a_rug_is_a_covering_of_the_floor_below_everything(spec: TrialSpec, log: EpisodeLog) -> None:
     house = houses.load(TASK.house)
     rugs = [thing for thing in house.things if floor_plan.is_flat(thing)]
@@ -175,6 +183,7 @@ def test_a_rug_is_a_covering_of_the_floor_below_everything(spec: TrialSpec, log:
     assert "rug, flat" in [text.get_text() for text in sheet.findobj(Text)]
 
 
+@pytest.mark.slow
 def test_the_same_trial_gives_the_same_film(spec: TrialSpec, log: EpisodeLog, tmp_path: Path) -> None:
     short = msgspec.structs.replace(log, paths={seat: way[:4] for seat, way in log.paths.items()})
     for name in ("one", "two"):
@@ -184,6 +193,7 @@ def test_the_same_trial_gives_the_same_film(spec: TrialSpec, log: EpisodeLog, tm
     assert b"V_VP8" in one[:1000], "what browsers play"
 
 
+@pytest.mark.slow
 def test_a_films_words_lie_apart_from_the_plan(spec: TrialSpec, failed: EpisodeLog) -> None:
     stage = trial_video._Stage(spec, failed, houses.load(TASK.house))
     frame = stage.draw(failed, 10)
@@ -196,6 +206,7 @@ def test_a_films_words_lie_apart_from_the_plan(spec: TrialSpec, failed: EpisodeL
     assert words[:, 0].max() < height - 40
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("chromium") is None, reason="Chromium is not installed")
 def test_a_browser_plays_a_film(spec: TrialSpec, log: EpisodeLog, tmp_path: Path) -> None:
     short = msgspec.structs.replace(log, paths={seat: way[:10] for seat, way in log.paths.items()})
@@ -226,6 +237,7 @@ def test_a_house_is_shown_with_its_rooms_and_a_scale() -> None:
     assert 25 <= sum(scale < 45) <= 36, "a metre is some thirty pixels"
 
 
+@pytest.mark.slow
 def test_pictures_of_the_docs_are_known_and_tell_when_they_are_old(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

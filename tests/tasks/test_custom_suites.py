@@ -74,6 +74,7 @@ def _raised(task: TaskSpec) -> TaskSpec:
 # -------------------------------------------------------------------------------------------------------------- making
 
 
+@pytest.mark.slow
 def test_equal_recipes_give_equal_tasks_and_other_seeds_others(home: Path, made: tuple[TaskSpec, ...]):
     assert custom_suite.make_tasks(RECIPE, houses.load(home)) == made
     assert custom_suite.make_tasks(msgspec.structs.replace(RECIPE, seed=6, tasks=1), houses.load(home))[0] not in made
@@ -81,6 +82,7 @@ def test_equal_recipes_give_equal_tasks_and_other_seeds_others(home: Path, made:
     assert {task.house for task in made} == {"my home"}
 
 
+@pytest.mark.slow
 def test_what_cannot_be_done_is_drawn_again_with_another_goal_in_the_end():
     first = custom_suite.make_tasks(Recipe(name="mine", tasks=1, kinds=("mobile_manipulation",)), ELDER)[0].goal
     tried: list[TaskSpec] = []
@@ -136,6 +138,7 @@ def test_houses_are_told_apart_by_name(home: Path, tmp_path: Path):
 # -------------------------------------------------------------------------------------------------- before it is played
 
 
+@pytest.mark.slow
 def test_every_unsound_task_is_named(suite: Path):
     found = library.read_suite(broken(suite, 0, 2))
     assert {one.index for one in find_faults(found)} == {0, 2}
@@ -146,6 +149,7 @@ def test_every_unsound_task_is_named(suite: Path):
     assert "hthor tasks check" in str(error.value)
 
 
+@pytest.mark.slow
 def test_the_check_lists_every_task(suite: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
     ids = [task.id for task in library.read_suite(broken(suite, 0, 1, 2)).tasks]
     monkeypatch.setattr(sys, "argv", ["hthor", "tasks", "check", str(suite), "--jobs", "1"])
@@ -195,6 +199,7 @@ def test_a_suite_is_narrowed_to_houses_and_difficulty():
         task_selection.narrow_selection(whole, ("aldr",), "")
 
 
+@pytest.mark.slow
 def test_difficulty_is_worked_out_where_a_suite_does_not_tell():
     whole = task_selection.narrow_selection(task_selection.select_tasks("smoke", ""), ("alder",), "")
     parts = [len(task_selection.narrow_selection(whole, (), level).suite.tasks) for level in ("easy", "medium")]

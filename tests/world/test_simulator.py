@@ -53,6 +53,7 @@ def only_code(page: str) -> str:
     return "\n".join(lines) + "\n"
 
 
+@pytest.mark.slow
 def test_the_page_s_examples_do_what_it_shows(page: str) -> None:
     code = only_code(page)
     test = doctest.DocTestParser().get_doctest(code, {}, "simulator.md", "docs/simulator.md", 0)

@@ -94,6 +94,7 @@ speeds = st.floats(0.0, 4.0)
 angles = st.floats(-math.pi, math.pi)
 
 
+@pytest.mark.slow
 @quick
 @given(
     kinds, st.floats(0.3, 4.7), st.floats(0.3, 3.7), st.floats(0.3, 1.6), speeds, angles, st.floats(-1.5, 1.2), angles
@@ -118,6 +119,7 @@ def test_nothing_passes_through_a_wall_or_a_surface(kind, x, y, z, speed, headin
     assert one._editor._overlap.inside(one._objects.get(id), 0.012) == ""
 
 
+@pytest.mark.slow
 @quick
 @given(kinds, st.sampled_from((TABLE, COFFEE, COUNTER, "sofa|1", "bed|1", "shelf|1")), st.floats(-2.0, 4.0), angles)
 def test_what_is_thrown_at_a_board_does_not_come_out_below(kind, thing, push, yaw) -> None:
@@ -135,6 +137,7 @@ def test_what_is_thrown_at_a_board_does_not_come_out_below(kind, thing, push, ya
     assert low > z - 0.005
 
 
+@pytest.mark.slow
 @quick
 @given(kinds, st.floats(0.5, 4.5), st.floats(0.5, 3.5), st.floats(0.1, 1.6), speeds, angles)
 def test_energy_does_not_grow(kind, x, y, z, speed, heading) -> None:
@@ -151,6 +154,7 @@ def test_energy_does_not_grow(kind, x, y, z, speed, heading) -> None:
             break
 
 
+@pytest.mark.slow
 @quick
 @given(kinds, st.sampled_from((TABLE, COFFEE, COUNTER, "bed|1", "sofa|1")), st.floats(-1, 1), st.floats(-1, 1), angles)
 def test_what_is_placed_stays(kind, thing, u, v, yaw) -> None:
@@ -263,6 +267,7 @@ def test_what_fits_only_across_is_placed_across() -> None:
     assert state(long, "bat").support == COFFEE
 
 
+@pytest.mark.slow
 @quick
 @given(st.lists(st.tuples(st.sampled_from(("pick", "place", "drop", "walk", "turn")), st.floats(-1, 1)), max_size=8))
 def test_hands_neither_make_nor_lose_anything(doings) -> None:
@@ -336,6 +341,7 @@ def busy(one: World, ticks: int = 900) -> str:
     return seen.hexdigest()
 
 
+@pytest.mark.slow
 def test_the_same_doings_give_the_same_states_again_and_elsewhere() -> None:
     first = busy(world())
     assert busy(world()) == first

@@ -14,6 +14,7 @@ from benchmarks import chaos
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("real", "trials", "kills"), [(False, 300, 6), (True, 40, 6)], ids=["made-up", "held"])
 def test_a_disturbed_run_is_as_an_undisturbed_one(real: bool, trials: int, kills: int, tmp_path: Path):
     agent = guest_fakes.write(tmp_path / "agent")

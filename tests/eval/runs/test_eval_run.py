@@ -67,6 +67,7 @@ def reference(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_one_worker_and_two_write_the_same_lines(tmp_path: Path, reference: Path):
     one = result_file.load_result(reference)
     two = _run(tmp_path, jobs=2, count=60)
@@ -75,6 +76,7 @@ def test_one_worker_and_two_write_the_same_lines(tmp_path: Path, reference: Path
     assert (one.metrics, one.counts, one.hashes) == (two.metrics, two.counts, two.hashes)
 
 
+@pytest.mark.slow
 def test_a_whole_run_is_not_played_again(tmp_path: Path):
     first = _run(tmp_path)
     before = {path.name: path.stat().st_mtime_ns for path in tmp_path.iterdir()}
@@ -85,6 +87,7 @@ def test_a_whole_run_is_not_played_again(tmp_path: Path):
     assert {**before, ".lock": 0} == {**after, ".lock": 0}
 
 
+@pytest.mark.slow
 def test_a_part_is_finished_by_whole_sessions_without_writing_twice(tmp_path: Path):
     _run(tmp_path)
     path = tmp_path / "trials.jsonl"
@@ -97,6 +100,7 @@ def test_a_part_is_finished_by_whole_sessions_without_writing_twice(tmp_path: Pa
     assert "cut 50 bytes" in watch.notes[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("deaths", [1, 2])
 def test_a_killed_worker_costs_nothing(tmp_path: Path, reference: Path, deaths: int):
     make = functools.partial(fakes.dying_player, str(tmp_path), deaths)
@@ -105,6 +109,7 @@ def test_a_killed_worker_costs_nothing(tmp_path: Path, reference: Path, deaths: 
     assert _lines(tmp_path / "run") == _lines(reference)
 
 
+@pytest.mark.slow
 def test_sessions_that_cannot_be_played_do_not_stop_the_others(tmp_path: Path, reference: Path):
     watch, make = Notes(), functools.partial(fakes.sick_player, str(tmp_path), "crash", "bug")
     with pytest.raises(collector.InternalFailure) as caught:
@@ -124,6 +129,7 @@ def test_sessions_that_cannot_be_played_do_not_stop_the_others(tmp_path: Path, r
     assert _lines(tmp_path / "run") == _lines(reference)
 
 
+@pytest.mark.slow
 def test_a_worker_that_hangs_is_ended_and_its_session_played_again(tmp_path: Path, reference: Path):
     plan, dealt = fakes.run_of(60)
     engine = engines.find_engine("local", jobs=2, limit_s=6.0)
@@ -134,6 +140,7 @@ def test_a_worker_that_hangs_is_ended_and_its_session_played_again(tmp_path: Pat
     assert _lines(tmp_path / "run") == _lines(reference)
 
 
+@pytest.mark.slow
 def test_a_session_that_always_ends_its_worker_has_its_own_exit_code(tmp_path: Path):
     make = functools.partial(fakes.dying_player, str(tmp_path), 9)
     with pytest.raises(
@@ -143,6 +150,7 @@ def test_a_session_that_always_ends_its_worker_has_its_own_exit_code(tmp_path: P
     assert caught.value.exit_code == 1
 
 
+@pytest.mark.slow
 def test_a_run_of_which_nothing_can_be_played_ends_soon(tmp_path: Path):
     watch = Notes()
     with pytest.raises(collector.InternalFailure, match="30 of 30 trials are missing"):
@@ -150,6 +158,7 @@ def test_a_run_of_which_nothing_can_be_played_ends_soon(tmp_path: Path):
     assert sum("is given up" in note for note in watch.notes) == 3
 
 
+@pytest.mark.slow
 def test_a_run_that_lacks_trials_does_not_keep_others_from_being_played(tmp_path: Path, monkeypatch):
     real = tasks.load_suite
     monkeypatch.setattr(tasks, "load_suite", lambda name: fakes.suite(20) if name == "fake" else real(name))
@@ -173,12 +182,14 @@ def test_a_worker_has_as_long_as_its_agents_deadlines_allow():
     assert engines.trial_limit_s(tasks, 2) > 2 * (60 + 60 + 60 + 5 * tasks[0].time_limit / rules.TICK_S)
 
 
+@pytest.mark.slow
 def test_a_users_error_in_a_worker_keeps_its_exit_code(tmp_path: Path):
     with pytest.raises(engines.SessionFailed, match="the agent is no good") as caught:
         _run(tmp_path, functools.partial(fakes.failing_player, "user"))
     assert caught.value.exit_code == 4
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("times", "faults"), [(0, 0), (1, 2), (2, 3)])
 def test_a_run_has_one_do_over_for_killed_agents(tmp_path: Path, times: int, faults: int):
     """Of three sessions in which an agent is killed one is played again; whatever comes of that stands."""
@@ -205,6 +216,7 @@ def test_no_later_command_has_another_do_over(tmp_path: Path):
     assert (result.counts.faults_by_kind, result.counts.replays) == ({KILLED: 3}, 1)
 
 
+@pytest.mark.slow
 def test_what_was_played_beside_a_killed_agent_does_not_count(tmp_path: Path):
     """Trials after the one that is played again went otherwise: their person had another trial before."""
     plan, dealt = fakes.run_of(10)
@@ -262,6 +274,7 @@ def test_a_full_disk_leaves_whole_lines(tmp_path: Path, monkeypatch: pytest.Monk
     assert (watch.kept, watch.new, watch.notes) == (len(held), 30 - len(held), [])
 
 
+@pytest.mark.slow
 def test_another_run_is_refused_and_told_apart(tmp_path: Path):
     _run(tmp_path, count=10)
     with pytest.raises(RunError, match=r"holds another run: seed is 0 there and 1 here\. Choose another folder"):
@@ -277,6 +290,7 @@ def test_a_folder_of_other_things_is_refused_untouched(tmp_path: Path):
     assert [path.name for path in tmp_path.iterdir()] == ["thesis.txt"]
 
 
+@pytest.mark.slow
 def test_what_does_not_repeat_itself_is_told(tmp_path: Path):
     _run(tmp_path, count=10)
     path = tmp_path / "trials.jsonl"
@@ -315,6 +329,7 @@ def _alive(pid: int) -> bool:
         return False
 
 
+@pytest.mark.slow
 def test_a_run_that_is_killed_again_and_again_ends_up_the_same(tmp_path: Path, reference: Path):
     chance = random.Random(4)
     workers: list[int] = []
@@ -335,6 +350,7 @@ def test_a_run_that_is_killed_again_and_again_ends_up_the_same(tmp_path: Path, r
     assert result_file.load_result(tmp_path).metrics == result_file.load_result(reference).metrics
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_the_first_signal_lets_trials_come_to_their_end(tmp_path: Path, number: int):
     with _start(tmp_path, 0.5) as process:
@@ -348,6 +364,7 @@ def test_the_first_signal_lets_trials_come_to_their_end(tmp_path: Path, number: 
     assert before < _played(tmp_path) <= before + 2
 
 
+@pytest.mark.slow
 def test_the_second_signal_ends_at_once(tmp_path: Path):
     with _start(tmp_path, 1.5) as process:
         _wait_for(tmp_path, 2)

@@ -53,6 +53,7 @@ def _result(folder: Path) -> dict[str, object]:
     return document
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(st.integers(1, 90), st.integers(1, 40), st.integers(1, 40))
 def test_shards_are_a_partition_and_know_their_size(tasks: int, people: int, of: int):
@@ -79,6 +80,7 @@ def test_a_shard_that_there_is_not_is_refused(words: str):
         sessions.parse_shard(words)
 
 
+@pytest.mark.slow
 def test_merged_shards_are_the_undivided_run(undivided: Path, shards: Sequence[Path], tmp_path: Path):
     done = merge_shards.merge_shards(shards[::-1], tmp_path / "whole")
     assert (done.trials, done.new, done.gaps) == (COUNT, COUNT, ())
@@ -91,11 +93,13 @@ def test_merged_shards_are_the_undivided_run(undivided: Path, shards: Sequence[P
     assert _play(tmp_path / "whole", make=fakes.forgetful_player)  # plays nothing, as all is there
 
 
+@pytest.mark.slow
 def test_a_shard_is_no_result(shards: Sequence[Path]):
     assert sorted(path.name for path in shards[0].iterdir()) == _FILES
     assert shards[2].name == "run-shard-3-of-4"
 
 
+@pytest.mark.slow
 def test_what_is_missing_is_named_with_its_command(undivided: Path, shards: Sequence[Path], tmp_path: Path):
     torn = tmp_path / shards[2].name
     torn.mkdir()
@@ -116,6 +120,7 @@ def test_what_is_missing_is_named_with_its_command(undivided: Path, shards: Sequ
     assert _result(tmp_path / "whole") == _result(undivided)
 
 
+@pytest.mark.slow
 def test_the_command_says_what_is_missing_and_ends_with_one(shards: Sequence[Path], tmp_path: Path):
     def said(*words: object) -> Result:
         return CliRunner().invoke(app, ["merge", *map(str, words), "--out", str(tmp_path / "whole")])
@@ -141,6 +146,7 @@ def test_a_part_that_was_merged_is_finished_as_a_run(undivided: Path, shards: Se
     assert _result(tmp_path) == _result(undivided)
 
 
+@pytest.mark.slow
 def test_shards_of_several_divisions_are_merged(undivided: Path, shards: Sequence[Path], tmp_path: Path):
     half = _play(tmp_path / "run", "2/2")
     part = merge_shards.merge_shards([shards[0], shards[1], half], tmp_path / "whole")

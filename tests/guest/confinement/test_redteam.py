@@ -40,6 +40,7 @@ def of(level: str, case: Case) -> dict[str, Any]:
     return next(one for one in played(level)["agents"] if one["name"] == case.name)  # type: ignore[no-any-return]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", HOSTILE, ids=lambda case: case.name)
 @pytest.mark.parametrize("level", ["L2", "L3"])
 def test_a_hostile_agent_comes_to_nothing(level: str, case: Case) -> None:
@@ -53,6 +54,7 @@ def test_a_hostile_agent_comes_to_nothing(level: str, case: Case) -> None:
     assert played(level)["intact"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", HONEST, ids=lambda case: case.name)
 @pytest.mark.parametrize("level", ["L1", "L2", "L3"])
 def test_an_honest_agent_passes(level: str, case: Case, tmp_path: Path) -> None:
@@ -79,6 +81,7 @@ def scored() -> dict[str, Any]:
     return json.loads(done.stdout)  # type: ignore[no-any-return]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("level", ["L2", "L3"])
 def test_a_hostile_agents_trial_is_scored_with_a_named_fault(level: str) -> None:
     found = scored()
@@ -97,6 +100,7 @@ def test_a_hostile_agents_trial_is_scored_with_a_named_fault(level: str) -> None
     assert found["intact"]
 
 
+@pytest.mark.slow
 def test_these_were_played_by_an_unprivileged_user() -> None:
     uid = played("L2")["uid"]
     if uid == 0:
@@ -131,6 +135,7 @@ class Agent:
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("level", ["L1", "L2", "L3"])
 def test_nothing_outlives_a_killed_host(level: str, tmp_path: Path) -> None:
     try:
@@ -195,6 +200,7 @@ class Agent:
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("level", ["L2", "L3"])
 def test_a_trial_leaves_nothing_to_the_next(level: str, tmp_path: Path) -> None:
     try:
@@ -230,6 +236,7 @@ class Agent:
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("level", ["L1", "L2", "L3"])
 def test_the_next_trial_finds_the_wire_as_it_was(level: str, tmp_path: Path) -> None:
     try:
@@ -268,6 +275,7 @@ print(os.listdir(foreign))
 """
 
 
+@pytest.mark.slow
 def test_what_is_cleared_up_ends_at_links() -> None:
     python, how = runner()
     with tempfile.TemporaryDirectory() as folder:

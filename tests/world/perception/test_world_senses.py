@@ -35,6 +35,7 @@ def seen(world: World, seat: str = "human"):
     return {detection.id: detection for detection in world.senses(seat).detections()}
 
 
+@pytest.mark.slow
 def test_detections_are_sorted_and_say_what_is_true(world: World) -> None:
     found = world.senses("human").detections()
     assert [detection.id for detection in found] == sorted(detection.id for detection in found)
