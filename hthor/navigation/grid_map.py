@@ -55,8 +55,8 @@ class GridMap:
 
         Args:
             scan: its bearings must increase.
-            look_m, look_rad: free cells within this distance [m] and within this angle [rad] of the heading count as
-                looked at from close by.
+            look_m: [m] distance within which free cells count as looked at from close by.
+            look_rad: [rad] angle from the heading within which they do.
         """
         origin, margin = scan.origin, scan.limit + 0.2
         self._cover(origin.x - margin, origin.y - margin, origin.x + margin, origin.y + margin)

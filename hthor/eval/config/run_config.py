@@ -66,7 +66,8 @@ class RunConfig(Struct, frozen=True, kw_only=True):
         title: the user's name for the run; it changes no trial, and runs that differ only in it are the same run.
         robots: every robot with its agent and detector; an agent that needs no robot is listed without a seat.
         agents: the files of every submitted agent.
-        kind: the task kind that the suite was narrowed to, None for all its tasks; ``kinds``: the kinds of the tasks.
+        kind: the task kind that the suite was narrowed to, None for all its tasks; ``kinds``: the kinds of the tasks,
+            which older runs do not have.
         trials: how many trials the whole run has.
         realtime: whether agents' thinking takes time of the trials.
         limit: how many tasks were chosen from the suite, if not all.
@@ -82,7 +83,7 @@ class RunConfig(Struct, frozen=True, kw_only=True):
     humans: HumanModelRef
     suite: SuiteRef
     kind: KindRef | None = None
-    kinds: tuple[str, ...]
+    kinds: tuple[str, ...] | msgspec.UnsetType = msgspec.UNSET
     seed: int
     participants: int
     trials: int

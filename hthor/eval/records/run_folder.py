@@ -112,7 +112,7 @@ class RunFolder:
             "code_sha256": (spec.code_sha256, config.code_sha256),
             "robots": (spec.robots, config.seats),
             "kind_sha256": (spec.kind_sha256, config.kind.sha256 if config.kind else ""),
-            "assets_sha256": (spec.assets_sha256, config.assets.sha256),
+            "assets_sha256": (spec.assets_sha256 or config.assets.sha256, config.assets.sha256),  # empty: no pictures
             "realtime": (bool(spec.realtime), bool(config.realtime)),
             "step_limit_s": (spec.step_limit_s, config.step_limit_s),
         }

@@ -31,10 +31,11 @@ _NEEDED = {
 class TrialRecord(Struct, frozen=True, kw_only=True):
     """A trial's specification, everything that happened in it, and its metrics; one line of `trials.jsonl`.
 
+    Fields that are not listed here are those of `hthor.episode.EpisodeLog`.
+
     Attributes:
         key: hash of ``spec``, see `key`.
         files: by seat, the agent's own files that it opened and that ``agents`` in `run.json` does not list.
-        All other fields are as in `hthor.episode.EpisodeLog`.
     """
 
     key: str

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import eval_fakes as fakes
 import msgspec
 import pytest
@@ -163,3 +165,11 @@ def test_the_stored_result_says_how_it_came_about(tmp_path):
     assert document["effort"]["trials"] == 20
     assert (tmp_path / "result.json").read_bytes() == jsonio.pretty(document)
     assert b"wall" not in (tmp_path / "trials.jsonl").read_bytes()
+
+
+def test_a_run_of_a_version_that_noted_no_kinds_is_still_read() -> None:
+    config, _ = fakes.run_of(4)
+    older = {name: value for name, value in json.loads(msgspec.json.encode(config)).items() if name != "kinds"}
+    known = msgspec.json.decode(json.dumps(older), type=type(config))
+    assert not known.kinds
+    assert msgspec.json.decode(msgspec.json.encode(known)) == older
