@@ -88,7 +88,7 @@ def _waits_for(row: Triplet) -> str:
 
 
 def _ring(graph: Mapping[str, Triplet], left: list[str]) -> list[str]:
-    """The targets of a ring, the first of ``left`` first; each target in ``left`` waits for another target in it."""
+    """Targets that wait for one another in a cycle; every target in ``left`` waits for another one in ``left``."""
     seen = [left[0]]
     while (following := _waits_for(graph[seen[-1]])) not in seen:
         seen.append(following)

@@ -45,7 +45,7 @@ def furnish_rooms(rooms: Sequence[RoomSpace], wants: Requirements, maker: ItemSt
 
 
 def _first(room: RoomSpace, options: Iterable[PieceGroup], dice: Dice) -> bool:
-    """Place the first of the groups that finds a place."""
+    """Place the first of these groups for which there is room."""
     return any(room.place(group, dice.of("try", number)) for number, group in enumerate(options))
 
 

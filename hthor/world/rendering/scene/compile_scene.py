@@ -114,7 +114,7 @@ class SceneBuilder:
                     self._wardrobe.geom(body, item.owner, item.mesh, item.material, item.group, None, *frame)
 
     def _body(self, seat: str, spec: BodySpec) -> None:
-        """Add a seat's figure on two puppets, the second for its head."""
+        """Add a seat's figure as two movable parts: its body and its head."""
         puppets = {"": self._puppet(), "head": self._puppet()}
         for moves, pieces in _by_joint(bodies.pieces(spec)).items():
             self._pieces(puppets[moves], seat, pieces, (spec, moves), _STILL)
