@@ -210,6 +210,7 @@ def test_processes_and_printing_do_not_count(sources: Sources, whole: str) -> No
         assert name not in sources.closure(ROOTS)
 
 
+@pytest.mark.slow
 def test_switching_an_import_counts(sources: Sources, whole: str) -> None:
     """Two modules that both count have something of the same name: taking it from the other is another program."""
     text = text_of(sources, "hthor.eval.metrics.definitions.success")

@@ -365,6 +365,7 @@ def test_words() -> None:
     assert sighting_text(apple, {"table": "dining_table"}) == "I found the apple on the dining table in front of me."
 
 
+@pytest.mark.slow
 def test_runs_are_repeated_exactly() -> None:
     ends = []
     for _ in range(2):
@@ -396,6 +397,7 @@ def test_the_template_overwrites_nothing_unasked(tmp_path: Path) -> None:
         agents.write_template(tmp_path / "mine.txt")
 
 
+@pytest.mark.slow
 def test_the_example_finds_the_apple(root: Path) -> None:
     path = root / "examples" / "sweeper.py"
     ((_, message),) = live(load(path)(), Flat(), 900)

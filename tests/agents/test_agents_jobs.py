@@ -218,6 +218,7 @@ def test_what_is_out_of_place_is_tidied_up() -> None:
     assert log.met
 
 
+@pytest.mark.slow
 def test_the_frontier_robot_carries_what_it_has_seen_to_where_it_has_seen() -> None:
     jobs = (Job(target="mug", relation="on", destinations=("bed",)),)
     made = task("tidying_up", (lying("mug", "mug", "desk"),), jobs)
@@ -354,6 +355,7 @@ def test_the_person_is_left_what_is_nearest_to_its_place_where_somebody_can_tell
     assert team.reserved(jobs, knowledge) == "", "with nobody to tell them, nothing is kept for the person"
 
 
+@pytest.mark.slow
 def test_points_to_put_things_on_lie_on_the_thing() -> None:
     table = thing("dining_table")
     points = resting_points(table, 0.1)
@@ -384,6 +386,7 @@ def test_the_closest_thing_is_the_one_with_the_shortest_way() -> None:
     assert len(chosen) > 2
 
 
+@pytest.mark.slow
 def test_the_closest_of_things_without_a_way_is_the_first_by_id() -> None:
     routes = HouseRoutes(houses.load(HOUSE), body("tall"))
     outside = [msgspec.structs.replace(thing("dining_table"), id=id, centre=(-50.0, 0.0, 0.4)) for id in ("b", "a")]

@@ -204,6 +204,7 @@ def test_known_noise_is_found_again(studied):
     assert 0.9 < design_effects.emulator_quality(rates, found).z_sd < 1.1
 
 
+@pytest.mark.slow
 def test_a_learnt_emulator_knows_how_far_it_is_off(learnt, studied):
     assert 0.9 < design_effects.emulator_quality(learnt.rates(studied[0]), studied[1]).z_sd < 1.1
 

@@ -87,6 +87,7 @@ def test_a_larger_table_goes_on_from_a_smaller_and_nothing_is_played_twice(train
     assert _train(folder, 2).ticks.tolist() == made.ticks[:4].tolist()
 
 
+@pytest.mark.slow
 def test_a_changed_world_is_refused(trained, monkeypatch):
     folder, _ = trained
     known = session_store.trials_identity(TINY)

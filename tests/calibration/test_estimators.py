@@ -300,6 +300,7 @@ def test_logs_are_read_from_folders_and_files_each_trial_once(
     assert trial_features.read_sessions([tmp_path / "some.jsonl", tmp_path / "run"]) == whole
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("damage", "words"),
     [
@@ -367,6 +368,7 @@ def test_logs_become_a_population_the_same_every_time(
     assert told.count("walking") == 2
 
 
+@pytest.mark.slow
 def test_a_log_without_a_journal_is_refused(played: tuple[Parameters, list[TrialRecord]], tmp_path: Path) -> None:
     bare = [msgspec.structs.replace(one, journal=()) for one in played[1]]
     (tmp_path / "trials.jsonl").write_bytes(b"".join(trial_record.encode(one) for one in bare))

@@ -390,6 +390,7 @@ def test_drawings_are_well_formed_and_in_the_colours_of_the_page() -> None:
     assert matplotlib_svg.DARK.keys() == matplotlib_svg.VARIABLES.keys()
 
 
+@pytest.mark.slow
 def test_the_page_shows_the_numbers_of_its_findings() -> None:
     text = rendered(True)
     for row in whole().table:

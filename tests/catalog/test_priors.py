@@ -167,6 +167,7 @@ def ranks(values: Sequence[float]) -> list[float]:
     ]
 
 
+@pytest.mark.slow
 def test_the_docs_state_what_the_data_say(root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COLUMNS", "120")
     text = (root / "docs/priors.md").read_text(encoding="utf-8")

@@ -73,6 +73,7 @@ def test_what_is_better_is_said_to_be_and_by_how_much(runs: Path):
     assert compare.compare_runs([runs / "leaning" / "better", runs / "leaning" / "alone"]).worse
 
 
+@pytest.mark.slow
 def test_a_comparison_is_the_mirror_of_its_mirror(runs: Path):
     one, other = (runs / "leaning" / name for name in ("alone", "better"))
     here, there = compare.compare_runs([one, other]).pairs[0], compare.compare_runs([other, one]).pairs[0]
@@ -114,6 +115,7 @@ def test_the_interval_and_p_say_the_same(outcomes: list[tuple[bool, bool]]):
     assert found.separated == (low > 0.0 or high < 0.0)
 
 
+@pytest.mark.slow
 def test_several_runs_are_compared_pair_by_pair(runs: Path):
     found = compare.compare_runs([runs / "helper", runs / "twin", runs / "helper"])
     assert [party.name for party in found.runs] == ["helper (helper) #1", "twin", "helper (helper) #3"]

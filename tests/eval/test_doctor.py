@@ -50,6 +50,7 @@ def test_the_first_level_starts_and_the_robot_sees(examined) -> None:
     assert found(health, "mujoco").status == "ok"
 
 
+@pytest.mark.slow
 def test_the_reference_is_that_of_this_code(examined) -> None:
     one = found(examined[0], "determinism")
     assert one.status == "ok", f"{one.says}: {STALE}"

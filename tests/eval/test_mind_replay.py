@@ -84,6 +84,7 @@ def test_the_stream_tells_what_the_log_has_and_more(heard: list[tuple[TrialRecor
     assert {"beliefs", "choice", "noticed", "aim", "trust", "weighed", "offer", "shown"} <= kinds
 
 
+@pytest.mark.slow
 def test_beliefs_and_chances_add_up(heard: list[tuple[TrialRecord, HumanTrace]]) -> None:
     seen = 0
     for _, stream in heard:
@@ -99,6 +100,7 @@ def test_beliefs_and_chances_add_up(heard: list[tuple[TrialRecord, HumanTrace]])
     assert seen
 
 
+@pytest.mark.slow
 def test_the_terms_of_an_answer_are_its_chance(heard: list[tuple[TrialRecord, HumanTrace]]) -> None:
     weighed = [event.data for _, stream in heard for event in stream.events if event.kind == "weighed"]
     assert weighed

@@ -74,6 +74,7 @@ def test_a_thousand_faults_fill_no_disk(tmp_path: Path):
     assert sum(path.stat().st_size for path in (tmp_path / "faults").iterdir()) < 8 << 20
 
 
+@pytest.mark.slow
 def test_a_report_travels_with_the_message_of_its_trial():
     """Two workers in one process, turn by turn: each report comes with its own trial, and is kept nowhere else."""
     _, dealt = fakes.run_of(20, name="clumsy")

@@ -250,6 +250,7 @@ def test_what_is_asked_for_is_told_without_importing_the_file(write: Write) -> N
     assert len(info.sha256) == 64
 
 
+@pytest.mark.slow
 def test_the_environment_is_small(write: Write, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SECRET_SALT", "pepper")
     with Guest(write(agent("print(sorted(os.environ)); return Action()"))) as guest:

@@ -250,6 +250,7 @@ def test_every_misdeed_of_a_program_is_a_fault(perl: Callable[..., str], act: st
         mind.begin(BRIEFING)
 
 
+@pytest.mark.slow
 def test_a_program_leaves_nothing_behind_where_it_may_fork(perl: Callable[..., str]) -> None:
     with Guest(perl("if (!fork) { setpgrp; sleep 600 }"), config=GuestConfig(isolation="L1")) as mind:
         mind.begin(BRIEFING)

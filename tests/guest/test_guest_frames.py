@@ -84,6 +84,7 @@ class Coloured(Sensors):
         return np.arange(-4, 4, dtype=np.int32).reshape(2, 4)
 
 
+@pytest.mark.slow
 def test_a_guest_sees_what_its_robot_sees_and_nothing_of_the_trial_before(tmp_path: Path) -> None:
     path = tmp_path / "my_agent.py"
     path.write_text(HEAD + "import numpy as np\n" + agent(ACT.strip()))

@@ -58,6 +58,7 @@ def test_the_newer_form_is_the_same_house():
     assert without_hash(built(newer)) == without_hash(built(lambda document: None))
 
 
+@pytest.mark.slow
 def test_the_newer_form_of_the_samples_is_the_same_house(samples: list[Path], tmp_path: Path):
     for path in samples[:3]:
         document = json.loads(path.read_bytes())

@@ -390,6 +390,7 @@ def test_overlap_of_rectangles(x: float, y: float, width: float, depth: float) -
     assert overlap_area(other, SQUARE) == pytest.approx(across * along, abs=1e-9)
 
 
+@pytest.mark.slow
 @given(st.floats(-math.pi, math.pi), coordinate, coordinate)
 def test_overlap_with_itself_is_the_area(yaw: float, x: float, y: float) -> None:
     shape: list[Vec2] = [(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)]

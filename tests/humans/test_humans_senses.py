@@ -341,6 +341,7 @@ def test_what_stays_in_view_is_not_forgotten_and_what_comes_back_must_be_noticed
         assert {("forgot", "apple"), ("forgot", "fridge|1")} <= set(kinds)
 
 
+@pytest.mark.slow
 def test_what_people_are_about_hold_or_head_for_is_not_forgotten():
     def about(looker):
         looker.eyes.current = looker.objects.known["apple"]

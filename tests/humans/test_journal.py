@@ -123,6 +123,7 @@ def test_every_deed_of_the_hands_was_an_attempt(played: list[TrialRecord]) -> No
     assert all(a.seconds >= rules.HANDLING_S for a in worked)
 
 
+@pytest.mark.slow
 def test_a_trial_stays_small(played: list[TrialRecord]) -> None:
     """A journal is a few kB, beside paths and events that are more."""
     import msgspec

@@ -265,6 +265,7 @@ def test_answers_are_read_strictly(reply, read):
     assert prompts.read_answer(reply) == read
 
 
+@pytest.mark.slow
 @given(st.text(max_size=300), st.integers(1, 30))
 def test_no_reply_breaks_the_reader(reply, count):
     found = prompts.read_choice(reply, situation(count))

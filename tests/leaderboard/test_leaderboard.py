@@ -83,6 +83,7 @@ def test_every_file_is_as_the_schema_says(whole: Path):
     assert publish.differences(whole) == []
 
 
+@pytest.mark.slow
 def test_the_boards_own_files_are_in_order(root: Path):
     assert [one.line for one in publish.differences(root / "leaderboard")] == []
 
@@ -118,6 +119,7 @@ def test_what_is_refused_leaves_the_board_as_it_was(runs: Path, tmp_path: Path):
     assert not (tmp_path / "board").exists()
 
 
+@pytest.mark.slow
 def test_a_board_that_is_not_there_is_not_in_order(whole: Path, tmp_path: Path):
     for look in (board_check.check_board, publish.build_board, publish.rescore):
         with pytest.raises(files.BoardError, match="not a folder"):
@@ -126,6 +128,7 @@ def test_a_board_that_is_not_there_is_not_in_order(whole: Path, tmp_path: Path):
         verify.verify_entry(whole, whole, replay.Request(word="chance"))
 
 
+@pytest.mark.slow
 def test_a_column_that_cannot_be_read_is_named_with_its_file(board: Path):
     path = files.entry_paths(board)[0]
     held = json.loads(path.read_bytes())

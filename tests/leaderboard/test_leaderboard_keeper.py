@@ -85,6 +85,7 @@ def test_an_agent_that_fell_on_fresh_tasks_has_no_rank_and_the_board_shows_both_
         assert row.verification.fresh == found
 
 
+@pytest.mark.slow
 def test_clones_do_not_move_the_ranks_of_others(whole: Path):
     """Forty copies of an agent under other names, with a comment in their code, by other teams."""
     entries, taken = entries_of(whole), admission.load_admission(whole)
@@ -112,6 +113,7 @@ def best_named(entry: Entry, name: str, number: int) -> Entry:
     )
 
 
+@pytest.mark.slow
 def test_what_one_agent_is(whole: Path):
     helper, clumsy = (next(one for one in entries_of(whole) if one.agent.name == name) for name in ("helper", "clumsy"))
     held = {one.id: trial_outcomes.unpack(one.trials) for one in (helper, clumsy)}

@@ -84,6 +84,7 @@ def test_every_text_of_a_board_is_escaped(whole: Path):
     }
 
 
+@pytest.mark.slow
 def test_drawings_are_whole_and_sections_counted(whole: Path):
     """An element of a drawing that is not closed has the next ones within it, and a browser shows none of them."""
     everything = boards(whole)
@@ -97,6 +98,7 @@ def test_drawings_are_whole_and_sections_counted(whole: Path):
         assert numbers == list(range(1, len(numbers) + 1))
 
 
+@pytest.mark.slow
 def test_labels_that_are_not_the_same_in_all_entries_do_not_stop_the_page(whole: Path):
     found = boards(whole)
     (section,) = found.sections

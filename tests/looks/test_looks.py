@@ -203,6 +203,7 @@ CLOSED = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("shape", CLOSED)
 def test_solids_are_closed_and_face_outward(shape: str) -> None:
     mesh, expected = CLOSED[shape]

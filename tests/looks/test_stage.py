@@ -225,6 +225,7 @@ def test_bodies_are_seen_by_others_only(drawn: World) -> None:
     assert human in drawn.picture("robot", "segmentation")
 
 
+@pytest.mark.slow
 def test_what_opens_and_what_is_carried_is_drawn_so(drawn: World) -> None:
     drawn.teleport(HUMAN, AT_THE_FRIDGE)
     closed = drawn.picture(HUMAN, "depth")
@@ -239,6 +240,7 @@ def test_what_opens_and_what_is_carried_is_drawn_so(drawn: World) -> None:
     assert (drawn.picture(HUMAN, "segmentation") == drawn.names.index("apple")).sum() > 20
 
 
+@pytest.mark.slow
 def test_the_plan_is_to_scale(drawn: World) -> None:
     x0, y0, x1, y1 = drawn.top_view_bounds
     image = drawn.top_view(pixels_per_metre=40.0)

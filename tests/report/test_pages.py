@@ -79,6 +79,7 @@ def test_the_page_needs_nothing_else(written: tuple[Findings, Path]) -> None:
     assert set(re.findall(r"url\(#([^)]+)\)", text)) | set(re.findall(r'href="#([^"]+)"', text)) <= set(ids)
 
 
+@pytest.mark.slow
 def test_every_figure_says_what_it_shows_and_stands_alone(written: tuple[Findings, Path]) -> None:
     text = (written[1] / "report.html").read_text()
     files = sorted((written[1] / "figures").glob("*.svg"))
@@ -92,6 +93,7 @@ def test_every_figure_says_what_it_shows_and_stands_alone(written: tuple[Finding
         assert re.findall(r'https?://[^"]*', path.read_text()) == ["http://www.w3.org/2000/svg"]
 
 
+@pytest.mark.slow
 def test_the_numbers_are_those_of_the_trials(written: tuple[Findings, Path], folders: list[Path]) -> None:
     found = written[0]
     alone, helper, clumsy = load_runs.load_runs(folders)

@@ -100,6 +100,7 @@ def test_what_cannot_be_done_is_drawn_again_with_another_goal_in_the_end():
         )
 
 
+@pytest.mark.slow
 def test_a_suite_brings_its_houses_and_what_they_need(suite: Path, made: tuple[TaskSpec, ...], home: Path):
     names = sorted(path.name for path in suite.with_suffix(".houses").iterdir())
     assert names == [DATABASE, "my home.json"]
@@ -111,6 +112,7 @@ def test_a_suite_brings_its_houses_and_what_they_need(suite: Path, made: tuple[T
     assert set(library.house_files(suite)) == set(names)
 
 
+@pytest.mark.slow
 def test_a_folder_does_as_well(home: Path, made: tuple[TaskSpec, ...], tmp_path: Path):
     files = suite_files.make_files("mine", custom_suite.VERSION, suite_files.find_sources([str(home)]), [made])
     out = suite_files.write_files(tmp_path / "mine", files)
@@ -161,11 +163,13 @@ def test_the_check_lists_every_task(suite: Path, monkeypatch: pytest.MonkeyPatch
     assert "tasks, 3 unsound" in said.err
 
 
+@pytest.mark.slow
 def test_one_fault_is_told_as_it_is(suite: Path):
     with pytest.raises(TaskError, match=r"mine\.json: tasks\[1\]\.objects\[0\]\.position: .* rests on no surface"):
         task_selection.checked_suite(str(broken(suite, 1)))
 
 
+@pytest.mark.slow
 def test_that_a_suite_is_sound_is_remembered_until_it_changes(suite: Path, monkeypatch: pytest.MonkeyPatch):
     looked: list[str] = []
     monkeypatch.setattr(task_selection, "validate", lambda found, file: looked.append(file))

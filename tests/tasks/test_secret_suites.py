@@ -184,6 +184,7 @@ def test_its_tasks_are_sound_and_in_houses_of_its_own(files, folder: Path):
     assert library.house_files("smoke") == {}
 
 
+@pytest.mark.slow
 def test_nothing_that_is_written_tells_the_salt_or_a_root(folder: Path):
     roots = [root for lot in secret_suites.house_orders(ORDER, SALT) for pair in lot.roots for root in pair]
     secret = [TEXT, TEXT[:16], TEXT[-16:]]
@@ -206,6 +207,7 @@ def test_what_is_learned_of_public_suites_by_heart_finds_nothing_in_it(folder: P
     assert {marks(task) for task in public}.isdisjoint(marks(task) for task in tasks.load_suite(folder).tasks)
 
 
+@pytest.mark.slow
 def test_starts_lie_on_the_grid_so_that_no_digit_tells_how_they_were_drawn(folder: Path):
     for task in tasks.load_suite(folder).tasks:
         for pose in (task.human_start, *task.robot_starts):

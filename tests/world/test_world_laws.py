@@ -174,6 +174,7 @@ def test_what_is_placed_stays(kind, thing, u, v, yaw) -> None:
     assert one.still
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("thing", [FRIDGE, *STORES])
 def test_what_is_closed_hides_its_content_from_every_sensor(thing: str) -> None:
     one = world()
@@ -203,6 +204,7 @@ def test_what_is_closed_hides_its_content_from_every_sensor(thing: str) -> None:
     assert looks >= 3
 
 
+@pytest.mark.slow
 def test_a_hand_s_refusals_name_the_reason() -> None:
     one = fresh()
     one.put_object("my apple", (2.5, 2.6, 0.79))
@@ -219,6 +221,7 @@ def test_a_hand_s_refusals_name_the_reason() -> None:
     assert reason(heavy, "robot", Pick(object="anvil")).startswith("dumbbell weighs 4.0 kg; ")
 
 
+@pytest.mark.slow
 def test_dropping_falls_settles_and_collides_again() -> None:
     one = fresh()
     one.put_object("my book", on=TABLE, position=(2.5, 2.8, 0.0))

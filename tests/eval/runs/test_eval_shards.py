@@ -140,6 +140,7 @@ def test_the_command_says_what_is_missing_and_ends_with_one(shards: Sequence[Pat
     assert json.loads(whole.stdout)["gaps"] == []
 
 
+@pytest.mark.slow
 def test_a_part_that_was_merged_is_finished_as_a_run(undivided: Path, shards: Sequence[Path], tmp_path: Path):
     merge_shards.merge_shards(shards[:3], tmp_path)
     _play(tmp_path)
@@ -158,6 +159,7 @@ def test_shards_of_several_divisions_are_merged(undivided: Path, shards: Sequenc
     assert _result(tmp_path / "whole") == _result(undivided)
 
 
+@pytest.mark.slow
 def test_shards_of_other_runs_are_told_apart(undivided: Path, shards: Sequence[Path], tmp_path: Path):
     other = _play(tmp_path / "other", "2/4", seed=1)
     with pytest.raises(RunError, match=r"other-shard-2-of-4 is a shard of another run than .*: seed is 0 there and 1"):

@@ -201,6 +201,7 @@ def test_no_command_changes_what_stays_with_a_file_or_a_terminal(driven: bool, c
         assert answer == NO_TERMINAL
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(st.binary(min_size=24, max_size=24), st.integers(0, 191))
 def test_a_program_is_started_by_a_word_and_by_no_other(word: bytes, bit: int) -> None:

@@ -67,6 +67,7 @@ def test_objects_are_missed_as_often_as_declared_and_nothing_else_is(worlds: dic
     assert within(missed, 0.3)
 
 
+@pytest.mark.slow
 def test_false_alarms_are_as_many_as_declared_and_each_could_be_true(worlds: dict[str, World]) -> None:
     world, alarms = worlds["lies"], 0
     for report in glimpses(world):
@@ -85,6 +86,7 @@ def test_false_alarms_are_as_many_as_declared_and_each_could_be_true(worlds: dic
     assert within(alarms, 0.25)
 
 
+@pytest.mark.slow
 def test_positions_are_off_by_what_is_declared(worlds: dict[str, World]) -> None:
     true = (2.5, 2.6, 0.78)
     off = [

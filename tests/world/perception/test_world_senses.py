@@ -48,6 +48,7 @@ def test_detections_are_sorted_and_say_what_is_true(world: World) -> None:
     assert seen(world)[FRIDGE].state == "closed"
 
 
+@pytest.mark.slow
 def test_walls_hide_and_doorways_show(world: World) -> None:
     assert "lettuce" not in seen(world)  # behind the back
     world.teleport("human", Pose(x=4.0, y=3.4))
