@@ -57,7 +57,7 @@ def filled(command: str, folder: Path) -> str:
     played = sorted((path.parent for path in folder.glob("runs/*smoke*/run.json")), key=lambda run: run.name)
     mine = [str(run.relative_to(folder)) for run in played if run.name.startswith(("frontier", "oracle"))]
     first, second = mine[0], mine[-1]
-    task = (ROOT / "hthor/tasks/suites/smoke.json").read_text().partition('"id":')[2].split('"')[1]
+    task = next(ROOT.glob("hthor/tasks/**/smoke.json")).read_text().partition('"id":')[2].split('"')[1]
     several = command.replace("RUN...", f"{first} {second}").replace("RUN RUN", f"{first} {second}")
     return re.sub(r"\bTASK\b", task, re.sub(r"\bTRIAL\b", "0", re.sub(r"\bRUN\b", first, several)))
 
