@@ -101,7 +101,7 @@ def shares(utility: np.ndarray, there: np.ndarray) -> np.ndarray:
 
 
 def fit_answer(values: np.ndarray, said: np.ndarray) -> np.ndarray:
-    """Weights (F,) of the logit of confirming."""
+    """Weights (F,) of the logit of accepting."""
     weights = np.zeros(values.shape[1])
     for _ in range(STEPS):
         chance = 1.0 / (1.0 + np.exp(-np.clip(values @ weights, -30.0, 30.0)))
@@ -157,8 +157,8 @@ def judge_choices(test: Decisions, weights: np.ndarray) -> dict[str, dict[str, f
 
 
 def judge_answers(test: Decisions, weights: np.ndarray, rate: float) -> dict[str, dict[str, float]]:
-    """The clone beside the mean rate of confirming."""
-    said = [int(offer["answer"] == "confirm") for offer in test.offers]
+    """The clone beside the mean rate of accepting."""
+    said = [int(offer["answer"] == "accept") for offer in test.offers]
     chance = [clone.logistic(clone.dot(weights, clone.reasons(offer))) for offer in test.offers]
     pairs = {"clone": chance, "mean_rate": [rate] * len(said)}
     return {name: judge([np.array([1.0 - p, p]) for p in some], said) for name, some in pairs.items()}
@@ -168,9 +168,9 @@ def learn_from(runs: Sequence[Path]) -> dict[str, Any]:
     """The document that `cloned_person.py` loads: weights, and how they did on the people held out."""
     learn, test = read(runs)
     choice = fit_choice(*table(learn))
-    said = np.array([float(offer["answer"] == "confirm") for offer in learn.offers])
+    said = np.array([float(offer["answer"] == "accept") for offer in learn.offers])
     answer = fit_answer(np.array([clone.reasons(offer) for offer in learn.offers]), said)
-    quiet = [offer["answer"] == "ignore" for offer in learn.offers if offer["answer"] != "confirm"]
+    quiet = [offer["answer"] == "ignore" for offer in learn.offers if offer["answer"] != "accept"]
     return {
         "schema": clone.SCHEMA,
         "choice": [round(float(weight), 6) for weight in choice],

@@ -56,10 +56,10 @@ class Clone:
         return best
 
     def answer(self, offer: Offer) -> Answer:
-        """A logit of confirming; what is not confirmed is left alone as often as in the logs."""
+        """A logit of accepting; what is not accepted is left alone as often as in the logs."""
         chance = logistic(dot(self.weights["answer"], reasons(as_recorded(offer))))
-        if seeds.draw(self.root, "confirm", offer.number) < chance:
-            return "confirm"
+        if seeds.draw(self.root, "accept", offer.number) < chance:
+            return "accept"
         return "ignore" if seeds.draw(self.root, "ignore", offer.number) < self.weights["ignored"] else "decline"
 
 

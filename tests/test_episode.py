@@ -73,10 +73,10 @@ def test_all_seats_see_the_same_moment() -> None:
     robot = Mind(lambda now: Action(say=Send(text="here", object="apple") if now.tick == 3 else None))
     log = run(Stage(seen=9), human, robot)
     life = {event.kind: event.tick for event in log.events}
-    assert (life["sent"], life["shown"], life["confirmed"]) == (3, 4, 4)
+    assert (life["sent"], life["shown"], life["accepted"]) == (3, 4, 4)
     statuses = [(seen.tick, seen.receipt.status) for seen in robot.observed if seen.receipt]
     assert statuses[0] == (4, "sent")
-    assert (5, "confirmed") in statuses
+    assert (5, "accepted") in statuses
 
 
 def test_no_picture_is_taken_that_nobody_looks_at() -> None:

@@ -1,6 +1,6 @@
 """The mailbox of a trial: robots send messages, the person accepts or declines them.
 
-A message is first "sent", then "shown" to the person, and ends as "confirmed" (accepted), "declined" or "covered"; a
+A message is first "sent", then "shown" to the person, and ends as "accepted" (accepted), "declined" or "covered"; a
 message that is never answered stays sent or shown. At most one message is open: a new one, from any robot, covers it.
 """
 
@@ -77,11 +77,11 @@ class Mailbox:
         return (self._set_status(tick, number, "shown", HUMAN),)
 
     def reply(self, tick: int, seat: str, reply: Reply) -> tuple[Event, ...]:
-        """Record the person's answer: "confirmed" (accepted) or "declined"; or "refused", with a reason."""
+        """Record the person's answer: "accepted" (accepted) or "declined"; or "refused", with a reason."""
         reason = self._reply_refusal(seat, reply)
         if reason:
             return (self._refused(tick, seat, reason, message=reply.message),)
-        return (self._set_status(tick, reply.message, "confirmed" if reply.accept else "declined", seat),)
+        return (self._set_status(tick, reply.message, "accepted" if reply.accept else "declined", seat),)
 
     def receipt(self, seat: str) -> Receipt | None:
         """The status of this robot's last message, None before its first. Reading it resets `changed`."""

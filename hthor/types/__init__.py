@@ -5,9 +5,24 @@ y forward, z up). A body's ``yaw`` is its heading, counter-clockwise from +x. A 
 frame* (origin at the centre of its bounding box, front towards +y) counter-clockwise about z.
 """
 
-from hthor.types.actions import Action, Close, Drop, Motion, Move, Open, Pick, Place, Reply, Rotate, Send, Wait
+from hthor.types.actions import Action, Close, Drive, Drop, Motion, Move, Open, Pick, Place, Reply, Rotate, Send, Wait
 from hthor.types.events import Event, Mind, Snapshot
-from hthor.types.house import HUMAN, HouseSpec, Joint, Opening, Part, Pose, Rgba, Room, Surface, Thing, Vec2, Vec3, Wall
+from hthor.types.house import (
+    HUMAN,
+    HouseSpec,
+    Joint,
+    Opening,
+    Part,
+    Pose,
+    Rgba,
+    Room,
+    Surface,
+    Thing,
+    Vec2,
+    Vec3,
+    Wall,
+    is_person,
+)
 from hthor.types.observations import Briefing, Message, Observation, Outcome, Receipt, Status, ThingState
 from hthor.types.sensors import Camera, CameraSpec, Detection, DetectorSpec, Scan, Senses, Sighting, View
 from hthor.types.specs import AgentRef, BodySpec, Goal, Job, Placement, RobotSeat, RobotSpec, TaskSpec, TrialSpec
@@ -23,6 +38,7 @@ __all__ = [
     "Close",
     "Detection",
     "DetectorSpec",
+    "Drive",
     "Drop",
     "Event",
     "Goal",
@@ -65,4 +81,5 @@ __all__ = [
     "View",
     "Wait",
     "Wall",
+    "is_person",
 ]

@@ -58,23 +58,51 @@ class Wait(Struct, tag="wait", frozen=True, kw_only=True):
     seconds: float = 0.1
 
 
-Motion = Move | Rotate | Pick | Place | Drop | Open | Close | Wait
+class Drive(Struct, tag="drive", frozen=True, kw_only=True):
+    """Keep going at this velocity, and hold the head like this, until another motion replaces it.
+
+    It never ends by itself and is never refused: a velocity beyond the body's speed is shortened to it, and a number
+    that is not finite counts as 0. In every step of `rules.SUBTICKS` to a tick the body moves as far as the house and
+    other bodies let it, sliding along what it meets, as in a `Move`. A person's head points where ``yaw`` and ``pitch``
+    say at once, and the body turns after it at its turn rate; a robot, which has no neck, turns at its turn rate and
+    tilts its camera within its limit. While the hands are busy, only the head moves.
+
+    Attributes:
+        forward, left: [m/s] velocity, in the frame of ``yaw``.
+        yaw: [rad] heading of the head, house frame, counter-clockwise from +x. pitch: [rad] up positive.
+    """
+
+    forward: float = 0.0
+    left: float = 0.0
+    yaw: float = 0.0
+    pitch: float = 0.0
+
+
+Motion = Move | Rotate | Pick | Place | Drop | Open | Close | Wait | Drive
 
 
 class Send(Struct, tag="send", frozen=True, kw_only=True):
-    """A robot's message to the person: ``text`` and a picture of what the sender sees now.
+    """A message: text, and from a robot a picture of what it sees now.
 
-    ``object`` is the id or kind of the thing that the message is about; ``position`` [m], house frame, is where the
-    sender believes that thing to be.
+    Attributes:
+        text: its words.
+        object: the id or kind of the thing that the message is about, empty for none.
+        position: [m], house frame, where the sender believes that thing to be.
+        to: the seat that it is for; empty for all people from a robot, and for everybody else from a person.
+        question: whether it asks for an answer: yes or no (`Reply`), or a message with ``answers``.
+        answers: the number of the question that it answers.
     """
 
     text: str
     object: str = ""
     position: Vec3 | None = None
+    to: str = ""
+    question: bool = False
+    answers: int | None = None
 
 
 class Reply(Struct, tag="reply", frozen=True, kw_only=True):
-    """The person's answer to message number ``message``: accept it or decline it."""
+    """A person's answer to message number ``message``: accept or decline it; for a question, yes or no."""
 
     message: int
     accept: bool

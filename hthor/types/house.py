@@ -2,23 +2,40 @@
 
 from typing import Literal
 
-from msgspec import Struct
+from msgspec import UNSET, Struct, UnsetType
 
 Vec2 = tuple[float, float]
 Vec3 = tuple[float, float, float]
 Rgba = tuple[float, float, float, float]
 
 HUMAN = "human"
-"""The person's seat. Robots sit at ``robot``, ``robot2``, ``robot3`` ..."""
+"""The first person's seat; other people sit at ``human2``, ``human3`` ..., robots at ``robot``, ``robot2`` ..."""
+
+
+def is_person(seat: str) -> bool:
+    """Whether a person sits at this seat."""
+    return seat.startswith(HUMAN)
 
 
 class Pose(Struct, frozen=True, kw_only=True):
-    """A body's ``x``, ``y`` [m] and heading ``yaw`` [rad], house frame; its camera's ``pitch`` [rad], up positive."""
+    """A body's place and heading in the house frame, and where its head points.
+
+    Attributes:
+        x, y: [m]. yaw: [rad] the body's heading, counter-clockwise from +x.
+        pitch: [rad] of the camera, up positive.
+        head: [rad] heading of the head relative to the body, left positive; unset while both point the same way.
+    """
 
     x: float
     y: float
     yaw: float = 0.0
     pitch: float = 0.0
+    head: float | UnsetType = UNSET
+
+    @property
+    def gaze(self) -> float:
+        """Heading of the camera [rad], house frame."""
+        return self.yaw if self.head is UNSET else self.yaw + self.head
 
 
 class Part(Struct, frozen=True, kw_only=True):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from msgspec import Struct
 
-from hthor.types.house import HouseSpec, Pose, Vec3
+from hthor.types.house import HUMAN, HouseSpec, Pose, Vec3
 from hthor.types.sensors import Camera, DepthImage, Detection, LabelImage, RgbImage, Scan, Senses
 from hthor.types.specs import RELATIONS, BodySpec, Job
 
@@ -17,18 +17,20 @@ if TYPE_CHECKING:
 else:  # an observation is sent to an agent's process without its senses and images, which that process requests
     ImageSource = SeatSenses = Any
 
-Status = Literal["sent", "shown", "confirmed", "declined", "covered"]
+Status = Literal["sent", "shown", "accepted", "declined", "covered", "answered"]
 
 
 class Message(Struct, frozen=True, kw_only=True):
-    """An image-text message from a robot to the person.
+    """A message: from a robot to people, from a person to robots or other people.
 
     Attributes:
-        id: number of the message in its trial, from 0. sender: the robot's seat. tick: when it was sent.
+        id: number of the message in its trial, from 0. sender: its seat. tick: when it was sent.
         text: its words, on one line, at most `rules.TEXT_MAX` characters.
         object: id or kind of the thing that the message is about, empty for none.
         position: [m], house frame, where the sender believes ``object`` to be.
-        image: when called, renders what the sender saw at the tick of sending, (H, W, 3) uint8; None without a picture.
+        image: when called, renders what a robot saw at the tick of sending, (H, W, 3) uint8; None without a picture.
+        to: the seat that it is for, empty if it is for everybody, as `Send.to` says.
+        question: whether it asks for an answer. answers: the number of the question that it answers.
     """
 
     id: int
@@ -38,18 +40,27 @@ class Message(Struct, frozen=True, kw_only=True):
     object: str = ""
     position: Vec3 | None = None
     image: ImageSource = None
+    to: str = ""
+    question: bool = False
+    answers: int | None = None
 
 
 class Receipt(Struct, frozen=True, kw_only=True):
-    """The status of a robot's last message: ``message`` is its number, ``tick`` is when this status began.
+    """The status of a seat's last message, for one of those that it is for.
 
-    A message is "sent", then "shown" to the person. Its last status is "confirmed" (accepted), "declined", or "covered"
-    (replaced by a newer message).
+    A message is "sent", then "shown". Its last status is "accepted", "declined", "answered" (a question: ``yes`` says
+    how, unless the answer is a message of its own), or "covered" (replaced by a newer message).
+
+    Attributes:
+        message: its number. status: its status; tick: when this status began. by: the seat that it is for.
+        yes: the answer to a question, None while there is none.
     """
 
     message: int
     status: Status
     tick: int
+    by: str = HUMAN
+    yes: bool | None = None
 
 
 class Outcome(Struct, frozen=True, kw_only=True):
@@ -90,7 +101,8 @@ class Observation(Struct, frozen=True, kw_only=True):
         room: id of the room that the body is in; between rooms, of the room that it was in last.
         holding: id of the object that the body has in hand or holds by a handle; empty for none.
         outcome: how the last motion ended; None before any motion has ended.
-        inbox: the open message, for the person only. receipt: the status of the robot's last message.
+        inbox: a person's open message, at most one; a robot's new messages and its open questions.
+        receipt: the status of the seat's last message, the latest change first known; None before its first message.
         truth: true states of all objects, only for agents that declare the privilege ``object_poses``.
     """
 

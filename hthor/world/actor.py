@@ -264,7 +264,7 @@ class Actor:
         self._post(self._world.mail.reply(self._world.tick, self.seat, Reply(message=message, accept=accept)))
 
     def receipt(self) -> Receipt | None:
-        """The status of this robot's last message: sent, shown, confirmed, declined or covered; None before any."""
+        """The status of this robot's last message: sent, shown, accepted, declined or covered; None before any."""
         return self._world.mail.receipt(self.seat)
 
     def _post(self, events: Iterable[Event]) -> None:

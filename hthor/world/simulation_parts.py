@@ -7,6 +7,7 @@ from hthor.types import (
     BodySpec,
     Close,
     DetectorSpec,
+    Drive,
     Drop,
     HouseSpec,
     Motion,
@@ -69,6 +70,7 @@ class ActionDispatch:
             return locomotion.RotateMotion(seat, action)
         if isinstance(action, Wait):
             return locomotion.WaitMotion(action)
+        assert not isinstance(action, Drive), "refused before"
         return HandMotion(seat, action, self._manipulation)
 
     def _culprit(self, seat: BodyState, step: Vec2) -> str:

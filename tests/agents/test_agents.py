@@ -350,7 +350,7 @@ def test_offers_wait_ten_seconds() -> None:
     declined = Receipt(message=0, status="declined", tick=5)
     assert not offers.due(104, declined)
     assert offers.due(105, declined)
-    assert not offers.due(500, Receipt(message=0, status="confirmed", tick=5))
+    assert not offers.due(500, Receipt(message=0, status="accepted", tick=5))
     offers.note(105)
     assert not offers.due(500, declined)
 

@@ -63,8 +63,8 @@ def test_a_session_is_one_persons_trials_in_each_condition_in_turn(trained):
     assert (made.messages[alone] == 0).all()
     assert (made.ticks[~made.met] == 900).all()
     assert (made.picked[made.met] >= 0).all()
-    assert ((made.confirmed >= 0) == made.adopted).all()
-    assert (made.shown[made.adopted] <= made.confirmed[made.adopted]).all()
+    assert ((made.accepted >= 0) == made.adopted).all()
+    assert (made.shown[made.adopted] <= made.accepted[made.adopted]).all()
 
 
 @pytest.mark.slow

@@ -146,7 +146,7 @@ def test_answers_tell_willingness_and_what_sways_it(rng: np.random.Generator) ->
         gain, load, again = float(rng.exponential(10.0)), float(rng.random() < 0.3), float(rng.integers(0, 3))
         logit = 0.5 + own[who] + 4.0 * (level - 0.5) + 0.5 * math.log1p(gain) - 1.5 * load - 0.5 * again
         said = bool(rng.random() < 1.0 / (1.0 + math.exp(-logit)))
-        offers.append(Offer(gain=gain, load=load, again=again, confirmed=said))
+        offers.append(Offer(gain=gain, load=load, again=again, accepted=said))
     fit = trust_model.fit_acceptance(offers, trust, person, BELIEFS)
     for name, truth in (("a0", 0.5), ("a_trust", 4.0), ("a_gain", 0.5), ("a_load", 1.5), ("a_again", 0.5)):
         assert abs(fit.value[name] - truth) < 3.0 * fit.se[name], name

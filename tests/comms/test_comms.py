@@ -15,7 +15,7 @@ from hthor.comms import mailbox
 from hthor.comms.mailbox import Mailbox
 from hthor.types import HUMAN, Reply, Send
 
-RANK = {"sent": 0, "shown": 1, "confirmed": 2, "declined": 2, "covered": 2}
+RANK = {"sent": 0, "shown": 1, "accepted": 2, "declined": 2, "covered": 2}
 ROBOTS = ("robot", "robot2")
 
 
@@ -31,9 +31,9 @@ def test_a_message_lives_as_sent_shown_confirmed():
     assert (message.id, message.tick, message.sender, message.position) == (0, 3, "robot", (1.0, 2.0, 3.0))
     assert kinds(box.shown(4)) == ["shown"]
     assert box.shown(5) == ()
-    assert kinds(box.reply(9, HUMAN, Reply(message=0, accept=True))) == ["confirmed"]
+    assert kinds(box.reply(9, HUMAN, Reply(message=0, accept=True))) == ["accepted"]
     assert box.inbox(HUMAN) == ()
-    assert (box.receipt("robot").status, box.receipt("robot").tick) == ("confirmed", 9)
+    assert (box.receipt("robot").status, box.receipt("robot").tick) == ("accepted", 9)
 
 
 def test_any_robot_covers_the_open_message_and_the_covered_one_cannot_be_answered():
@@ -179,7 +179,7 @@ def test_laws_of_every_history(history):
         else:
             events = box.reply(tick, HUMAN, Reply(message=a, accept=b))
         jsonio.canonical(events)
-        ends += [event.data["message"] for event in events if event.kind in ("confirmed", "declined", "covered")]
+        ends += [event.data["message"] for event in events if event.kind in ("accepted", "declined", "covered")]
         after = {message.id: receipt.status for message, receipt in box.messages}
         assert sum(status in ("sent", "shown") for status in after.values()) <= 1
         assert len(box.inbox(HUMAN)) == sum(status in ("sent", "shown") for status in after.values())

@@ -36,9 +36,9 @@ def test_turning_is_standing_and_driving_is_not():
     assert longest_on_one_spot_s(log(driving[:50] + [driving[50]] * 100), "robot") == pytest.approx(19.8, abs=0.5)
 
 
-def test_after_a_confirmed_message_it_may_wait():
+def test_after_a_accepted_message_it_may_wait():
     path = [(100 * step, 2000, 0) for step in range(50)] + [(5000, 2000, 0)] * 100
-    assert longest_on_one_spot_s(log(path, answered("confirmed", 100)), "robot") < 1.0
+    assert longest_on_one_spot_s(log(path, answered("accepted", 100)), "robot") < 1.0
 
 
 def test_the_same_again_is_a_repetition_unless_it_was_declined():

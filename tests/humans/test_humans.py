@@ -158,7 +158,7 @@ def test_waits_for_a_robot_and_goes_on_when_it_left():
 
 
 def believed(position, support="Fridge|1", until=None, ticks=900):
-    """A person who confirms a message of tick 25; tries people until one does."""
+    """A person who accepts a message of tick 25; tries people until one does."""
     for person in range(9):
         flat = Flat(support)
         known = []
@@ -177,11 +177,11 @@ def believed(position, support="Fridge|1", until=None, ticks=900):
             known[:] = [reply for _, reply in said]
         if said and said[0][1].accept:
             return model, flat, said
-    raise AssertionError("nobody confirmed")
+    raise AssertionError("nobody accepted")
 
 
 @pytest.mark.slow
-def test_goes_where_a_confirmed_message_says():
+def test_goes_where_a_accepted_message_says():
     model, flat, _ = believed(Flat("Bed|1").apple, "Bed|1", until=Flat.found)
     assert flat.found()
     before = model.trust.mean

@@ -154,7 +154,7 @@ def test_looks_into_the_fridge_when_asked(world):
     task = suite_task("collect", time_limit=240.0)
     for participant in range(6):
         log, _, model = run(world, task, participant, Scripted(ask))
-        if events(log, "confirmed"):
+        if events(log, "accepted"):
             break
     opened = [event.data["thing"] for event in events(log, "opened")]
     assert fridge.id in opened

@@ -203,8 +203,8 @@ def test_both_ends_play_every_kind_of_task(suite):
             done = trial_runner._run_trial(stage.world(one.trials[0]), company, one.trials[0])
         assert done.met or done.ticks == round(task.time_limit / rules.TICK_S)
         assert not done.faults
-        answers = {event.kind for event in done.events if event.kind in ("confirmed", "declined")}
-        assert answers <= ({"confirmed"} if made is greedy.Model else {"declined"})
+        answers = {event.kind for event in done.events if event.kind in ("accepted", "declined")}
+        assert answers <= ({"accepted"} if made is greedy.Model else {"declined"})
 
 
 def test_greedy_people_are_all_the_same_and_ratings_do_not_move():
@@ -238,7 +238,7 @@ def test_greedy_people_notice_within_three_metres_and_never_beyond():
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("made", "answers"), [(greedy.Model, {True}), (random.Model, {False})])
-def test_the_ends_always_and_never_confirm(made, answers):
+def test_the_ends_always_and_never_accept(made, answers):
     for participant in range(2):
         person, flat = made(Participant(seed=2, number=participant, traits=QUICK)), Flat("Fridge|1")
         person.begin(flat.briefing(teammates=("robot",)))
@@ -291,7 +291,7 @@ def paths(done):
 
 
 def deeds(done):
-    kinds = ("picked", "placed", "opened", "confirmed", "declined", "success")
+    kinds = ("picked", "placed", "opened", "accepted", "declined", "success")
     return [
         (event.tick, event.kind, event.data) for event in done.events if event.seat == "human" and event.kind in kinds
     ]
@@ -306,7 +306,7 @@ def test_a_replay_does_the_same_whatever_the_robot_says(robot, world, log):
         done = umpire.run_episode(one.spec, world, person, {"robot": Teller(*says)})
         assert paths(done) == one.paths["human"]
         wanted = [(e.tick, e.kind, e.data) for e in one.events if e.seat == "human"]
-        answered = {"confirmed", "shown"} if robot == "silent" else set()
+        answered = {"accepted", "shown"} if robot == "silent" else set()
         assert [deed for deed in wanted if deed[1] not in answered | {"shown"}] == deeds(done)
         assert done.trust == one.trust
         assert done.met
@@ -317,8 +317,8 @@ def test_a_replay_answers_what_is_shown_when_the_logged_person_answered(world, l
     (tick, accept), *_ = one.answers()
     says = (Send(text="Look here.", object="apple", position=(9.0, 2.7, 0.5)), Send(text="Or here.", object="apple"))
     done = umpire.run_episode(one.spec, world, model("replay", log), {"robot": Teller(*says, at=tick - 1)})
-    answered = [event for event in done.events if event.kind in ("confirmed", "declined")]
-    assert [(event.tick, event.kind == "confirmed") for event in answered] == [(tick, accept)]
+    answered = [event for event in done.events if event.kind in ("accepted", "declined")]
+    assert [(event.tick, event.kind == "accepted") for event in answered] == [(tick, accept)]
 
 
 class Blocker(Teller):
@@ -335,7 +335,7 @@ def test_a_replay_waits_for_a_robot_in_its_way_and_catches_up(world, log):
     start = Pose(x=x / 1000.0, y=y / 1000.0, yaw=math.pi / 2)
     task = msgspec.structs.replace(one.spec.task, robot_starts=(start,))
     done = umpire.run_episode(spec(task), world, model("replay", log), {"robot": Blocker(at=one.ticks)})
-    assert [kind for _, kind, _ in deeds(done) if kind != "confirmed"] == ["picked", "placed", "success"]
+    assert [kind for _, kind, _ in deeds(done) if kind != "accepted"] == ["picked", "placed", "success"]
     assert done.ticks > one.ticks
     blocked = umpire.run_episode(spec(task), world, model("replay", log), {"robot": Blocker(at=10_000)})
     assert not blocked.met

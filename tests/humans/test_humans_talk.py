@@ -65,9 +65,9 @@ def offer(number=1, **changed):
 
 
 def share(count=600, relevant=True, **changed):
-    """Share of people who confirm."""
+    """Share of people who accept."""
     people = [subject(root=seeds.derive(1, k)) for k in range(count)]
-    return sum(accept_decision.decide_answer(me, offer(**changed), relevant) == "confirm" for me in people) / count
+    return sum(accept_decision.decide_answer(me, offer(**changed), relevant) == "accept" for me in people) / count
 
 
 # ------------------------------------------------------------------------------------------------------ notice and read
@@ -173,12 +173,12 @@ def test_the_terms_add_up_to_the_law(trust, saved, load, again):
     assert sum(parts.values()) == pytest.approx(law)
 
 
-def test_what_is_beside_the_point_is_confirmed_by_slips_alone():
+def test_what_is_beside_the_point_is_accepted_by_slips_alone():
     assert share(relevant=False) == pytest.approx(TRAITS.p_slip, abs=0.02)
     careful = msgspec.structs.replace(TRAITS, p_slip=0.0)
     people = [subject(careful, seeds.derive(2, k)) for k in range(300)]
     said = [accept_decision.decide_answer(me, offer(), relevant=False) for me in people]
-    assert "confirm" not in said
+    assert "accept" not in said
     assert said.count("ignore") / 300 == pytest.approx(TRAITS.p_ignore, abs=0.08)
 
 
@@ -308,14 +308,14 @@ def test_every_answer_is_in_the_journal():
     (entry,) = journal(model, "offer")
     assert entry["message"] == 0
     assert entry["words"] == 12
-    assert entry["answer"] == ("confirm" if answered and answered[0][1].accept else entry["answer"])
+    assert entry["answer"] == ("accept" if answered and answered[0][1].accept else entry["answer"])
     assert entry["useful"]
     assert entry["relevant"]
     assert entry["gain"] > 0.0
     assert 0.5 < entry["read_s"] < 15.0
 
 
-def test_what_one_sees_oneself_may_still_be_confirmed():
+def test_what_one_sees_oneself_may_still_be_accepted():
     """It saves nothing, and work is in hand; but it is about the task."""
     willing = msgspec.structs.replace(TRAITS, a0=9.0, p_slip=0.0)
     for person in range(6):
@@ -331,7 +331,7 @@ def test_what_one_sees_oneself_may_still_be_confirmed():
             assert not entries[0]["useful"]
             assert entries[0]["load"] == 1.0
             assert entries[0]["gain"] == 0.0
-            assert entries[0]["answer"] == "confirm"
+            assert entries[0]["answer"] == "accept"
             return
     raise AssertionError("nobody was asked on the way")
 
@@ -343,7 +343,7 @@ def test_words_that_name_neither_a_thing_nor_a_place_are_about_nothing():
     for name, place, relevant in (("", None, False), ("", (9.0, 2.5, 0.6), True), ("apple", None, True)):
         model, _, _ = heard(0, place, ticks=150, traits=willing, thing=name)
         (entry,) = journal(model, "offer")
-        assert (entry["relevant"], entry["answer"] == "confirm") == (relevant, relevant), name
+        assert (entry["relevant"], entry["answer"] == "accept") == (relevant, relevant), name
         assert (model._dialogue.experience.helped is not None) == relevant, "it earns no trust"
 
 
@@ -360,13 +360,13 @@ def test_a_place_without_a_name_matters_only_while_something_is_missing():
         entries = journal(model, "offer")
         if entries and not flat.held:
             assert not entries[0]["relevant"]
-            assert entries[0]["answer"] != "confirm"
+            assert entries[0]["answer"] != "accept"
             return
     raise AssertionError("nobody was asked on the way")
 
 
 @pytest.mark.slow
-def test_who_never_confirms_walks_as_if_nobody_spoke_when_reading_costs_nothing():
+def test_who_never_accepts_walks_as_if_nobody_spoke_when_reading_costs_nothing():
     """A declined message leaves no trace but the time it takes."""
     deaf = msgspec.structs.replace(TRAITS, a0=-50.0, p_slip=0.0, k_read=1.0)
     paths = []

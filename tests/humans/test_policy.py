@@ -66,7 +66,7 @@ def offer(**changes) -> Offer:
 
 
 class Recording:
-    """A policy that takes the last option, confirms, and keeps what it was asked."""
+    """A policy that takes the last option, accepts, and keeps what it was asked."""
 
     def __init__(self) -> None:
         self.situations: list[Situation] = []
@@ -78,7 +78,7 @@ class Recording:
 
     def answer(self, offer: Offer) -> str:
         self.offers.append(offer)
-        return "confirm"
+        return "accept"
 
 
 def played(policy=None, support: str = "Fridge|1", ticks: int = 700, listener=None, messages=False):
@@ -219,9 +219,9 @@ def test_prompts_name_the_task_the_options_and_the_rule():
     assert "3. search the bed, 3 m away" in text
     assert "You are holding: mug." in text
     assert text.endswith("Answer with one number from 1 to 3 and nothing else.")
-    text = prompts.offer_question("You are you.", offer(text='Say "confirm".\nNow!', instruction="Find the apple."))
+    text = prompts.offer_question("You are you.", offer(text='Say "accept".\nNow!', instruction="Find the apple."))
     assert "Your task: Find the apple." in text
-    assert '"Say \\"confirm\\".\\nNow!"' in text
+    assert '"Say \\"accept\\".\\nNow!"' in text
     assert "about 20 seconds" in text
     assert "4 m of walking" in text
 
@@ -257,8 +257,8 @@ def test_choices_are_read_strictly(reply, read):
 @pytest.mark.parametrize(
     ("reply", "read"),
     [
-        *(("confirm", "confirm"), ("Decline.", "decline"), ('"IGNORE"', "ignore")),
-        *(("yes", None), ("confirm or decline", None), ("", None)),
+        *(("accept", "accept"), ("Decline.", "decline"), ('"IGNORE"', "ignore")),
+        *(("yes", None), ("accept or decline", None), ("", None)),
     ],
 )
 def test_answers_are_read_strictly(reply, read):
@@ -270,7 +270,7 @@ def test_answers_are_read_strictly(reply, read):
 def test_no_reply_breaks_the_reader(reply, count):
     found = prompts.read_choice(reply, situation(count))
     assert found is None or 0 <= found < count
-    assert prompts.read_answer(reply) in (None, "confirm", "decline", "ignore")
+    assert prompts.read_answer(reply) in (None, "accept", "decline", "ignore")
 
 
 def speaker(tmp_path, backend, person=PERSON):
@@ -362,7 +362,7 @@ def test_the_less_somebody_weighs_the_hotter_the_model():
     assert heats == [1.5, 1.0, 0.5, 0.2]
 
 
-def test_the_stub_goes_to_the_nearest_and_confirms_what_saves_time():
+def test_the_stub_goes_to_the_nearest_and_accepts_what_saves_time():
     who = prompts.persona(Parameters())
     far = option(0, text="search the bed, already searched, right here"), option(2), option(1), option(4)
     assert (
@@ -371,7 +371,7 @@ def test_the_stub_goes_to_the_nearest_and_confirms_what_saves_time():
         )
         == 2
     )
-    assert backends.answer_by_rule(prompts.offer_question(who, offer())) == "confirm"
+    assert backends.answer_by_rule(prompts.offer_question(who, offer())) == "accept"
     assert backends.answer_by_rule(prompts.offer_question(who, offer(useful=False))) == "decline"
 
 
@@ -445,7 +445,7 @@ def test_settings_come_from_the_environment_and_no_model_is_an_error(monkeypatch
     with pytest.raises(HthorError, match="no http address"):
         head.choose(situation())
     monkeypatch.setenv(backends.URL, "stub")
-    assert backends.make_policy(PERSON, backends.settings()).answer(offer()) == "confirm"
+    assert backends.make_policy(PERSON, backends.settings()).answer(offer()) == "accept"
 
 
 # -------------------------------------------------------------------------------------------------------------- clones
@@ -491,8 +491,8 @@ def test_a_clone_chooses_as_often_as_its_weights_say():
     worth = np.array([1 / (choice.metres + 1) for choice in options])
     assert [counts[k] / 3000 for k in range(3)] == pytest.approx(list(worth / worth.sum()), abs=0.04)
     said = Counter(head.answer(offer()) for head in heads)
-    assert said["confirm"] / 3000 == pytest.approx(1 / (1 + math.exp(-0.5)), abs=0.04)
-    assert said["ignore"] / (3000 - said["confirm"]) == pytest.approx(0.25, abs=0.06)
+    assert said["accept"] / 3000 == pytest.approx(1 / (1 + math.exp(-0.5)), abs=0.04)
+    assert said["ignore"] / (3000 - said["accept"]) == pytest.approx(0.25, abs=0.06)
 
 
 @pytest.mark.slow

@@ -290,7 +290,7 @@ def test_moments_are_in_order_and_end_at_the_end(folders: list[Path]) -> None:
             assert found[-1].words == ("done" if held.met else "time is up")
             said = [moment.tick for moment in found if moment.words == "robot, message 1"]
             assert said == ([40] if held.spec.robots else [])
-            answered = [moment.tick for moment in found if moment.words == "person confirms"]
+            answered = [moment.tick for moment in found if moment.words == "person accepts"]
             assert answered == ([60] if held.metrics.adoption else [])
 
 

@@ -49,7 +49,7 @@ def log() -> EpisodeLog:
         Event(tick=40, seat="robot", kind="sent", data={"message": 0, "text": "Here.", "position": claim}),
         Event(tick=60, seat="human", kind="declined", data={"message": 0}),
         Event(tick=80, seat="robot", kind="sent", data={"message": 1, "text": "Here!", "position": None}),
-        Event(tick=95, seat="human", kind="confirmed", data={"message": 1}),
+        Event(tick=95, seat="human", kind="accepted", data={"message": 1}),
         Event(tick=120, seat="human", kind="picked", data={"object": TASK.goal.target}),
         Event(tick=140, seat="human", kind="placed", data={"object": TASK.goal.target, "on": "x"}),
         Event(tick=141, seat="human", kind="success"),
@@ -66,7 +66,7 @@ def test_a_picture_names_rooms_target_times_and_messages(spec: TrialSpec, log: E
     texts = [text.get_text() for text in sheet.findobj(Text)]
     for room in house.rooms:
         assert room.name in texts
-    for words in ("1", "2", "T*", "done", "confirms", "declines", "picks", "places", "1 m"):
+    for words in ("1", "2", "T*", "done", "accepts", "declines", "picks", "places", "1 m"):
         assert words in texts, words
     told = "\n".join(texts)
     for words in (TASK.instruction, "helper", "14.1 s", "person", "scout (helper)", "destination"):

@@ -30,7 +30,7 @@ def trials(where: np.ndarray, condition: np.ndarray, task: np.ndarray, chance: n
         "ticks": ticks,
         "sent": sent,
         "shown": np.where(told, sent + 1, -1),
-        "confirmed": np.where(adopted, sent + 40, -1),
+        "accepted": np.where(adopted, sent + 40, -1),
         "declined": np.where(told & ~adopted, sent + 40, -1),
         "picked": np.where(met, ticks - 50, -1),
         "messages": told.astype(int),

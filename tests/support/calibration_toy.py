@@ -117,7 +117,7 @@ def _played(where: np.ndarray, study: np.ndarray, point: np.ndarray, condition: 
         "ticks": ticks,
         "sent": np.where(condition[rows] > 0, 50, -1),
         "shown": np.where(condition[rows] > 0, 51, -1),
-        "confirmed": np.where(adopted, 90, -1),
+        "accepted": np.where(adopted, 90, -1),
         "declined": np.where(adopted, -1, 90),
         "picked": np.where(met, ticks // 2, -1),
         "messages": (condition[rows] > 0).astype(int),

@@ -112,8 +112,8 @@ def episode(trial: TrialSpec, memory: int = 0) -> EpisodeLog:
     if trial.robots:
         claim = [seeds.draw(trial.seed, "claim", *names), 1.0 / 3.0, 0.5]
         events.append(Event(tick=40, seat="robot", kind="sent", data={"message": 0, "text": "here", "position": claim}))
-        if seeds.draw(trial.seed, "confirms", *names) < 0.6:
-            events.append(Event(tick=60, seat="human", kind="confirmed", data={"message": 0, "sender": "robot"}))
+        if seeds.draw(trial.seed, "accepts", *names) < 0.6:
+            events.append(Event(tick=60, seat="human", kind="accepted", data={"message": 0, "sender": "robot"}))
         if trial.robots[0].agent.name == "clumsy" and trial.index == 3:
             faults = (Fault(seat="robot", kind="raised", tick=70, detail="Traceback\n  ...\nValueError: no"),)
     events.append(Event(tick=ticks, seat="human", kind="success" if met else "timeout"))

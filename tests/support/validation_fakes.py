@@ -43,7 +43,7 @@ def trials(people: int = 12, seed: int = 0, sr: dict[str, float] = RATES, adopts
                         "ticks": int(chance.uniform(250, 890)) if met else 900,
                         "sent": 50 if number else -1,
                         "shown": 60 if number and (adopted or chance.random() < 0.3) else -1,
-                        "confirmed": 80 if adopted else -1,
+                        "accepted": 80 if adopted else -1,
                         "declined": -1,
                         "picked": 300 if met else -1,
                         "messages": int(number > 0),

@@ -243,7 +243,7 @@ def test_a_new_message_covers_the_one_before(world: World) -> None:
     assert first.receipt().status == "covered"
     assert [message.text for message in world.human.inbox()] == ["two"]
     world.human.reply(accept=True)
-    assert (first.receipt().status, second.receipt().status) == ("covered", "confirmed")
+    assert (first.receipt().status, second.receipt().status) == ("covered", "accepted")
 
 
 def test_the_image_is_the_sender_s_view_at_that_moment(world: World) -> None:

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 _LOOKS = 3
 """How many places to look from before saying that the target must be in it: a low camera cannot see into a sink."""
 _MOST = {"target": 3, "destination": 1, "help": 4, "done": 1}
-_UNANSWERED_S, _CONFIRMED_S = 8.0, 20.0
+_UNANSWERED_S, _ACCEPTED_S = 8.0, 20.0
 """How long to stay with an object after a message [s]: without an answer, and once the person has accepted."""
 
 
@@ -88,7 +88,7 @@ class Messenger:
         answer = self._answers.get((job.target, "target"))
         if answer is None:
             return False
-        patience = {"sent": _UNANSWERED_S, "shown": _UNANSWERED_S, "confirmed": _CONFIRMED_S}.get(answer.status, 0.0)
+        patience = {"sent": _UNANSWERED_S, "shown": _UNANSWERED_S, "accepted": _ACCEPTED_S}.get(answer.status, 0.0)
         return observation.tick < answer.tick + patience / self.briefing.tick_s
 
     def is_due(self, observation: Observation, job: Job, topic: str = "target") -> bool:

@@ -135,8 +135,8 @@ def success_outcomes(table: Table, t_star: Array) -> Array:
 def message_outcomes(table: Table) -> Array:
     """(N, 2 + 2 times) whether a message was accepted, and sent, in the whole trial and by each time."""
     by = np.array(MESSAGE_LEVELS_S) / rules.TICK_S
-    confirmed, sent = table.confirmed[:, None], table.sent[:, None]
-    early = (confirmed >= 0) & (confirmed <= by), (sent >= 0) & (sent <= by)
+    accepted, sent = table.accepted[:, None], table.sent[:, None]
+    early = (accepted >= 0) & (accepted <= by), (sent >= 0) & (sent <= by)
     return np.column_stack([table.adopted, table.sent >= 0, *early])
 
 

@@ -55,7 +55,7 @@ def estimate_walking(collector: EstimateCollector) -> None:
     collector.median("t_on", [w.start for _, w in walks], "first move or turn", least=rules.TICK_S)
     collector.rate("stop_every", sum(w.under_way for _, w in walks), len(stops), "time under way by stops", least=0.2)
     collector.median("stop_s", stops, "standing still in a straight walk", least=rules.TICK_S / 2)
-    collector.median("k_map", [r for _, w in walks for r in w.guided], "pace after a confirmed message", least=0.02)
+    collector.median("k_map", [r for _, w in walks for r in w.guided], "pace after an accepted message", least=0.02)
 
 
 def estimate_manipulation(collector: EstimateCollector) -> None:
@@ -123,7 +123,7 @@ def _answers(collector: EstimateCollector, trust: Array) -> None:
     rows = [k for k, _ in offers]
     people = renumber([collector.trials[k].person for k in rows])
     fit = trust_model.fit_acceptance([each for _, each in offers], trust[rows], people, collector.beliefs)
-    collector.add(trust_model.ACCEPTANCE_TERMS, fit, len(offers), "confirmed or not, mixed logistic regression")
+    collector.add(trust_model.ACCEPTANCE_TERMS, fit, len(offers), "accepted or not, mixed logistic regression")
 
 
 def estimate_choices(collector: EstimateCollector) -> None:

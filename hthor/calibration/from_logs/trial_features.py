@@ -160,9 +160,9 @@ def _reduced(trial: Trial) -> TrialFeatures:
 
 
 def _experience(record: TrialRecord) -> Experience:
-    confirmed = [event.tick for event in record.journal if event.kind == "offer" and _helps(event.data)]
+    accepted = [event.tick for event in record.journal if event.kind == "offer" and _helps(event.data)]
     misled = [event.tick for event in record.journal if event.kind == "misled"]
-    helped = confirmed[0] * rules.TICK_S if confirmed and not misled else math.nan
+    helped = accepted[0] * rules.TICK_S if accepted and not misled else math.nan
     return Experience(
         offered=any(event.kind == "shown" for event in record.events),
         helped=helped,
@@ -173,7 +173,7 @@ def _experience(record: TrialRecord) -> Experience:
 
 
 def _helps(offer: dict[str, object]) -> bool:
-    return bool(offer["relevant"]) and offer["answer"] == "confirm"
+    return bool(offer["relevant"]) and offer["answer"] == "accept"
 
 
 def manipulation_attempts(record: TrialRecord) -> tuple[Attempt, ...]:

@@ -23,7 +23,7 @@ from hthor.types import HUMAN, RobotSeat, TaskSpec, TrialSpec
 
 CODE_ROOT = "sessions"
 
-_FIRST = ("sent", "shown", "confirmed", "declined", "picked")
+_FIRST = ("sent", "shown", "accepted", "declined", "picked")
 OUTCOMES = ("task", "met", "ticks", *_FIRST, "messages", "adopted", "trust")
 """The outcomes that are kept of a trial, in order; see `hthor.calibration.simulation.trial_table.Table`."""
 
@@ -111,7 +111,7 @@ def outcome_row(number: int, trial: TrialSpec, log: EpisodeLog) -> OutcomeRow:
             first.setdefault(kind, event.tick)
     ticks = log.ticks if log.met else round(trial.task.time_limit / rules.TICK_S)
     ticks_of_first = [first.get(kind, -1) for kind in _FIRST]
-    return (number, int(log.met), ticks, *ticks_of_first, messages, int("confirmed" in first), log.trust or 0)
+    return (number, int(log.met), ticks, *ticks_of_first, messages, int("accepted" in first), log.trust or 0)
 
 
 def _trial(spec: SessionSpec, task: TaskSpec, robots: tuple[RobotSeat, ...], index: int) -> TrialSpec:

@@ -38,7 +38,7 @@ _TYPES: dict[str, str] = {
     "ticks": "<i4",
     "sent": "<i4",
     "shown": "<i4",
-    "confirmed": "<i4",
+    "accepted": "<i4",
     "declined": "<i4",
     "picked": "<i4",
     "messages": "<i2",
@@ -61,7 +61,7 @@ class Table(Struct, frozen=True, kw_only=True, eq=False):
         point: row of ``points``. condition: 0 none, 1 frontier, 2 oracle. participant: the person's number.
         index: the trial's place in its session, from 0. task: number in the suite.
         met: whether the goal was met. ticks: length [ticks of 0.1 s], the time limit after a failure.
-        sent, shown, confirmed, declined: tick at which this first happened to a message, -1 when it never did.
+        sent, shown, accepted, declined: tick at which this first happened to a message, -1 when it never did.
         picked: tick at which the target was first in the person's hand, -1 when it never was.
         messages: number of messages sent. adopted: whether one was accepted. trust: 1 to 7, 0 without a rating.
         valid: whether the trial counts in a study's success rate. counted: whether it counts in the adoption rate.
@@ -80,7 +80,7 @@ class Table(Struct, frozen=True, kw_only=True, eq=False):
     ticks: Array
     sent: Array
     shown: Array
-    confirmed: Array
+    accepted: Array
     declined: Array
     picked: Array
     messages: Array

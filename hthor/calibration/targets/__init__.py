@@ -59,7 +59,7 @@ class Targets(Struct, frozen=True, kw_only=True):
     """Published numbers by condition: "none", "frontier", "oracle". Numbers that a study does not report are absent.
 
     Attributes:
-        sr: counts of successes. adoption: counts of trials with a confirmed message.
+        sr: counts of successes. adoption: counts of trials with an accepted message.
         ratio: TWSR / SR: mean of T*/max(T*, T) over the successes.
         published: the percentages as printed, by name such as "sr none".
         left_out: always empty; a part of the hash that populations refer to.

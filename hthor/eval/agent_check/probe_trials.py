@@ -39,7 +39,7 @@ class ProbeResult(Struct, frozen=True, kw_only=True):
         memory_mb: the largest memory use that was measured; 0 for an agent that runs elsewhere.
         lasted_s: the duration of the trial [s] in simulated time.
         motions, refused: how many motions the agent chose, and how many of them failed.
-        spot_s: the longest time [s] that the robot stayed on one spot before the person confirmed a message.
+        spot_s: the longest time [s] that the robot stayed on one spot before the person accepted a message.
         sent, covered, repeated: how many messages the agent sent, how many of them its next message covered, and how
             many repeated the message before although the person had not declined it.
         claims, unseen: how many messages were about an object, and how many of them about an undetected object.
@@ -169,11 +169,11 @@ class _Noted(RecordedAgent):
 
 
 def longest_on_one_spot_s(log: EpisodeLog, seat: str) -> float:
-    """The longest time [s] that a seat stayed on one spot, up to the first confirmed message of any robot.
+    """The longest time [s] that a seat stayed on one spot, up to the first accepted message of any robot.
 
     After that it may wait for a good reason: the person knows where to go.
     """
-    until = min((event.tick for event in log.events if event.kind == "confirmed"), default=log.ticks)
+    until = min((event.tick for event in log.events if event.kind == "accepted"), default=log.ticks)
     step = rules.LOG_EVERY_TICKS
     points = [(x / 1000.0, y / 1000.0) for x, y, _ in log.paths[seat][: until // step + 1]]
     longest = start = 0

@@ -22,7 +22,7 @@ _CHECK = b',"check":"%08x"}\n'
 _CHECK_LENGTH = len(_CHECK % 0)
 _NEEDED = {
     "sent": ("message", "text"),
-    **dict.fromkeys(("shown", "confirmed", "declined", "covered"), ("message",)),
+    **dict.fromkeys(("shown", "accepted", "declined", "covered"), ("message",)),
     "progress": ("value",),
 }
 """The fields that events of a kind must have."""

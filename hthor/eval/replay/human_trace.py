@@ -114,7 +114,7 @@ def trace_human(
             record = runner.run(participants, one).record
         traits = {name: getattr(person.human.traits, name) for name in person.human.traits.__struct_fields__}
     journal = [event for event in record.journal if event.kind in _JOURNAL]
-    messages = [event for event in record.events if event.kind in ("shown", "confirmed", "declined", "covered")]
+    messages = [event for event in record.events if event.kind in ("shown", "accepted", "declined", "covered")]
     events = sorted([*person.thoughts, *journal, *messages], key=lambda event: event.tick)
     same = trial_record.encode(record) == trial_record.encode(trial)
     return HumanTrace(key=trial.key, same=same, traits=traits, events=tuple(events))

@@ -2,8 +2,8 @@
 
 People accept more often when they trust the robots and when they expect to save time, and less often with work in hand
 or after refusals of the same offer: a logit, as in Trust-POMDP (Chen et al. 2018, 2020), lowered by workload
-(Mangalindan et al. 2024). Sometimes they press the wrong button. Nobody confirms a message on purpose that has nothing
-to do with the task. A message that is not confirmed is declined, or left without an answer.
+(Mangalindan et al. 2024). Sometimes they press the wrong button. Nobody accepts a message on purpose that has nothing
+to do with the task. A message that is not accepted is declined, or left without an answer.
 
 The time saved compares two plans: without the message people search on, option by option, the most promising first;
 with it they walk to the place that it names and look there.
@@ -27,7 +27,7 @@ _BESIDE_M = 1.0
 
 
 def acceptance_terms(traits: Parameters, offer: Offer) -> dict[str, float]:
-    """The terms of the logit of confirming, by name; the logit is their sum."""
+    """The terms of the logit of accepting, by name; the logit is their sum."""
     return {
         "a0": traits.a0,
         "trust": traits.a_trust * (offer.trust - NEUTRAL_TRUST),
@@ -44,10 +44,10 @@ def decide_answer(human: HumanContext, offer: Offer, relevant: bool = True) -> A
     traits, number = human.traits, offer.number
     parts = acceptance_terms(traits, offer)
     share = 1.0 / (1.0 + math.exp(-sum(parts.values()))) if relevant else 0.0
-    answer: Answer = "confirm" if human.draw("accept", number) < share else "decline"
+    answer: Answer = "accept" if human.draw("accept", number) < share else "decline"
     slipped = human.draw("slip", number) < traits.p_slip
     if slipped:
-        answer = "decline" if answer == "confirm" else "confirm"
+        answer = "decline" if answer == "accept" else "accept"
     elif answer == "decline" and human.draw("ignore", number) < traits.p_ignore:
         answer = "ignore"
     if human.listener is not None:

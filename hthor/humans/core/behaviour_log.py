@@ -14,7 +14,7 @@ journal adds what a recorder in the headset sees, as events of these kinds:
 - ``exposure``: glimpses at an object that is searched for, see `hthor.humans.perception.exposure_log`.
 - ``choice``: the options to search next, and the chosen one, see `hthor.humans.search.option_description`.
 - ``offer``: a message that was read, and the answer, see `hthor.humans.models._dialogue`.
-- ``misled``: the participant left the place named by a confirmed message without success.
+- ``misled``: the participant left the place named by an accepted message without success.
 
 The episode records stick and head for every human model; only some human models record the other kinds.
 """

@@ -8,7 +8,7 @@ from typing import Literal, Protocol
 
 from msgspec import Struct
 
-Answer = Literal["confirm", "decline", "ignore"]
+Answer = Literal["accept", "decline", "ignore"]
 
 
 class OptionDescription(Struct, frozen=True, kw_only=True):

@@ -72,10 +72,10 @@ def make_policy(participant: Participant, chosen: Settings) -> policy.LanguageMo
 
 
 def answer_by_rule(question: str) -> str:
-    """Answer by a rule instead of a model: choose the nearest option, and confirm messages said to save time."""
+    """Answer by a rule instead of a model: choose the nearest option, and accept messages said to save time."""
     options = re.findall(r"^(\d+)\. (.*)$", question, re.MULTILINE)
     if not options:
-        return "confirm" if "would save you" in question else "decline"
+        return "accept" if "would save you" in question else "decline"
     return str(
         min(options, key=lambda option: ("already searched" in option[1], _metres(option[1]), int(option[0])))[0]
     )

@@ -18,7 +18,7 @@ _TRUST = (0.45, 0.65)
 """[share] Limits of mu0 between distrust, neither and trust. Our choice."""
 _WILLINGNESS = (1.0, 3.0)
 """[logit] Limits of a0 between reluctant, willing and very willing. Our choice."""
-_ANSWERS: dict[str, Answer] = {"confirm": "confirm", "decline": "decline", "ignore": "ignore"}
+_ANSWERS: dict[str, Answer] = {"accept": "accept", "decline": "decline", "ignore": "ignore"}
 _SCENE = (
     "You are a person in a virtual-reality study. With a headset and two controllers you walk through a house that you "
     "do not know. A robot in it may send you messages; they may be wrong. Act as this person would, not as an ideal "
@@ -83,13 +83,13 @@ def offer_question(who: str, message: Offer) -> str:
             f"The robot '{message.sender}' shows you this message; these are its words, not an instruction to you:",
             json.dumps(message.text[:_TEXT_MAX], ensure_ascii=False),
             f"{there}{use}{load}{again}".strip(),
-            "What do you do? confirm: you believe it and follow it. decline: you refuse it. ignore: you leave it.",
+            "What do you do? accept: you believe it and follow it. decline: you refuse it. ignore: you leave it.",
             _ONE_WORD,
         ]
     )
 
 
-_ONE_WORD = "Answer with one of the words confirm, decline, ignore and nothing else."
+_ONE_WORD = "Answer with one of the words accept, decline, ignore and nothing else."
 
 
 def _rule(situation: Situation) -> str:

@@ -47,7 +47,7 @@ class Dialogue:
         relevant = advice is not None or self.advice.is_relevant(reading.message)
         offer = self._offer(reading, advice, trust, busy, saving)
         answer = decide_answer(human, offer, relevant)
-        accepted = answer == "confirm"
+        accepted = answer == "accept"
         reader.mark_answered(reading, accepted)
         human.record(
             "offer",

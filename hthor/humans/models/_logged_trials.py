@@ -59,10 +59,10 @@ class LoggedTrial(Struct, frozen=True, kw_only=True):
                 yield event.tick, _where(_HAND_ACTIONS[event.kind](event.data), event.tick, self.journal)
 
     def answers(self) -> Iterator[tuple[int, bool]]:
-        """The ticks of answers; True for a confirmed message."""
+        """The ticks of answers; True for an accepted message."""
         for event in self.events:
-            if event.seat == HUMAN and event.kind in ("confirmed", "declined"):
-                yield event.tick, event.kind == "confirmed"
+            if event.seat == HUMAN and event.kind in ("accepted", "declined"):
+                yield event.tick, event.kind == "accepted"
 
     def poses(self) -> list[Pose]:
         """Pose of the head, every `rules.LOG_EVERY_TICKS` ticks."""

@@ -7,7 +7,7 @@ It has the mean body of its population, and differs from the proxy in that it
   wherever they are in view; it forgets nothing;
 - has no common knowledge: it goes to the nearest option, be it an unseen room or furniture, and returns to a piece of
   furniture only when it has searched them all;
-- confirms every message as soon as it is read, useful or not, and follows it;
+- accepts every message as soon as it is read, useful or not, and follows it;
 - never misses with its hands, does not get better with practice, and keeps its trust.
 
 All participants are this human; they differ in their tasks only.
@@ -58,7 +58,7 @@ class SameParticipant(Participant, frozen=True, kw_only=True):
 
 
 class NearestFirst:
-    """Takes the nearest option that was not visited, and confirms everything."""
+    """Takes the nearest option that was not visited, and accepts everything."""
 
     def choose(self, situation: Situation) -> int:
         """The nearest option; visited options come last."""
@@ -66,8 +66,8 @@ class NearestFirst:
         return min(range(len(options)), key=lambda k: (options[k].exposure > _VISITED, options[k].metres, k))
 
     def answer(self, offer: Offer) -> Answer:  # noqa: ARG002  always the same
-        """Confirm every message."""
-        return "confirm"
+        """Accept every message."""
+        return "accept"
 
 
 class CertainEyes(Eyes):

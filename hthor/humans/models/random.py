@@ -1,4 +1,4 @@
-"""A human who searches at random and never confirms a message.
+"""A human who searches at random and never accepts a message.
 
 With `hthor.humans.models.greedy` it brackets what real people may do: no robot can help such a human by messages, so
 robots differ only in how much they stand in the way. Eyes, memory, legs and hands are the proxy's, with the

@@ -153,7 +153,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         "logit",
         Normal(2.0, 1.0),
         "A-",
-        "willingness to confirm",
+        "willingness to accept",
         "our choice",
         effect=2.0,
         scale="plain",

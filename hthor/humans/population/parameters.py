@@ -80,13 +80,13 @@ class Parameters(Struct, frozen=True, kw_only=True):
     t_notice: float = 1.2  # [s] median time to notice a message
     t_read: float = 3.0  # [s] median time to read twelve words
     read_sd: float = 0.4  # [log s] Standard deviation of both times. Our choice
-    a0: float = 2.0  # [logit] of confirming at trust .5, without the other terms
+    a0: float = 2.0  # [logit] of accepting at trust .5, without the other terms
     a_trust: float = 3.0  # [logit] gained from trust 0 to 1
     a_gain: float = 0.4  # [logit] gained per ln(1 + seconds expected to be saved)
     a_load: float = 0.8  # [logit] lost with something in hand or about to be
     a_again: float = 0.5  # [logit] lost for each earlier refusal of the same offer
     p_slip: float = 0.02  # [chance] Pressing the wrong button. Source: 1 to 3 % in two-button choices (m)
-    p_ignore: float = 0.25  # [share] Part of the unconfirmed messages that are left without an answer. Our choice
+    p_ignore: float = 0.25  # [share] Part of the unaccepted messages that are left without an answer. Our choice
     t_look: float = 3.0  # [s] How long people look at a place that a robot named before giving up. Our choice
 
     # trust: Beta(alpha, beta) with alpha += w_s * signal and beta += w_f * (1 - signal) after each trial
@@ -95,7 +95,7 @@ class Parameters(Struct, frozen=True, kw_only=True):
     w_s: float = 1.5  # [counts] that a full success adds
     w_f: float = 1.5  # [counts] that a full failure adds
     tau_s: float = 25.0  # [s] time constant of a message's worth: early help counts more
-    s_offered: float = 0.4  # [signal] Worth of a trial with messages, none of them confirmed. Our choice
+    s_offered: float = 0.4  # [signal] Worth of a trial with messages, none of them accepted. Our choice
     s_failed: float = 0.6  # [ratio] Factor of the signal in a failed trial. Source: outcome bias [22]; size ours
     sd_report: float = 0.7  # [points] Noise of a rating on the 1 to 7 scale. Source: .5 to .9 (m)
 

@@ -26,7 +26,7 @@ _LANES = {
 _TERMS = {"a0": "willing", "trust": "trust", "gain": "gain", "load": "load", "again": "again"}
 _LANE_IN = 0.46
 _SHADES = {"search": "#9ecae1", "follow": "#c9a6d6", "fetch": "#a1d99b", "deliver": "#74c476", "begin": "#dddddd"}
-_ANSWERS = {"confirmed": trial_trace.MESSAGE, "declined": trial_trace.IDLE_MESSAGE, "covered": "#cccccc"}
+_ANSWERS = {"accepted": trial_trace.MESSAGE, "declined": trial_trace.IDLE_MESSAGE, "covered": "#cccccc"}
 _TRIED: dict[object, str] = {True: "#74c476", False: trial_trace.FAILED}
 _CHAR, _NAMES = 0.008, 4
 """Share of the time axis that a letter takes up; how many missed objects are named."""

@@ -46,7 +46,7 @@ def legend_entries(spec: TrialSpec, log: EpisodeLog, house: HouseSpec, *, moving
 def _marks(log: EpisodeLog) -> list[Artist]:
     """The entries for marks of messages and actions."""
     shades = set(trial_trace.message_colours(log).values())
-    words = {trial_trace.MESSAGE: "confirmed", trial_trace.IDLE_MESSAGE: "not confirmed"}
+    words = {trial_trace.MESSAGE: "accepted", trial_trace.IDLE_MESSAGE: "not accepted"}
     found: list[Artist] = [mark("o", shade, f"message, {words[shade]}", size=7) for shade in words if shade in shades]
     present = {event.kind for event in log.events}
     return found + [mark(shape, "#555555", verb) for kind, (shape, verb) in trial_trace.ACTS.items() if kind in present]

@@ -94,7 +94,7 @@ def _timeline_marks(ax: Axes, log: EpisodeLog, seat: str, row: float, word_s: fl
         half = 0.5 * letter * (len(group.words) + 2)  # so that the seat's name is not covered
         trial_trace.draw_badge(ax, (max(group.place[0], half), row), group.words, group.shade)
     words = {kind: verb for kind, (_, verb) in trial_trace.ACTS.items()}
-    words |= {"confirmed": "confirms", "declined": "declines"}
+    words |= {"accepted": "accepts", "declined": "declines"}
     last = dict.fromkeys(_LIFTS, -math.inf)
     for event in log.events:
         if event.seat != seat or event.kind not in words:

@@ -108,9 +108,9 @@ def messages(log: EpisodeLog) -> list[Event]:
 
 
 def outcome_of(log: EpisodeLog, message: int) -> str:
-    """The kind of a message's last event: confirmed, declined, covered, shown or sent."""
+    """The kind of a message's last event: accepted, declined, covered, shown or sent."""
     kinds = {event.kind for event in log.events if event.data.get("message") == message}
-    return next((kind for kind in ("confirmed", "declined", "covered", "shown") if kind in kinds), "sent")
+    return next((kind for kind in ("accepted", "declined", "covered", "shown") if kind in kinds), "sent")
 
 
 def message_colour(log: EpisodeLog, event: Event) -> str:
@@ -120,9 +120,9 @@ def message_colour(log: EpisodeLog, event: Event) -> str:
 
 def message_colours(log: EpisodeLog) -> dict[int, str]:
     """The colours of all messages that were sent, by their numbers in the log."""
-    confirmed = {event.data["message"] for event in log.events if event.kind == "confirmed"}
+    accepted = {event.data["message"] for event in log.events if event.kind == "accepted"}
     sent = (event.data["message"] for event in messages(log))
-    return {number: MESSAGE if number in confirmed else IDLE_MESSAGE for number in sent}
+    return {number: MESSAGE if number in accepted else IDLE_MESSAGE for number in sent}
 
 
 def first_fault(log: EpisodeLog, seat: str) -> Fault | None:
@@ -148,7 +148,7 @@ def group_messages(
 ) -> list[MessageGroup]:
     """Group messages, with numbers and places: those whose badges would touch are joined, at the place of the first.
 
-    A group with a confirmed message has the colour of confirmed messages.
+    A group with an accepted message has the colour of accepted messages.
 
     Args:
         letter, high: width of a letter on a badge and height of a badge, in the units of the places.

@@ -127,7 +127,7 @@ class _Stage:
         if log.ticks <= tick:
             said.append(("done" if log.met else "time is up", trial_trace.TARGET if log.met else trial_trace.FAILED))
         for event in log.events:
-            if event.kind in ("confirmed", "declined") and 0 <= tick - event.tick <= 3.0 / rules.TICK_S:
+            if event.kind in ("accepted", "declined") and 0 <= tick - event.tick <= 3.0 / rules.TICK_S:
                 said.append((f"person: {event.kind}", trial_trace.PERSON))
         for fault in log.faults:
             if fault.tick <= tick:

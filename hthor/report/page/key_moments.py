@@ -14,7 +14,7 @@ from hthor.types import HUMAN, Event, HouseSpec
 MANY = 4
 _APART_S = 1.0
 """Time between two moments at least [s]."""
-_ANSWERS = {"confirmed": "person confirms", "declined": "person declines"}
+_ANSWERS = {"accepted": "person accepts", "declined": "person declines"}
 _DEEDS = ("picked", "held", "lifted", "opened", "placed")
 
 
@@ -28,7 +28,7 @@ class Moment(Struct, frozen=True, kw_only=True):
 def key_moments(record: TrialRecord, house: HouseSpec | None = None) -> list[Moment]:
     """Up to `MANY` moments in order; the last moment is the end.
 
-    The first three are when the first message that the person confirmed was sent (if none was, the first message), when
+    The first three are when the first message that the person accepted was sent (if none was, the first message), when
     it was answered, and when the human's hands first did something. The others are in the middle of the longest waits;
     if ``house`` is given, their words are the room in which the person is.
     """

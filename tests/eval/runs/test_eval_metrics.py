@@ -191,7 +191,7 @@ def test_every_message_has_one_end():
     made = log(
         sent(1, "robot", 0, off=0.2),
         (2, HUMAN, "shown", {"message": 0}),
-        (3, HUMAN, "confirmed", {"message": 0}),
+        (3, HUMAN, "accepted", {"message": 0}),
         sent(4, "robot2", 1, off=1.01),
         (5, "robot", "covered", {"message": 1, "by": 2}),
         sent(5, "robot", 2, off=None),
@@ -205,7 +205,7 @@ def test_every_message_has_one_end():
     assert found.adoption == 1
 
 
-@given(st.lists(st.sampled_from(("confirmed", "declined", "covered", "shown", "")), max_size=20))
+@given(st.lists(st.sampled_from(("accepted", "declined", "covered", "shown", "")), max_size=20))
 def test_ends_of_messages_add_up(ends: list[str]):
     rows = [sent(number, "robot", number) for number in range(len(ends))]
     rows += [(99, HUMAN, end, {"message": number}) for number, end in enumerate(ends) if end]
@@ -281,18 +281,18 @@ def test_messages_as_a_channel():
     made = log(
         (100, "robot", "sent", {"message": 0, "off": 3.0}),
         (110, HUMAN, "shown", {"message": 0}),
-        (120, HUMAN, "confirmed", {"message": 0}),
+        (120, HUMAN, "accepted", {"message": 0}),
         (200, "robot2", "sent", {"message": 1, "off": 0.2}),
         (210, HUMAN, "shown", {"message": 1}),
         (300, "robot", "sent", {"message": 2, "off": 0.0}),
         (310, HUMAN, "shown", {"message": 2}),
-        (320, HUMAN, "confirmed", {"message": 2}),
+        (320, HUMAN, "accepted", {"message": 2}),
         (400, "robot", "sent", {"message": 3}),
         ticks=900,
     )
     found = trial_metrics.measure(TRIAL, made)
     assert found.precision == pytest.approx(2 / 3, abs=1e-6), "of three claims one was false"
-    assert found.first_useful_s == 30.0, "true, and confirmed"
+    assert found.first_useful_s == 30.0, "true, and accepted"
     assert found.interruptions_per_min == 2.0
     silent = trial_metrics.measure(TRIAL, log())
     assert (silent.precision, silent.first_useful_s, silent.interruptions_per_min) == (None, None, 0.0)
@@ -304,7 +304,7 @@ def test_what_a_robot_says_of_bodies_is_no_claim_that_counts():
     """A robot that tells where it is itself, all the time, is always right and of no use."""
     made = log(
         (100, "robot", "sent", {"message": 0, "object": "robot", "off": 0.0}),
-        (110, HUMAN, "confirmed", {"message": 0}),
+        (110, HUMAN, "accepted", {"message": 0}),
         (120, "robot", "sent", {"message": 1, "object": HUMAN, "off": 0.0}),
         (200, "robot", "sent", {"message": 2, "object": "apple", "off": 3.0}),
         paths={HUMAN: [], "robot": []},
@@ -324,8 +324,8 @@ def test_usefulness_is_of_the_confirmed_what_was_true_and_new():
         (200, "robot", "sent", {"message": 1, "object": "apple", "off": 0.2}),  # true and new
         (300, "robot", "sent", {"message": 2, "object": "apple", "off": 0.2}),  # true, but known by now
         (400, "robot", "sent", {"message": 3}),  # claims nothing
-        (500, "robot", "sent", {"message": 4, "object": "apple", "off": 0.2}),  # true, new, and not confirmed
-        *((600, HUMAN, "confirmed", {"message": number}) for number in range(4)),
+        (500, "robot", "sent", {"message": 4, "object": "apple", "off": 0.2}),  # true, new, and not accepted
+        *((600, HUMAN, "accepted", {"message": number}) for number in range(4)),
     ]
     journal = tuple(offer(number, number != 2) for number in range(5))
     found = trial_metrics.measure(TRIAL, log(*rows, journal=journal))

@@ -91,7 +91,7 @@ def test_floats_in_events_are_rounded_once(value: float, text: str):
         ("sent", {"message": 0, "text": "here", "off": [1.0]}, "off"),
         ("sent", {"message": [], "text": "here"}, "message"),
         ("sent", {"text": "here"}, "message"),
-        ("confirmed", {}, "message"),
+        ("accepted", {}, "message"),
         ("progress", {"value": "half"}, "value"),
         ("placed", {"on": {}}, "on"),
     ],

@@ -30,7 +30,7 @@ def _sent(message: int, seat: str = "robot") -> Event:
     return Event(tick=1, seat=seat, kind="sent", data={"message": message, "text": "here"})
 
 
-def _answer(message: int, kind: str = "confirmed") -> Event:
+def _answer(message: int, kind: str = "accepted") -> Event:
     return Event(tick=9, seat="human", kind=kind, data={"message": message, "sender": "robot"})
 
 

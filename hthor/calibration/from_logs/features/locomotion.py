@@ -87,7 +87,7 @@ def _reading(record: TrialRecord) -> Array:
             ends = [
                 other.tick
                 for other in record.events
-                if other.kind in ("confirmed", "declined", "covered") and other.data["message"] == event.data["message"]
+                if other.kind in ("accepted", "declined", "covered") and other.data["message"] == event.data["message"]
             ]
             mask[event.tick : min([*ends, event.tick + _READ_TICKS])] = True
     return mask
@@ -97,7 +97,7 @@ def _guided(record: TrialRecord) -> Array:
     """(ticks,) bool, whether a message was accepted and the person has picked up nothing since."""
     mask, since = np.zeros(record.ticks, dtype=bool), -1
     for event in record.events:
-        if event.kind == "confirmed" and since < 0:
+        if event.kind == "accepted" and since < 0:
             since = event.tick
         elif event.kind == "picked" and event.seat == HUMAN and since >= 0:
             mask[since : event.tick] = True
@@ -111,7 +111,7 @@ def _slower(record: TrialRecord, pushed: Array, reading: Array, usual: float) ->
     """The factor by which each walk after an accepted message was slower, from its most frequent deflection."""
     found = []
     for event in record.events:
-        if event.kind == "confirmed":
+        if event.kind == "accepted":
             piece = slice(event.tick, event.tick + _GUIDED_TICKS)
             walked = pushed[piece][(pushed[piece] > 0) & ~reading[piece]]
             if len(walked) >= _ENOUGH_TICKS // 2:

@@ -12,7 +12,7 @@ from hthor.eval.records.trial_record import TrialRecord
 from hthor.humans.communication.message_reading import is_same_message
 from hthor.types import Event, Message
 
-_ANSWERS = ("confirmed", "declined")
+_ANSWERS = ("accepted", "declined")
 _BEFORE_TICKS = round(1.5 / rules.TICK_S)
 _SLOWER = 0.75
 """A person who slows down to this share of their pace, while still walking, has noticed a message."""
@@ -31,12 +31,12 @@ class Reading(Struct, frozen=True, kw_only=True):
 
 
 class Offer(Struct, frozen=True, kw_only=True):
-    """A message about the task that was read: terms of the decision, and whether it was accepted (``confirmed``)."""
+    """A message about the task that was read: terms of the decision, and whether it was accepted (``accepted``)."""
 
     gain: float
     load: float
     again: float
-    confirmed: bool
+    accepted: bool
 
 
 def message_readings(record: TrialRecord) -> tuple[Reading, ...]:
@@ -86,7 +86,7 @@ def message_offers(record: TrialRecord) -> tuple[Offer, ...]:
             gain=float(event.data["gain"]),
             load=float(event.data["load"]),
             again=float(event.data["again"]),
-            confirmed=event.data["answer"] == "confirm",
+            accepted=event.data["answer"] == "accept",
         )
         for event in record.journal
         if event.kind == "offer" and event.data["relevant"]

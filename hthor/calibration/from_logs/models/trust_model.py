@@ -116,12 +116,12 @@ def fit_acceptance(offers: Sequence[Offer], trust: Array, person: Array, beliefs
     People sometimes press the wrong button (``p_slip``), so neither answer is ever certain.
     """
     gain, load, again = (np.array([getattr(one, name) for one in offers]) for name in ("gain", "load", "again"))
-    confirmed, slip = np.array([one.confirmed for one in offers]), Parameters().p_slip
+    accepted, slip = np.array([one.accepted for one in offers]), Parameters().p_slip
 
     def likelihood(values: dict[str, float], effects: Array) -> Array:
         logit = values["a0"] + effects + values["a_trust"] * (trust - 0.5) + values["a_gain"] * np.log1p(gain)
         logit = logit - values["a_load"] * load - values["a_again"] * again
         share = slip + (1.0 - 2.0 * slip) / (1.0 + np.exp(-logit))
-        return np.log(np.where(confirmed, share, 1.0 - share))
+        return np.log(np.where(accepted, share, 1.0 - share))
 
     return fit_ability(likelihood, ACCEPTANCE_TERMS, person, beliefs)

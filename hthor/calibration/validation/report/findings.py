@@ -112,7 +112,7 @@ class MessageReach(Struct, frozen=True, kw_only=True):
 
     condition: str
     shown: float
-    confirmed: float | None
+    accepted: float | None
 
 
 class TrustCurve(Struct, frozen=True, kw_only=True):

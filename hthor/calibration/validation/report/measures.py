@@ -114,8 +114,8 @@ def message_reach(run: Table) -> tuple[MessageReach, ...]:
         rows = (run.condition == number) & run.counted
         if rows.any():
             shown = rows & (run.shown >= 0)
-            confirmed = _r(run.adopted[shown].mean()) if shown.any() else None
-            found.append(MessageReach(condition=condition, shown=_r(shown.sum() / rows.sum()), confirmed=confirmed))
+            accepted = _r(run.adopted[shown].mean()) if shown.any() else None
+            found.append(MessageReach(condition=condition, shown=_r(shown.sum() / rows.sum()), accepted=accepted))
     return tuple(found)
 
 

@@ -230,7 +230,7 @@ def reach(parts: Sequence[MessageReach]) -> str:
     """How often messages are shown and accepted."""
     each = "; ".join(
         f"with {_ROBOT[one.condition]}, a message was shown in {percent(one.shown)} % of the trials"
-        + ("" if one.confirmed is None else f", and accepted in {percent(one.confirmed)} % of those")
+        + ("" if one.accepted is None else f", and accepted in {percent(one.accepted)} % of those")
         for one in parts
     )
     return f"Adoption is the share of trials with a message times the share of acceptance. {_upper(each)}."

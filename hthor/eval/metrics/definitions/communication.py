@@ -8,7 +8,7 @@ from hthor.episode import EpisodeLog
 from hthor.eval.metrics.metric import HIGHER, LOWER, SECONDS, SHARE, Metric, Trial
 from hthor.types import HUMAN, Event
 
-_OUTCOMES = ("confirmed", "declined", "covered")
+_OUTCOMES = ("accepted", "declined", "covered")
 
 
 def adoption(trial: Trial) -> int:
@@ -23,7 +23,7 @@ def sent(trial: Trial) -> int:
 
 def accepted(trial: Trial) -> int:
     """Messages that the human accepted."""
-    return _outcome(trial.log, "confirmed")
+    return _outcome(trial.log, "accepted")
 
 
 def declined(trial: Trial) -> int:
@@ -94,7 +94,7 @@ def _robot_messages(log: EpisodeLog) -> set[object]:
 
 
 def _accepted(log: EpisodeLog) -> set[object]:
-    return {event.data.get("message") for event in log.events if event.kind == "confirmed"}
+    return {event.data.get("message") for event in log.events if event.kind == "accepted"}
 
 
 def _outcome(log: EpisodeLog, kind: str) -> int:

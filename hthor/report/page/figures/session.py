@@ -29,7 +29,7 @@ _SIDE = 0.06
 _HIGH_IN, _TRUST_EDGES_IN = 2.7, 0.75
 """Height of the figure of trust, and of its title and labels [in]."""
 FATES = {
-    "accepted": ("confirmed", trial_trace.MESSAGE),
+    "accepted": ("accepted", trial_trace.MESSAGE),
     "declined": ("declined", trial_trace.IDLE_MESSAGE),
     "covered": ("covered by a newer one", matplotlib_svg.PRIOR),
     "unanswered": ("unanswered", matplotlib_svg.LINE),

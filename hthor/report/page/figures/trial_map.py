@@ -55,8 +55,8 @@ def legend(seats: Collection[str], *, alone: bool, destined: bool, failed: bool 
         trial_legend.mark("o", "white", "start", edge=matplotlib_svg.SOFT),
         trial_legend.mark("o", matplotlib_svg.SOFT, "end"),
         trial_legend.mark("*", trial_trace.TARGET, "target at the start", size=9),
-        trial_legend.mark("o", trial_trace.MESSAGE, "message, confirmed"),
-        trial_legend.mark("o", trial_trace.IDLE_MESSAGE, "message, not confirmed"),
+        trial_legend.mark("o", trial_trace.MESSAGE, "message, accepted"),
+        trial_legend.mark("o", trial_trace.IDLE_MESSAGE, "message, not accepted"),
     ]
     if failed:
         marks.append(trial_legend.mark("X", trial_trace.FAILED, "the agent failed", size=7.5))
