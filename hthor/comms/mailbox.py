@@ -1,13 +1,18 @@
-"""The mailbox of a trial: robots send messages, the person accepts or declines them.
+"""The mailbox of a trial: robots write to people, and people to robots and to one another.
 
-A message is first "sent", then "shown" to the person, and ends as "accepted" (accepted), "declined" or "covered"; a
-message that is never answered stays sent or shown. At most one message is open: a new one, from any robot, covers it.
+Every person has one panel. A message is first "sent", then "shown" to each person that it is for, and ends there as
+"accepted", "declined" or "covered"; one that is never answered stays sent or shown. At most one message is open on a
+panel: a newer one, from anybody, covers it. Robots have no panel: a message to a robot is "shown" when the robot has
+observed it. A question ends as "answered", by a yes or no on the panel or by a message that answers it; until then it
+stays in the inbox, unless its sender asks the same seat something else, which covers it.
 """
 
 import math
 import unicodedata
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
+
+from msgspec import Struct
 
 from hthor import rules
 from hthor.types import HUMAN, Event, Message, Receipt, Reply, Send, Status, Vec3
@@ -20,123 +25,196 @@ _READ_FACTOR = 8
 """A text is read only up to this many times the limit, so that a very long text costs no more."""
 
 
+class MailboxState(Struct, frozen=True):
+    """A copy of everything in a mailbox, from `Mailbox.save_state`."""
+
+    messages: tuple[Message, ...]
+    deliveries: dict[tuple[int, str], Receipt]
+    inboxes: dict[str, tuple[int, ...]]
+    receipts: dict[str, Receipt]
+    changed: frozenset[tuple[str, str]]
+
+
 class Mailbox:
-    """Keeps every message that the seats ``robots`` send in a trial.
+    """Keeps every message of a trial, and its status for each seat that it is for.
 
     It never raises: an invalid message or reply is refused, with a reason.
+
+    Args:
+        robots: the seats of the robots. people: the seats of the people.
     """
 
-    def __init__(self, robots: Sequence[str]) -> None:
-        self._robots = tuple(robots)
-        self._messages: list[Message] = []
-        self._status: list[Receipt] = []
-        self._last: dict[str, int] = {}
-        self._changed: set[str] = set()
+    def __init__(self, robots: Sequence[str], people: Sequence[str] = (HUMAN,)) -> None:
+        self._people, self._robots = tuple(people), tuple(robots)
+        self.load_state(MailboxState((), {}, dict.fromkeys((*people, *robots), ()), {}, frozenset()))
 
     def send(self, tick: int, sender: str, send: Send, image: ImageSource = None) -> tuple[Event, ...]:
-        """Put a message in the person's inbox; it covers the open message.
+        """Put a message in the inboxes of those that it is for.
 
         Args:
             image: renders the sender's own frame of this tick when called; it is not called here.
 
         Returns:
-            "covered" for the message that was open, then "sent"; or one "refused" with its reason.
+            "answered" for the question that it answers, "covered" for every message that it covers, then "sent"; or one
+            "refused" with its reason.
         """
         reason = self._send_refusal(sender, send)
         if reason:
             return (self._refused(tick, sender, reason),)
-        events = self._cover(tick, sender)
-        number = len(self._messages)
-        written, cut = clean_text(send.text, rules.TEXT_MAX)
+        number, readers = len(self._messages), self._readers(sender, send)
+        events = [] if send.answers is None else [self._set_status(tick, send.answers, sender, "answered", sender)]
+        for reader in readers:
+            events += self._cover(tick, sender, reader, number, send.question)
+        text, cut = clean_text(send.text, rules.TEXT_MAX)
         name, _ = clean_text(send.object, _NAME_MAX)
         position = None if send.position is None else parse_point(send.position)
-        self._messages.append(
-            Message(id=number, sender=sender, tick=tick, text=written, object=name, position=position, image=image)
+        message = Message(
+            id=number,
+            sender=sender,
+            tick=tick,
+            text=text,
+            object=name,
+            position=position,
+            image=image,
+            to=send.to if send.answers is None else readers[0],
+            question=send.question,
+            answers=send.answers,
         )
-        self._status.append(Receipt(message=number, status="sent", tick=tick))
-        self._last[sender] = number
-        self._changed.update((HUMAN, sender))
-        data: dict[str, Any] = {"message": number, "text": written, "object": name, "position": _plain(position)}
-        if cut:
-            data["cut"] = cut
-        return (*events, Event(tick=tick, seat=sender, kind="sent", data=data))
+        self._messages.append(message)
+        for reader in readers:
+            self._deliveries[number, reader] = Receipt(message=number, status="sent", tick=tick, by=reader)
+            self._inboxes[reader] = (*self._inboxes[reader], number)
+            self._changed.add((reader, "inbox"))
+        self._receipts[sender] = self._deliveries[number, readers[0]]
+        self._changed.add((sender, "receipt"))
+        return (*events, _sent(message, cut))
 
     def inbox(self, seat: str) -> tuple[Message, ...]:
-        """The open message, for the person; empty for robots. Reading it resets `changed`."""
-        if seat != HUMAN:
-            return ()
-        self._changed.discard(seat)
-        number = self._open()
-        return () if number is None else (self._messages[number],)
+        """A person's open message; a robot's new messages and its open questions. Reading it resets `changed`."""
+        self._changed.discard((seat, "inbox"))
+        return tuple(self._messages[number] for number in self._inboxes.get(seat, ()))
 
-    def shown(self, tick: int) -> tuple[Event, ...]:
-        """Record that the person was shown the inbox."""
-        number = self._open()
-        if number is None or self._status[number].status != "sent":
-            return ()
-        return (self._set_status(tick, number, "shown", HUMAN),)
+    def shown(self, tick: int, seat: str = HUMAN) -> tuple[Event, ...]:
+        """Record that the seat was shown its inbox; messages that ask a robot for nothing leave it."""
+        inbox = self._inboxes[seat]
+        unread = [number for number in inbox if self._deliveries[number, seat].status == "sent"]
+        if seat in self._robots:
+            self._inboxes[seat] = tuple(number for number in inbox if self._messages[number].question)
+        return tuple(self._set_status(tick, number, seat, "shown", seat) for number in unread)
 
     def reply(self, tick: int, seat: str, reply: Reply) -> tuple[Event, ...]:
-        """Record the person's answer: "accepted" (accepted) or "declined"; or "refused", with a reason."""
+        """Record a person's answer: "accepted", "declined", "answered" for a question; or "refused", with a reason."""
         reason = self._reply_refusal(seat, reply)
         if reason:
             return (self._refused(tick, seat, reason, message=reply.message),)
-        return (self._set_status(tick, reply.message, "accepted" if reply.accept else "declined", seat),)
+        if self._messages[reply.message].question:
+            return (self._set_status(tick, reply.message, seat, "answered", seat, yes=reply.accept),)
+        return (self._set_status(tick, reply.message, seat, "accepted" if reply.accept else "declined", seat),)
 
     def receipt(self, seat: str) -> Receipt | None:
-        """The status of this robot's last message, None before its first. Reading it resets `changed`."""
-        number = self._last.get(seat)
-        if number is None:
-            return None
-        self._changed.discard(seat)
-        return self._status[number]
+        """The latest status of this seat's last message, None before its first. Reading it resets `changed`."""
+        self._changed.discard((seat, "receipt"))
+        return self._receipts.get(seat)
 
     def changed(self, seat: str) -> bool:
-        """Whether the person's inbox, or the robot's receipt, has changed since this seat last read it."""
-        return seat in self._changed
+        """Whether the seat's inbox or receipt has changed since the seat last read it."""
+        return (seat, "inbox") in self._changed or (seat, "receipt") in self._changed
 
     @property
     def messages(self) -> tuple[tuple[Message, Receipt], ...]:
-        """Every message sent so far, with its status."""
-        return tuple(zip(self._messages, self._status, strict=True))
+        """Every message sent so far, with its status for each seat that it is for."""
+        return tuple((self._messages[number], receipt) for (number, _), receipt in self._deliveries.items())
 
-    def _open(self) -> int | None:
-        number = len(self._messages) - 1
-        return number if number >= 0 and self._status[number].status in _OPEN else None
+    def save_state(self) -> MailboxState:
+        """A copy of everything in the mailbox."""
+        return MailboxState(
+            tuple(self._messages),
+            dict(self._deliveries),
+            dict(self._inboxes),
+            dict(self._receipts),
+            frozenset(self._changed),
+        )
 
-    def _cover(self, tick: int, sender: str) -> tuple[Event, ...]:
-        number = self._open()
-        if number is None:
-            return ()
-        return (self._set_status(tick, number, "covered", sender, by=number + 1),)
+    def load_state(self, state: MailboxState) -> None:
+        """Continue from a copy of this mailbox or of another one with the same seats."""
+        self._messages = list(state.messages)
+        self._deliveries, self._inboxes = dict(state.deliveries), dict(state.inboxes)
+        self._receipts, self._changed = dict(state.receipts), set(state.changed)
 
-    def _set_status(self, tick: int, number: int, status: Status, seat: str, **more: int) -> Event:
-        """Move a message on to its next status."""
-        self._status[number] = Receipt(message=number, status=status, tick=tick)
+    def _readers(self, sender: str, send: Send) -> tuple[str, ...]:
+        """The seats that a message is for, in order."""
+        if send.to:
+            return (send.to,)
+        if send.answers is not None:
+            return (self._messages[send.answers].sender,)
+        everybody = self._people if sender in self._robots else (*self._people, *self._robots)
+        return tuple(seat for seat in everybody if seat != sender)
+
+    def _cover(self, tick: int, sender: str, reader: str, by: int, question: bool) -> Iterable[Event]:
+        """Take away what a new message covers: a person's open message, a robot's open question of the same sender."""
+        for number in self._inboxes[reader]:
+            same = question and self._messages[number].question and self._messages[number].sender == sender
+            if reader in self._people or same:
+                yield self._set_status(tick, number, reader, "covered", sender, by=by)
+
+    def _set_status(self, tick: int, number: int, reader: str, status: Status, seat: str, **more: Any) -> Event:
+        """Move a message on to its next status for one reader; ``seat`` is the one that does it."""
+        receipt = Receipt(message=number, status=status, tick=tick, by=reader, yes=more.get("yes"))
+        self._deliveries[number, reader] = receipt
+        if status not in _OPEN:
+            self._inboxes[reader] = tuple(other for other in self._inboxes[reader] if other != number)
         sender = self._messages[number].sender
-        if self._last[sender] == number:
-            self._changed.add(sender)
-        return Event(tick=tick, seat=seat, kind=status, data={"message": number, "sender": sender, **more})
+        if self._receipts[sender].message == number:
+            self._receipts[sender] = receipt
+            self._changed.add((sender, "receipt"))
+        data = {"message": number, "sender": sender, **more}
+        if status == "covered" and len(self._people) > 1:
+            data["reader"] = reader
+        return Event(tick=tick, seat=seat, kind=status, data=data)
 
     def _send_refusal(self, sender: str, send: Send) -> str:
-        if sender not in self._robots:
-            return f"only robots send messages, this trial's are: {', '.join(self._robots) or 'none'}"
-        written: tuple[Any, Any] = (send.text, send.object)
+        seats = (*self._people, *self._robots)
+        if sender not in seats:
+            return f"{sender} is no seat of this trial; its seats are {', '.join(seats)}"
+        to: Any = send.to
+        if not isinstance(to, str) or (to and (to not in seats or to == sender)):
+            return f"'{to}' is no other seat of this trial; its seats are {', '.join(seats)}"
+        written: tuple[Any, ...] = (send.text, send.object)
         if not all(isinstance(part, str) for part in written):
             return "text and object must be str"
         if send.position is not None and parse_point(send.position) is None:
             return "position must be None or three finite numbers x, y, z in metres of the house frame"
-        return ""
+        question: Any = send.question
+        if not isinstance(question, bool):
+            return "question must be a bool"
+        if send.answers is not None and (reason := self._answer_refusal(sender, send)):
+            return reason
+        readers = self._readers(sender, send)
+        if not readers:
+            return "nobody else is in this trial"
+        return "robots write to people only" if sender in self._robots and readers[0] in self._robots else ""
+
+    def _answer_refusal(self, sender: str, send: Send) -> str:
+        number: Any = send.answers
+        if not _is_number(number) or not 0 <= number < len(self._messages):
+            return "there is no such question"
+        question = self._messages[number]
+        if not question.question or (number, sender) not in self._deliveries:
+            return f"message {number} is no question to {sender}"
+        if send.to not in ("", question.sender):
+            return f"message {number} was asked by {question.sender}, not by {send.to}"
+        status = self._deliveries[number, sender].status
+        return "" if status in _OPEN else f"the question is already {status}"
 
     def _reply_refusal(self, seat: str, reply: Reply) -> str:
-        if seat != HUMAN:
-            return "only the person replies"
+        if seat not in self._people:
+            return "only people reply; a robot answers with a message"
         number: Any = reply.message
-        if not isinstance(number, int) or isinstance(number, bool) or not isinstance(reply.accept, bool):
+        if not _is_number(number) or not isinstance(reply.accept, bool):
             return "message must be a number and accept a bool"
-        if not 0 <= number < len(self._messages):
+        if (number, seat) not in self._deliveries:
             return "there is no such message"
-        status = self._status[number].status
+        status = self._deliveries[number, seat].status
         return "" if status in _OPEN else f"the message is already {status}"
 
     @staticmethod
@@ -144,6 +222,25 @@ class Mailbox:
         number = message if isinstance(message, int) else None
         data = {"reason": reason} if number is None else {"reason": reason, "message": number}
         return Event(tick=tick, seat=seat, kind="refused", data=data)
+
+
+def _sent(message: Message, cut: int) -> Event:
+    """The event that a message was sent; ``cut`` is how many characters its text lost."""
+    data: dict[str, Any] = {
+        "message": message.id,
+        "text": message.text,
+        "object": message.object,
+        "position": _plain(message.position),
+    }
+    extra = {"cut": cut, "to": message.to, "question": message.question}
+    data |= {name: value for name, value in extra.items() if value}
+    if message.answers is not None:
+        data["answers"] = message.answers
+    return Event(tick=message.tick, seat=message.sender, kind="sent", data=data)
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool)
 
 
 def _plain(position: Vec3 | None) -> list[float] | None:

@@ -36,6 +36,7 @@ from hthor.types import (
     Vec3,
     View,
     Wait,
+    is_person,
 )
 from hthor.world import numbers, walk_to
 from hthor.world.interactive_simulation import InteractiveSimulation
@@ -228,26 +229,38 @@ class Actor:
 
     # ----------------------------------------------------------------------------------------------- communication
 
-    def send(self, text: str, object: str = "", position: Vec3 | None = None) -> Receipt:
-        """Send the person an image-text message: the image is this body's own view now.
+    def send(
+        self,
+        text: str,
+        object: str = "",
+        position: Vec3 | None = None,
+        *,
+        to: str = "",
+        question: bool = False,
+        answers: int | None = None,
+    ) -> Receipt:
+        """Send a message; a robot's has an image, its own view now.
 
         Args:
             text: its words. object: id or kind of the thing it is about. position: [m] where the sender believes it is.
+            to, question, answers: as in `hthor.types.Send`.
 
         Raises:
-            HthorError: when this seat may not send, or an argument is invalid.
+            HthorError: when this seat may not send that, or an argument is invalid.
         """
-        world, words = self._world, Send(text=text, object=object, position=position)
-        self._post(world.mail.send(world.tick, self.seat, words, world.frame(self.seat)))
+        world = self._world
+        send = Send(text=text, object=object, position=position, to=to, question=question, answers=answers)
+        image = None if is_person(self.seat) else world.frame(self.seat)
+        self._post(world.mail.send(world.tick, self.seat, send, image))
         receipt = world.mail.receipt(self.seat)
         assert receipt is not None
         return receipt
 
     def inbox(self) -> tuple[Message, ...]:
-        """The message that waits for an answer, only for the person; reading it sets its status to "shown"."""
+        """A person's open message; a robot's new messages and open questions. Reading sets their status to "shown"."""
         messages = self._world.mail.inbox(self.seat)
         if messages:
-            self._post(self._world.mail.shown(self._world.tick))
+            self._post(self._world.mail.shown(self._world.tick, self.seat))
         return messages
 
     def reply(self, accept: bool, message: int | None = None) -> None:
@@ -264,7 +277,7 @@ class Actor:
         self._post(self._world.mail.reply(self._world.tick, self.seat, Reply(message=message, accept=accept)))
 
     def receipt(self) -> Receipt | None:
-        """The status of this robot's last message: sent, shown, accepted, declined or covered; None before any."""
+        """The latest status of this seat's last message, see `hthor.types.Receipt`; None before any."""
         return self._world.mail.receipt(self.seat)
 
     def _post(self, events: Iterable[Event]) -> None:

@@ -6,7 +6,20 @@ from hthor import catalog, rules
 from hthor.comms.mailbox import Mailbox
 from hthor.errors import UnknownName
 from hthor.geometry import plane
-from hthor.types import Event, Message, Motion, Outcome, Placement, Receipt, Room, TaskSpec, Thing, ThingState, Vec3
+from hthor.types import (
+    Event,
+    Message,
+    Motion,
+    Outcome,
+    Placement,
+    Receipt,
+    Room,
+    TaskSpec,
+    Thing,
+    ThingState,
+    Vec3,
+    is_person,
+)
 from hthor.world import numbers
 from hthor.world.motion import spawn
 from hthor.world.sensing_simulation import SensingSimulation
@@ -131,7 +144,8 @@ class InteractiveSimulation(SensingSimulation):
 
     def _begin(self, placements: dict[str, Placement], task: str = "") -> None:
         super()._begin(placements, task)
-        self.mail = Mailbox(robots=self.seats[1:])
+        people = tuple(seat for seat in self.seats if is_person(seat))
+        self.mail = Mailbox(self.seats[len(people) :], people)
         self.events: list[Event] = []
 
     def _room(self, name: str) -> Room:

@@ -120,7 +120,7 @@ def test_array_positions_become_plain_floats():
 @pytest.mark.parametrize(
     ("seat", "send"),
     [
-        (HUMAN, Send(text="a")),
+        ("ghost", Send(text="a")),
         ("robot9", Send(text="a")),
         ("robot", Send(text=None)),
         ("robot", Send(text="", object=3)),
@@ -161,7 +161,7 @@ def test_text_is_one_line_of_encodable_characters(written):
 
 
 acts = st.one_of(
-    st.tuples(st.just("send"), st.sampled_from((*ROBOTS, HUMAN)), st.text(max_size=5)),
+    st.tuples(st.just("send"), st.sampled_from(ROBOTS), st.text(max_size=5)),
     st.tuples(st.just("shown"), st.none(), st.none()),
     st.tuples(st.just("reply"), st.integers(-1, 8), st.booleans()),
 )
@@ -187,3 +187,104 @@ def test_laws_of_every_history(history):
             assert RANK[after[number]] > RANK[status] or after[number] == status
         before = after
     assert sorted(ends) == [number for number, status in before.items() if RANK[status] == 2]
+
+
+PEOPLE = (HUMAN, "human2")
+
+
+def test_each_person_answers_a_message_to_all():
+    box = Mailbox(ROBOTS, PEOPLE)
+    box.send(0, "robot", Send(text="here"))
+    box.reply(1, "human2", Reply(message=0, accept=True))
+    assert [receipt.status for _, receipt in box.messages] == ["sent", "accepted"]
+    assert (box.receipt("robot").by, box.receipt("robot").status) == ("human2", "accepted")
+    assert len(box.inbox(HUMAN)) == 1
+    assert box.inbox("human2") == ()
+
+
+def test_a_message_to_one_leaves_the_other_panel_alone():
+    box = Mailbox(ROBOTS, PEOPLE)
+    box.send(0, "robot", Send(text="both"))
+    events = box.send(1, "robot2", Send(text="one", to="human2"))
+    assert [(event.kind, event.data.get("reader")) for event in events] == [("covered", "human2"), ("sent", None)]
+    assert [message.text for message in box.inbox(HUMAN)] == ["both"]
+    assert [message.text for message in box.inbox("human2")] == ["one"]
+
+
+def test_people_write_to_robots_which_see_it_once():
+    box = Mailbox(ROBOTS, PEOPLE)
+    box.send(0, HUMAN, Send(text="I take the kitchen.", position=(1, 2, 0)))
+    assert [message.text for message in box.inbox("robot")] == ["I take the kitchen."]
+    assert kinds(box.shown(0, "robot")) == ["shown"]
+    assert box.inbox("robot") == ()
+    assert len(box.inbox("human2")) == len(box.inbox("robot2")) == 1
+
+
+def test_a_question_to_a_person_is_answered_by_yes_or_no():
+    box = Mailbox(ROBOTS)
+    box.send(0, "robot", Send(text="Did you find it?", question=True))
+    (event,) = box.reply(4, HUMAN, Reply(message=0, accept=False))
+    assert (event.kind, event.data["yes"]) == ("answered", False)
+    assert (box.receipt("robot").status, box.receipt("robot").yes) == ("answered", False)
+
+
+def test_a_question_to_a_robot_stays_until_it_is_answered():
+    box = Mailbox(ROBOTS)
+    box.send(0, HUMAN, Send(text="Where is it?", to="robot", question=True))
+    box.shown(0, "robot")
+    assert len(box.inbox("robot")) == 1
+    assert kinds(box.send(3, "robot", Send(text="There.", answers=0))) == ["answered", "sent"]
+    assert box.inbox("robot") == ()
+    assert box.inbox(HUMAN)[0].answers == 0
+    assert kinds(box.send(4, "robot", Send(text="There!", answers=0))) == ["refused"]
+
+
+def test_a_newer_question_of_the_same_person_covers_the_older():
+    box = Mailbox(ROBOTS, PEOPLE)
+    box.send(0, HUMAN, Send(text="Where is it?", to="robot", question=True))
+    box.send(0, "human2", Send(text="And the mug?", to="robot", question=True))
+    events = box.send(3, HUMAN, Send(text="Where is the book?", to="robot", question=True))
+    assert kinds(events) == ["covered", "sent"]
+    assert [message.text for message in box.inbox("robot")] == ["And the mug?", "Where is the book?"]
+
+
+@pytest.mark.parametrize(
+    ("seat", "send"),
+    [
+        ("robot", Send(text="a", to="robot2")),
+        ("robot", Send(text="a", to="robot")),
+        ("robot", Send(text="a", to="ghost")),
+        ("robot", Send(text="a", to=3)),
+        ("robot", Send(text="a", question="yes")),
+        ("robot", Send(text="a", answers=7)),
+        ("robot", Send(text="a", answers=0)),
+        ("robot2", Send(text="a", answers=1)),
+        ("robot", Send(text="a", answers=1, to="human2")),
+    ],
+)
+def test_addresses_and_answers_that_fit_nothing_are_refused(seat, send):
+    box = Mailbox(ROBOTS, PEOPLE)
+    box.send(0, "robot", Send(text="a statement", to=HUMAN))
+    box.send(0, HUMAN, Send(text="a question", to="robot", question=True))
+    assert kinds(box.send(1, seat, send)) == ["refused"]
+    assert len(box.messages) == 2
+
+
+@pytest.mark.slow
+@given(st.lists(acts, max_size=20), st.lists(acts, max_size=10))
+def test_a_copy_has_the_same_future(past, future):
+    box, copy = Mailbox(ROBOTS), Mailbox(ROBOTS)
+
+    def play(box, history, start):
+        for tick, (what, a, b) in enumerate(history, start):
+            if what == "send":
+                yield box.send(tick, a, Send(text=b))
+            elif what == "shown":
+                yield box.shown(tick)
+            else:
+                yield box.reply(tick, HUMAN, Reply(message=a, accept=b))
+
+    list(play(box, past, 0))
+    copy.load_state(box.save_state())
+    assert list(play(box, future, 100)) == list(play(copy, future, 100))
+    assert box.messages == copy.messages

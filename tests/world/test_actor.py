@@ -257,9 +257,20 @@ def test_the_image_is_the_sender_s_view_at_that_moment(world: World) -> None:
     assert (message.image() != robot.rgb()).any()
 
 
+def test_a_person_asks_and_a_robot_answers(world: World) -> None:
+    world.human.send("Where is the apple?", "apple", to="robot", question=True)
+    assert world.actor("robot2").inbox() == ()
+    (question,) = world.robot.inbox()
+    world.robot.send("On the table.", "apple", (1.0, 2.0, 0.8), answers=question.id)
+    assert world.robot.inbox() == ()
+    assert (world.human.receipt().status, world.human.receipt().by) == ("answered", "robot")
+    (answer,) = world.human.inbox()
+    assert (answer.answers, answer.to, answer.position) == (question.id, "human", (1.0, 2.0, 0.8))
+
+
 def test_who_may_not_speak_or_answer_is_told_so(world: World) -> None:
-    with pytest.raises(HthorError, match="human"):
-        world.human.send("hello")
+    with pytest.raises(HthorError, match="ghost"):
+        world.human.send("hello", to="ghost")
     world.robot.send("hello")
     with pytest.raises(HthorError, match="robot"):
         world.robot.reply(accept=True, message=0)
