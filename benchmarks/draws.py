@@ -74,7 +74,7 @@ def played(agent: str, way: str, suite: str, people: int) -> dict[str, list[floa
             for trial in hand.trials:
                 log = run_episode(trial, stage.world(trial), human, minds)
                 measured = trial_metrics.measure(trial, log)
-                found["person"].append(trial.participant)
+                found["person"].append(trial.session)
                 for metric in METRICS:
                     found[metric].append(getattr(measured, metric))
     return found

@@ -41,8 +41,8 @@ def player(path: Path) -> Callable[[Session], Iterator[TrialRecord]]:
 def sessions(folder: Path) -> list[Session]:
     """The sessions of a finished run, from its log."""
     _, records = RunFolder(folder).digest()
-    people = itertools.groupby(records, key=lambda one: one.spec.participant)
-    return [Session(participant=who, trials=tuple(one.spec for one in mine)) for who, mine in people]
+    people = itertools.groupby(records, key=lambda one: one.spec.session)
+    return [Session(number=who, trials=tuple(one.spec for one in mine)) for who, mine in people]
 
 
 def main() -> None:

@@ -34,7 +34,7 @@ def player(folder: Path, sources: object = None) -> Callable[[Session], Iterator
 
     def perform(session: Session) -> Iterator[TrialRecord]:
         for trial in session.trials:
-            log = kept[bool(trial.robots), trial.participant, trial.index]
+            log = kept[bool(trial.robots), trial.session, trial.index]
             yield TrialOutcome(record=trial_record.make_record(trial, log))
 
     return perform
@@ -88,7 +88,7 @@ def _timed(work: Callable[..., object], name: str, spent: dict[str, float]) -> C
 
 
 def _seat(one: TrialRecord) -> tuple[bool, int, int]:
-    return bool(one.spec.robots), one.spec.participant, one.spec.index
+    return bool(one.spec.robots), one.spec.session, one.spec.index
 
 
 if __name__ == "__main__":

@@ -112,7 +112,7 @@ def played(task_id: str) -> TrialRecord:
     for one in sessions.make_sessions(suite, agent=crew):
         ids = [trial.task.id for trial in one.trials]
         if task_id in ids:
-            until = sessions.Session(participant=one.participant, trials=one.trials[: ids.index(task_id) + 1])
+            until = sessions.Session(number=one.number, trials=one.trials[: ids.index(task_id) + 1])
             return [done.record for done in trial_runner.make_runner()(until)][-1]
     raise ValueError(f"the suite {suite.name} has no task {task_id}")
 

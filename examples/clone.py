@@ -52,8 +52,8 @@ def read(runs: Iterable[Path]) -> tuple[Decisions, Decisions]:
     for run in runs:
         count = 0
         for _, record in trial_log.read(run / "trials.jsonl" if run.is_dir() else run):
-            side = test if record.spec.participant % EVERY == EVERY - 1 else learn
-            side.people.add((record.spec.seed, record.spec.participant))
+            side = test if record.spec.session % EVERY == EVERY - 1 else learn
+            side.people.add((record.spec.seed, record.spec.session))
             for event in record.journal:
                 count += event.kind in ("choice", "offer")
                 if event.kind == "choice" and event.data["aim"] == "target" and len(event.data["options"]) > 1:
@@ -117,7 +117,7 @@ def fit_answer(values: np.ndarray, said: np.ndarray) -> np.ndarray:
 def law(choice: tuple[TrialSpec, list[list[float]], int]) -> list[float]:
     """What the proxy that chose made of its options: the utilities of its own law, with its own parameters."""
     spec, options, _ = choice
-    traits = with_practice(_traits(spec.human, spec.seed, spec.participant), spec.index)
+    traits = with_practice(_traits(spec.humans[0].model, spec.seed, spec.humans[0].participant), spec.index)
     found = []
     for knowledge, uniform, metres, exposure, closed, is_door in options:
         belief = traits.w_prior * knowledge + (1.0 - traits.w_prior) * uniform

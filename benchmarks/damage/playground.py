@@ -50,7 +50,7 @@ def _faults(run: Path) -> None:
     key = find.find_trial(RunFolder(run), "0").key
     failure = fault_report.Failure(seat="robot", agent="oracle", kind="raised", tick=3, time_s=0.3, detail="lost")
     left = fault_report.FaultReport(
-        key=key, task=spec.task.id, participant=spec.participant, index=spec.index, failures=(failure,)
+        key=key, task=spec.task.id, session=spec.session, index=spec.index, failures=(failure,)
     )
     jsonio.write(run / fault_report.FOLDER / f"{key}.json", jsonio.pretty(left))
 

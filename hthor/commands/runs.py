@@ -129,6 +129,6 @@ def _trial(line: TrialLine) -> tuple[object, ...]:
     trust = "–" if line.trust is None else line.trust
     outcome = "met" if line.met else "not met"
     return (
-        line.number, line.task, line.house, line.participant, outcome, f"{line.time_s:.1f}", line.sent, line.accepted,
+        line.number, line.task, line.house, line.session, outcome, f"{line.time_s:.1f}", line.sent, line.accepted,
         trust, line.fault,
     )  # fmt: skip

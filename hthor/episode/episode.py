@@ -79,7 +79,7 @@ class Episode:
         thinking: Thinking | None,
     ) -> None:
         self.task, self.world, self.human, self.thinking = trial.task, world, human, thinking
-        self.seed = seeds.derive(trial.seed, "world", trial.participant, trial.index, trial.task.id)
+        self.seed = seeds.derive(trial.seed, "world", trial.session, trial.index, trial.task.id)
         self.agents: dict[str, Mind] = {HUMAN: human, **robots}
         self.privileges = {robot.seat: robot.agent.privileges for robot in trial.robots}
         self.kind: TaskKind = plugins.load("task kind", self.task.kind)
@@ -121,7 +121,7 @@ class Episode:
             paths=self.paths,
             ticks=ticks,
             met=met,
-            trust=self.human.rate(met, ticks),
+            ratings={HUMAN: self.human.rate(met, ticks)},
             faults=tuple(self.faults),
             progress=self.progress.value,
             idle=self.idle,

@@ -23,7 +23,7 @@ class EpisodeLog(Struct, frozen=True, kw_only=True):
             millimetres and milliradians.
         ticks: the trial's length.
         met: whether the goal was met.
-        trust: the participant's rating of trust, 1 to 7; None without a robot.
+        ratings: each person's rating of trust in the robots, 1 to 7, by seat; None without a robot.
         faults: failures of agents.
         progress: the share of the goal that is met at the end, from 0 to 1; None for task kinds without partial goals.
             Every change of it is an event "progress" with the new ``value``.
@@ -36,7 +36,7 @@ class EpisodeLog(Struct, frozen=True, kw_only=True):
     paths: dict[str, list[tuple[int, int, int]]]
     ticks: int
     met: bool
-    trust: int | None
+    ratings: dict[str, int | None]
     faults: tuple[Fault, ...]
     progress: float | None = None
     idle: dict[str, int] = {}

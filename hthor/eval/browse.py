@@ -141,7 +141,7 @@ class TrialFilter(Struct, frozen=True, kw_only=True):
             (not self.task or self.task in (task.id, task.goal.target))
             and (not self.kind or self.kind == task.kind)
             and (not self.house or self.house == task.house)
-            and self.participant in (None, record.spec.participant)
+            and (self.participant is None or any(one.participant == self.participant for one in record.spec.humans))
             and self.met in (None, record.met)
             and self.faulty in (None, bool(record.faults))
         )
@@ -154,12 +154,12 @@ class TrialLine(Struct, frozen=True, kw_only=True):
     key: str
     task: str
     house: str
-    participant: int
+    session: int
     met: bool
     time_s: float
     sent: int
     accepted: int
-    trust: int | None
+    trust: float | None
     fault: str
 
 
@@ -209,12 +209,12 @@ def _line(number: int, record: TrialRecord) -> TrialLine:
         key=record.key,
         task=spec.task.id,
         house=spec.task.house,
-        participant=spec.participant,
+        session=spec.session,
         met=record.met,
         time_s=round(record.ticks * rules.TICK_S, 1),
         sent=int(record.metrics["sent"] or 0),
         accepted=int(record.metrics["accepted"] or 0),
-        trust=record.trust,
+        trust=record.metrics["trust"],
         fault=f"{first.kind} at {first.tick * rules.TICK_S:.1f} s" if first else "",
     )
 

@@ -25,7 +25,18 @@ from hthor.types.house import (
 )
 from hthor.types.observations import Briefing, Message, Observation, Outcome, Receipt, Status, ThingState
 from hthor.types.sensors import Camera, CameraSpec, Detection, DetectorSpec, Scan, Senses, Sighting, View
-from hthor.types.specs import AgentRef, BodySpec, Goal, Job, Placement, RobotSeat, RobotSpec, TaskSpec, TrialSpec
+from hthor.types.specs import (
+    AgentRef,
+    BodySpec,
+    Goal,
+    HumanSeat,
+    Job,
+    Placement,
+    RobotSeat,
+    RobotSpec,
+    TaskSpec,
+    TrialSpec,
+)
 
 __all__ = [
     "HUMAN",
@@ -43,6 +54,7 @@ __all__ = [
     "Event",
     "Goal",
     "HouseSpec",
+    "HumanSeat",
     "Job",
     "Joint",
     "Message",

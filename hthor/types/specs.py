@@ -161,10 +161,31 @@ class RobotSeat(Struct, frozen=True, kw_only=True):
     camera: str | msgspec.UnsetType = msgspec.UNSET
 
 
+class HumanSeat(Struct, frozen=True, kw_only=True):
+    """One person of a trial.
+
+    Attributes:
+        seat: the body: "human", "human2" ...
+        model: the name of the human population that this person belongs to, as tables have it.
+        sha256: hash of everything that decides how these people behave, except hthor's own code.
+        participant: the person's number in the study. With N people, session i is played by participants N*i to
+            N*i + N - 1, in the order of their seats; so with one person it is the session's number.
+    """
+
+    seat: str
+    model: str
+    sha256: str
+    participant: int
+
+
 class TrialSpec(Struct, frozen=True, kw_only=True):
     """Everything that determines a trial; its content hash is the trial's key.
 
     Attributes:
+        humans: the people, in the order of their seats.
+        session: the number of the session that the trial belongs to, counted from 0; the tasks and the world's chance
+            depend on it. ``index``: the trial's place in its session, from 0.
+        attempt: set only for a repetition: how often the trial was voided before.
         assets_sha256: hash of the looks in robots' pictures and of the code that draws them, empty if no agent is known
             to take pictures.
         kind_sha256: hash of the task kind's file if it is a user's own, empty for a kind that ships with hthor.
@@ -174,9 +195,8 @@ class TrialSpec(Struct, frozen=True, kw_only=True):
 
     task: TaskSpec
     robots: tuple[RobotSeat, ...]
-    human: str
-    human_sha256: str
-    participant: int
+    humans: tuple[HumanSeat, ...]
+    session: int
     index: int
     seed: int
     suite_sha256: str
@@ -186,3 +206,4 @@ class TrialSpec(Struct, frozen=True, kw_only=True):
     kind_sha256: str = ""
     realtime: bool | msgspec.UnsetType = msgspec.UNSET
     step_limit_s: float | msgspec.UnsetType = msgspec.UNSET
+    attempt: int | msgspec.UnsetType = msgspec.UNSET

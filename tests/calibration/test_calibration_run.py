@@ -119,7 +119,7 @@ def test_a_session_is_what_an_evaluation_would_have_played():
     for row, (trial, log) in zip(rows, logs, strict=True):
         told = dict(zip(session_simulation.OUTCOMES, row, strict=True))
         assert TINY.tasks[told["task"]].id == trial.task.id
-        assert (told["met"], told["trust"]) == (log.met, log.trust)
+        assert (told["met"], told["trust"]) == (log.met, log.ratings["human"])
         assert told["ticks"] == (log.ticks if log.met else 900)
         assert told["messages"] == sum(event.kind == "sent" for event in log.events)
 

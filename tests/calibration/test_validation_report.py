@@ -203,7 +203,7 @@ def test_records_become_the_same_numbers() -> None:
     made = build.records_table(runs, suite)
     for number, condition in ((0, "none"), (2, "oracle")):
         one = made.take(made.condition == number)
-        order = sorted(runs[condition], key=lambda done: (done.spec.participant, done.spec.index))
+        order = sorted(runs[condition], key=lambda done: (done.spec.session, done.spec.index))
         place = np.lexsort((one.index, one.participant))
         assert np.array_equal(one.met[place], [bool(done.metrics.sr) for done in order])
         assert np.allclose(tables.time_spent_s(one)[place], [done.metrics.time_s for done in order])

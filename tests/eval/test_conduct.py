@@ -17,7 +17,7 @@ NOTES = ProbeResult(
 
 
 def log(path: list[tuple[int, int, int]], *events: Event) -> EpisodeLog:
-    return EpisodeLog(events=events, paths={"robot": path}, ticks=300, met=False, trust=None, faults=())
+    return EpisodeLog(events=events, paths={"robot": path}, ticks=300, met=False, ratings={"human": None}, faults=())
 
 
 def sent(text: str, tick: int = 0) -> Event:

@@ -144,7 +144,7 @@ def test_a_damaged_past_is_no_past(run: Path, tmp_path: Path) -> None:
     lines = (run / "trials.jsonl").read_bytes().splitlines(keepends=True)
     (tmp_path / "trials.jsonl").write_bytes(b"".join(lines[1:]))
     wanted = find.find_trial(RunFolder(tmp_path), "1")
-    with pytest.raises(RunError, match="lacks some of the trials that participant 0 did before"):
+    with pytest.raises(RunError, match="lacks some of the trials before this one in session 0"):
         human_trace.trace_human(RunFolder(tmp_path), wanted, RunFiles())
     other = msgspec.structs.replace(wanted, spec=msgspec.structs.replace(wanted.spec, code_sha256="0" * 64))
     with pytest.raises(RunError, match="another version of hthor"):

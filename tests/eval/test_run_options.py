@@ -134,7 +134,7 @@ def test_an_agent_that_takes_longer_than_the_limit_fails(tmp_path: Path, seconds
     who = robot_team.form_team(["scout"], [slow])
     trials = sessions.make_sessions(suite(1), agent=who, human="greedy", step_limit_s=seconds)[0].trials
     with trial_runner.TrialRunner(Sources(agent_paths=who.agent_paths, manifests=who.manifests)).enter(
-        Session(participant=0, trials=trials)
+        Session(number=0, trials=trials)
     ) as company:
         mind = company.ready_agents()["robot"]
         mind.begin(guest_agents.BRIEFING)

@@ -21,7 +21,21 @@ from hthor.humans.population.parameters import Parameters
 from hthor.humans.population.participant import Participant
 from hthor.tasks.suite import make_suite
 from hthor.tasks.suites import library
-from hthor.types import Action, AgentRef, Goal, Message, Move, Pose, RobotSeat, Send, TaskSpec, TrialSpec, Wait
+from hthor.types import (
+    HUMAN,
+    Action,
+    AgentRef,
+    Goal,
+    HumanSeat,
+    Message,
+    Move,
+    Pose,
+    RobotSeat,
+    Send,
+    TaskSpec,
+    TrialSpec,
+    Wait,
+)
 from hthor.world import World
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -76,8 +90,9 @@ def bring(support: str = BED, start: Pose | None = None, **changes) -> TaskSpec:
 
 
 def spec(task: TaskSpec, robots=(SEAT,), participant: int = 0, index: int = 0) -> TrialSpec:
-    hashes = dict.fromkeys(("human_sha256", "suite_sha256", "rules_sha256", "code_sha256"), "0")
-    return TrialSpec(task=task, robots=robots, human="proxy", participant=participant, index=index, seed=0, **hashes)
+    humans = (HumanSeat(seat=HUMAN, model="proxy", sha256="0", participant=participant),)
+    hashes = dict.fromkeys(("suite_sha256", "rules_sha256", "code_sha256"), "0")
+    return TrialSpec(task=task, robots=robots, humans=humans, session=participant, index=index, seed=0, **hashes)
 
 
 @pytest.fixture(scope="module")
@@ -97,7 +112,7 @@ def log(world, tmp_path_factory) -> Path:
             trial, world, person, {"robot": Teller(Send(text="Here.", object="apple", position=at(support)))}
         )
         assert done.met
-        assert done.trust is not None
+        assert done.ratings[HUMAN] is not None
         lines += trial_record.encode(trial_record.make_record(trial, done))
     (folder / "trials.jsonl").write_bytes(lines)
     return folder
@@ -137,7 +152,7 @@ def test_plays_whole_trials_in_the_real_world_the_same_twice(name, world, log):
             done = umpire.run_episode(
                 trial, world, person, {"robot": Teller(Send(text="Here.", object="apple", position=at(support)))}
             )
-            assert done.trust in range(rules.TRUST_MIN, rules.TRUST_MAX + 1)
+            assert done.ratings[HUMAN] in range(rules.TRUST_MIN, rules.TRUST_MAX + 1)
             found.append(trial_record.encode(trial_record.make_record(trial, done)))
         return person, found
 
@@ -308,7 +323,7 @@ def test_a_replay_does_the_same_whatever_the_robot_says(robot, world, log):
         wanted = [(e.tick, e.kind, e.data) for e in one.events if e.seat == "human"]
         answered = {"accepted", "shown"} if robot == "silent" else set()
         assert [deed for deed in wanted if deed[1] not in answered | {"shown"}] == deeds(done)
-        assert done.trust == one.trust
+        assert done.ratings == one.ratings
         assert done.met
 
 

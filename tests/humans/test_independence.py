@@ -106,7 +106,9 @@ def test_a_robot_that_is_never_in_the_way_changes_nothing_at_all(
 def person(log: EpisodeLog) -> bytes:
     """All that a trial's log has of the person, as it is written."""
     events = [event for event in log.events if event.seat == HUMAN]
-    return msgspec.json.encode((log.paths[HUMAN], events, log.journal, log.ticks, log.met, log.trust, log.idle[HUMAN]))
+    return msgspec.json.encode(
+        (log.paths[HUMAN], events, log.journal, log.ticks, log.met, log.ratings, log.idle[HUMAN])
+    )
 
 
 def test_two_robots_that_neither_speak_nor_stand_in_the_way_meet_the_same_person(
@@ -127,6 +129,6 @@ def test_the_person_alone_is_the_same_person(stage: trial_runner.TrialRunner, al
     same = 0
     for without, spun in zip(alone, first_trials("frontier", stage, Spinner()), strict=True):
         if meeting(spun) >= spun.ticks:
-            assert person(msgspec.structs.replace(spun, trust=None)) == person(without)
+            assert person(msgspec.structs.replace(spun, ratings={HUMAN: None})) == person(without)
             same += 1
     assert same > 2

@@ -92,10 +92,7 @@ def played() -> list[TrialRecord]:
     smoke = tasks.load_suite("smoke")
     few = make_suite("few", 1, tuple(task for task in smoke.tasks if task.house == "alder"))
     whole = make_sessions(few, agent="oracle", seed=3)[0]
-    return [
-        done.record
-        for done in trial_runner.make_runner()(Session(participant=whole.participant, trials=whole.trials[:4]))
-    ]
+    return [done.record for done in trial_runner.make_runner()(Session(number=whole.number, trials=whole.trials[:4]))]
 
 
 @pytest.mark.slow

@@ -284,9 +284,13 @@ def test_every_robot_meets_the_same_people(files: Path):
             trial = one.trials[0]
             found = stage._population_of(trial)
             whole.append(
-                (one.participant, [t.task.id for t in one.trials], found.participant(trial.seed, trial.participant))
+                (
+                    one.number,
+                    [t.task.id for t in one.trials],
+                    found.participant(trial.seed, trial.humans[0].participant),
+                )
             )
-            assert (trial.human, trial.human_sha256) == (found.name, found.sha256)
+            assert (trial.humans[0].model, trial.humans[0].sha256) == (found.name, found.sha256)
         met.append(whole)
     assert met[0] == met[1] == met[2] == met[3]
     assert len({traits.traits.v_pace for _, _, traits in met[0]}) == len(met[0])

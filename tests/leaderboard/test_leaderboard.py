@@ -341,7 +341,7 @@ def test_no_row_can_be_changed_moved_or_left_out(rows: list[bytes], data: st.Dat
 def test_what_an_entry_says_of_people_is_how_they_were_dealt():
     for count in (1, 9, 20, 33):
         _, dealt = fakes.run_of(count)
-        whose = [session.participant for session in dealt for _ in session.trials]
+        whose = [session.number for session in dealt for _ in session.trials]
         assert entry_metrics.trial_participants(count, len(dealt)) == whose
 
 

@@ -245,17 +245,15 @@ class Losing:
     """An engine that loses the sessions of one person, as where an agent's process is killed again and again."""
 
     def run_sessions(self, sessions, make):
-        yield SessionAbandoned(participant=1, cause="its process was killed by SIGKILL", detail="")
+        yield SessionAbandoned(session=1, cause="its process was killed by SIGKILL", detail="")
 
 
 def test_a_verification_needs_every_trial_that_was_drawn(whole: Path, monkeypatch: pytest.MonkeyPatch):
     entry = files.read_entry(entry_of(whole, "helper"))
-    trial = sessions.Session(participant=1, trials=())
+    trial = sessions.Session(number=1, trials=())
     wanted = [msgspec.structs.replace(trial, trials=(None,) * 4)]  # type: ignore[arg-type]
     monkeypatch.setattr(replay.engines, "find_engine", lambda *_, **__: Losing())
-    with pytest.raises(
-        BoardError, match=r"4 of the 4 trials.*could not be played \(participant 1: its process was killed"
-    ):
+    with pytest.raises(BoardError, match=r"4 of the 4 trials.*could not be played \(session 1: its process was killed"):
         replay.run_sessions(entry, wanted, None, None)  # type: ignore[arg-type]
 
 

@@ -20,7 +20,7 @@ from hthor.eval.records import trial_record
 from hthor.report.drawing import floor_plan, lettering, trial_figure, trial_trace, trial_video
 from hthor.report.html import matplotlib_svg
 from hthor.report.page.figures import trial_map
-from hthor.types import AgentRef, Event, RobotSeat, TrialSpec
+from hthor.types import AgentRef, Event, HumanSeat, RobotSeat, TrialSpec
 
 TASK = next(task for task in tasks.load_suite("smoke").tasks if task.kind == "mobile_manipulation")
 
@@ -31,9 +31,8 @@ def spec() -> TrialSpec:
     return TrialSpec(
         task=TASK,
         robots=(RobotSeat(seat="robot", robot="scout", agent=agent),),
-        human="proxy",
-        human_sha256="0",
-        participant=0,
+        humans=(HumanSeat(seat="human", model="proxy", sha256="0", participant=0),),
+        session=0,
         index=0,
         seed=0,
         suite_sha256="0",
@@ -56,7 +55,7 @@ def log() -> EpisodeLog:
     ]
     walk = [(1000 + 20 * step, 2000 + 10 * step, 400) for step in range(71)]
     paths = {"human": walk, "robot": [(x + 500, y, yaw) for x, y, yaw in walk]}
-    return EpisodeLog(events=tuple(events), paths=paths, ticks=141, met=True, trust=5, faults=())
+    return EpisodeLog(events=tuple(events), paths=paths, ticks=141, met=True, ratings={"human": 5}, faults=())
 
 
 @pytest.mark.slow

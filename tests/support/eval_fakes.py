@@ -101,7 +101,7 @@ def run_of(
 
 def episode(trial: TrialSpec, memory: int = 0) -> EpisodeLog:
     """A log that depends on the trial and on how many trials came before it in the session."""
-    names = (trial.task.id, trial.participant, trial.index, memory)
+    names = (trial.task.id, trial.session, trial.index, memory)
     met = seeds.draw(trial.seed, "met", *names) < 0.7
     ticks = 100 + int(600 * seeds.draw(trial.seed, "ticks", *names)) if met else 900
     events = []
@@ -122,7 +122,7 @@ def episode(trial: TrialSpec, memory: int = 0) -> EpisodeLog:
         paths=paths,
         ticks=ticks,
         met=met,
-        trust=5 if trial.robots else None,
+        ratings={"human": 5 if trial.robots else None},
         faults=faults,
         idle=dict.fromkeys(paths, ticks // 10),
     )
@@ -152,7 +152,7 @@ def leaning_player(sources: Sources | None = None) -> Callable[[Session], Iterat
 
     def perform(session_: Session) -> Iterator[TrialOutcome]:
         for trial in session_.trials:
-            chance = 0.5 if not trial.robots else 0.2 if trial.human.startswith("random") else 0.9
+            chance = 0.5 if not trial.robots else 0.2 if trial.humans[0].model.startswith("random") else 0.9
             met = seeds.draw(trial.seed, "met", trial.task.id) < chance
             log = episode(trial)
             ticks = 300 if met else 900
@@ -188,9 +188,9 @@ def dying_player(folder: str, deaths: int = 1) -> Callable[[Session], Iterator[T
 
     def perform(session_: Session) -> Iterator[TrialOutcome]:
         for number, played in enumerate(player()(session_)):
-            mark = Path(folder, f"died-{session_.participant}")
+            mark = Path(folder, f"died-{session_.number}")
             died = len(mark.read_text()) if mark.exists() else 0
-            if session_.participant % 2 == 0 and number == 2 + 3 * died and died < deaths:
+            if session_.number % 2 == 0 and number == 2 + 3 * died and died < deaths:
                 mark.write_text("x" * (died + 1))
                 os.kill(os.getpid(), signal.SIGKILL)
             yield played
@@ -202,7 +202,7 @@ def lonely_player(sources: Sources | None = None) -> Callable[[Session], Iterato
     """Participant 1 cannot be played without a robot."""
 
     def perform(session_: Session) -> Iterator[TrialOutcome]:
-        if session_.participant == 1 and not session_.trials[0].robots:
+        if session_.number == 1 and not session_.trials[0].robots:
             raise ZeroDivisionError("our own")
         yield from player()(session_)
 
@@ -228,7 +228,7 @@ def sick_player(folder: str, *ills: str) -> Callable[[Session], Iterator[TrialOu
 
     def perform(session_: Session) -> Iterator[TrialOutcome]:
         for number, played in enumerate(player()(session_)):
-            ill = {1: "crash", 3: "hang", 5: "bug"}.get(session_.participant) if number == 3 else None
+            ill = {1: "crash", 3: "hang", 5: "bug"}.get(session_.number) if number == 3 else None
             if ill == "crash" and ill in ills:
                 ctypes.string_at(0)
             if ill == "bug" and ill in ills:
@@ -282,10 +282,10 @@ def killing_player(times: int, plays: dict[int, int]) -> Callable[[Session], Ite
     """The agent of the third trial is killed in the first ``times`` plays of a session, which ``plays`` counts."""
 
     def perform(session_: Session) -> Iterator[TrialOutcome]:
-        plays[session_.participant] = plays.get(session_.participant, 0) + 1
+        plays[session_.number] = plays.get(session_.number, 0) + 1
         for memory, trial in enumerate(session_.trials):
             log = episode(trial, memory)
-            if memory == 2 and plays[session_.participant] <= times:
+            if memory == 2 and plays[session_.number] <= times:
                 fault = Fault(seat="robot", kind=KILLED, tick=1, detail="killed by SIGKILL")
                 log = msgspec.structs.replace(log, faults=(fault,))
             yield outcome(trial, log)
@@ -297,7 +297,7 @@ def late_player(times: int, plays: dict[int, int]) -> Callable[[Session], Iterat
     """The agent of participant 1 is killed before it can say what it is, so many times; ``plays`` counts them."""
 
     def perform(session_: Session) -> Iterator[TrialOutcome]:
-        if session_.participant == 1 and plays.get(1, 0) < times:
+        if session_.number == 1 and plays.get(1, 0) < times:
             plays[1] = plays.get(1, 0) + 1
             raise AgentKilled("helper.py: its process was killed by SIGKILL while it started.")
         yield from player()(session_)

@@ -16,6 +16,7 @@ from hthor.errors import RunError
 from hthor.eval.records import trial_record
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.humans.population.parameters import Parameters
+from hthor.types import HUMAN
 
 
 class Trial(Struct, frozen=True, kw_only=True):
@@ -71,7 +72,8 @@ def sessions_of(records: Iterable[TrialRecord]) -> Sessions:
 
 
 def _person(one: TrialRecord) -> tuple[str, str, int, int]:
-    return one.spec.human, one.spec.human_sha256, one.spec.seed, one.spec.participant
+    human = one.spec.humans[0]
+    return human.model, human.sha256, one.spec.seed, human.participant
 
 
 def _team(one: TrialRecord) -> tuple[str, ...]:
@@ -168,7 +170,7 @@ def _experience(record: TrialRecord) -> Experience:
         helped=helped,
         misled=len(misled),
         met=record.met,
-        rating=record.trust or 0,
+        rating=record.ratings[HUMAN] or 0,
     )
 
 

@@ -19,7 +19,7 @@ from hthor.humans.population import parameter_registry
 from hthor.humans.population.parameters import Parameters
 from hthor.humans.population.participant import Participant, add_random_effects, participant_root
 from hthor.tasks import Suite
-from hthor.types import HUMAN, RobotSeat, TaskSpec, TrialSpec
+from hthor.types import HUMAN, HumanSeat, RobotSeat, TaskSpec, TrialSpec
 
 CODE_ROOT = "sessions"
 
@@ -43,6 +43,11 @@ class SessionSpec(Struct, frozen=True, kw_only=True):
     point: tuple[float, ...]
     condition: int
     tasks: tuple[int, ...]
+
+    @property
+    def number(self) -> int:
+        """The session's number, by which workers report it: the participant's."""
+        return self.participant
 
 
 class SessionOutcome(Struct, frozen=True, kw_only=True):
@@ -92,7 +97,7 @@ def run_session(
 
 def run_trials(trials: Sequence[TrialSpec], population: Parameters, runner: TrialRunner) -> Iterator[EpisodeLog]:
     """Run the trials of one session with a person drawn from the population; yields the log of each."""
-    seed, participant = trials[0].seed, trials[0].participant
+    seed, participant = trials[0].seed, trials[0].humans[0].participant
     traits = add_random_effects(population, participant_root(seed, participant))
     human = Model(Participant(seed=seed, number=participant, traits=traits))
     agents = {seat.seat: plugins.load("agent", seat.agent.name)() for seat in trials[0].robots}
@@ -111,16 +116,15 @@ def outcome_row(number: int, trial: TrialSpec, log: EpisodeLog) -> OutcomeRow:
             first.setdefault(kind, event.tick)
     ticks = log.ticks if log.met else round(trial.task.time_limit / rules.TICK_S)
     ticks_of_first = [first.get(kind, -1) for kind in _FIRST]
-    return (number, int(log.met), ticks, *ticks_of_first, messages, int("accepted" in first), log.trust or 0)
+    return (number, int(log.met), ticks, *ticks_of_first, messages, int("accepted" in first), log.ratings[HUMAN] or 0)
 
 
 def _trial(spec: SessionSpec, task: TaskSpec, robots: tuple[RobotSeat, ...], index: int) -> TrialSpec:
     return TrialSpec(
         task=task,
         robots=robots,
-        human="proxy",
-        human_sha256="",
-        participant=spec.participant,
+        humans=(HumanSeat(seat=HUMAN, model="proxy", sha256="", participant=spec.participant),),
+        session=spec.participant,
         index=index,
         seed=spec.seed,
         suite_sha256="",

@@ -136,7 +136,7 @@ def _tell(paper: Console, done: Rerun) -> None:
     spec, ended = done.record.spec, done.record.ticks * rules.TICK_S
     how = "the goal was met" if done.record.met else "the time was up"
     lines = [
-        f"{spec.task.id}, trial {spec.index + 1} of participant {spec.participant}: {spec.task.instruction}",
+        f"{spec.task.id}, trial {spec.index + 1} of session {spec.session}: {spec.task.instruction}",
         f"after {ended:.1f} s {how}; {len(done.record.faults) or 'no'} fault{'s' * (len(done.record.faults) != 1)}",
     ]
     for failure in done.left.failures if done.left else ():

@@ -91,7 +91,7 @@ class ProbeTrials:
         return found
 
     def _play(self, guest: Guest, trial: TrialSpec) -> ProbeResult:
-        human = self._stage.enter(Session(participant=trial.participant, trials=(trial,))).human
+        human = self._stage.enter(Session(number=trial.session, trials=(trial,))).human
         noted, world = _Noted(guest), self._stage.world(trial)
         seat = trial.robots[0].seat
         log = run_episode(trial, world, human, {seat: noted})

@@ -16,7 +16,7 @@ from hthor.eval.config.robot_team import RobotTeam
 from hthor.humans.population import resolve
 from hthor.humans.population.resolve import PROXY, ParticipantSource
 from hthor.tasks import Suite
-from hthor.types import TaskSpec, TrialSpec
+from hthor.types import HUMAN, HumanSeat, TaskSpec, TrialSpec
 from hthor.types.detector_specs import OWN
 
 _T = TypeVar("_T")
@@ -24,9 +24,12 @@ _SHARD_ENDING = re.compile(r"-shard-\d+-of-\d+$")
 
 
 class Session(Struct, frozen=True, kw_only=True):
-    """One participant's trials in order. They remember earlier trials, so one process runs the whole session."""
+    """The trials of some people in order. They remember earlier trials, so one process runs the whole session.
 
-    participant: int
+    ``number`` counts the sessions of a run from 0.
+    """
+
+    number: int
     trials: tuple[TrialSpec, ...]
 
 
@@ -67,13 +70,12 @@ def make_sessions(
     rules_hash = rules.sha256()
     code_hash = code_identity.code_sha256(population.model, (task.kind for task in suite.tasks))
 
-    def trial(task: TaskSpec, participant: int, index: int) -> TrialSpec:
+    def trial(task: TaskSpec, session: int, index: int) -> TrialSpec:
         return TrialSpec(
             task=task,
             robots=team.seats,
-            human=population.name,
-            human_sha256=population.sha256,
-            participant=participant,
+            humans=(HumanSeat(seat=HUMAN, model=population.name, sha256=population.sha256, participant=session),),
+            session=session,
             index=index,
             seed=seed,
             suite_sha256=suite.sha256,
@@ -88,10 +90,10 @@ def make_sessions(
     count = participants_needed(len(suite.tasks)) if participants is None else participants
     return tuple(
         Session(
-            participant=participant,
-            trials=tuple(trial(suite.tasks[number], participant, index) for index, number in enumerate(hand)),
+            number=session,
+            trials=tuple(trial(suite.tasks[number], session, index) for index, number in enumerate(hand)),
         )
-        for participant, hand in enumerate(assign_many(suite.tasks, seed, range(count)))
+        for session, hand in enumerate(assign_many(suite.tasks, seed, range(count)))
     )
 
 

@@ -43,7 +43,7 @@ def run_reference_trial() -> TrialFingerprint:
     return TrialFingerprint(
         trial=done.spec.task.id,
         sha256=jsonio.sha256(course),
-        outcome={"met": done.met, "ticks": done.ticks, "trust": done.trust, "events": len(done.events)},
+        outcome={"met": done.met, "ticks": done.ticks, "trust": done.ratings["human"], "events": len(done.events)},
         platform=platform.this_platform(),
     )
 

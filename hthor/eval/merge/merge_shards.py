@@ -66,7 +66,7 @@ def merge_shards(folders: Sequence[Path], out: Path, *, dry: bool = False) -> Me
     """Join shards, all or some of them, in a folder that is then like an undivided run's.
 
     Shards may overlap and come from different divisions, such as thirds and halves. Records are written in the order of
-    participants and their trials. Trials that ``out`` has already stay, so merging again adds only new trials.
+    sessions and their trials. Trials that ``out`` has already stay, so merging again adds only new trials.
 
     Args:
         dry: only count; nothing is written.
@@ -108,7 +108,7 @@ def _read_shard(folder: RunFolder) -> _ShardLog:
         _check_shard(folder, record, config.shard)
         if record.files:
             opened.append(msgspec.structs.replace(record, paths={}, journal=(), events=()))
-        trial, mine = (record.spec.participant, record.spec.index), (place, record.key, trial_record.checksum(line))
+        trial, mine = (record.spec.session, record.spec.index), (place, record.key, trial_record.checksum(line))
         if lines.setdefault(trial, mine)[1:] != mine[1:]:
             raise RunError(
                 f"{place.path}: trial {record.key} is there twice, with different content. Delete one of the two lines."
@@ -117,10 +117,10 @@ def _read_shard(folder: RunFolder) -> _ShardLog:
 
 
 def _check_shard(folder: RunFolder, record: TrialRecord, shard: Shard) -> None:
-    participant = record.spec.participant
-    if participant not in shard.share(range(folder.config.participants)):
+    session = record.spec.session
+    if session not in shard.share(range(folder.config.participants)):
         raise RunError(
-            f"{folder.log_file}: trial {record.key}: spec.participant is {participant}, who is not in shard "
+            f"{folder.log_file}: trial {record.key}: spec.session is {session}, which is not in shard "
             f"{shard.words}. The line belongs to another shard; delete it."
         )
 

@@ -41,7 +41,7 @@ def find_trial(folder: RunFolder, name: str) -> TrialRecord:
 
 def _only(records: Sequence[TrialRecord], name: str) -> TrialRecord:
     if len(records) > 1:
-        listed = ", ".join(f"{record.key} (participant {record.spec.participant})" for record in records[:_SHOWN])
+        listed = ", ".join(f"{record.key} (session {record.spec.session})" for record in records[:_SHOWN])
         raise RunError(f"'{name}' stands for {len(records)} trials: {listed}. Give a key, or more of it.")
     return records[0]
 

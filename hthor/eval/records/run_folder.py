@@ -65,14 +65,14 @@ class RunFolder:
     @property
     def restarts(self) -> int:
         """How many sessions were run again because an agent's process was killed."""
-        return len(session_restarts.load(self.path).participants)
+        return len(session_restarts.load(self.path).sessions)
 
     def open_log(self) -> TrialLog:
         """The one writer of the run's log; see `TrialLog` for its errors."""
         return TrialLog(self.path)
 
     def lines(self) -> tuple[list[bytes], list[TrialRecord]]:
-        """Every line of the log and its record, in the order of participants and their trials.
+        """Every line of the log and its record, in the order of sessions and their trials.
 
         Raises:
             RunError: when a line is damaged, belongs to another run, or occurs twice.
@@ -83,7 +83,7 @@ class RunFolder:
         return [line for line, _ in pairs], records
 
     def records(self) -> list[TrialRecord]:
-        """Every record of the log, in the order of participants and their trials; errors as in `lines`."""
+        """Every record of the log, in the order of sessions and their trials; errors as in `lines`."""
         return self.lines()[1]
 
     def digest(self) -> tuple[list[Place], list[TrialRecord]]:
@@ -106,7 +106,7 @@ class RunFolder:
         spec, config = record.spec, self.config
         pairs = {
             "seed": (spec.seed, config.seed),
-            "human_sha256": (spec.human_sha256, config.humans.sha256),
+            "humans": (tuple(one.sha256 for one in spec.humans), (config.humans.sha256,)),
             "suite_sha256": (spec.suite_sha256, config.suite.sha256),
             "rules_sha256": (spec.rules_sha256, config.rules_sha256),
             "code_sha256": (spec.code_sha256, config.code_sha256),
@@ -186,4 +186,4 @@ class RunFolder:
 
 
 def _order(record: TrialRecord) -> tuple[int, int]:
-    return record.spec.participant, record.spec.index
+    return record.spec.session, record.spec.index

@@ -19,9 +19,9 @@ MOST = 1
 
 
 class Replays(Struct, frozen=True, kw_only=True):
-    """The file: the participants whose sessions were restarted."""
+    """The file: the numbers of the sessions that were restarted."""
 
-    participants: tuple[int, ...] = ()
+    sessions: tuple[int, ...] = ()
 
 
 class SessionRestarts:
@@ -29,14 +29,14 @@ class SessionRestarts:
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
-        self._participants = load(folder).participants
+        self._sessions = load(folder).sessions
 
-    def take(self, participant: int) -> bool:
-        """Use a restart for this participant's session; False when the run has none left."""
-        if len(self._participants) >= MOST:
+    def take(self, session: int) -> bool:
+        """Use a restart for this session; False when the run has none left."""
+        if len(self._sessions) >= MOST:
             return False
-        self._participants += (participant,)
-        _store(self._folder, self._participants)
+        self._sessions += (session,)
+        _store(self._folder, self._sessions)
         return True
 
 
@@ -48,10 +48,10 @@ def load(folder: Path) -> Replays:
 
 def join(folder: Path, shards: Iterable[Path]) -> None:
     """Keep the restarts of all shards with the whole run; each shard has its own allowance."""
-    every = {participant for part in (folder, *shards) for participant in load(part).participants}
+    every = {session for part in (folder, *shards) for session in load(part).sessions}
     if every:
         _store(folder, tuple(sorted(every)))
 
 
-def _store(folder: Path, participants: tuple[int, ...]) -> None:
-    jsonio.write(folder / NAME, jsonio.pretty(Replays(participants=participants)))
+def _store(folder: Path, sessions: tuple[int, ...]) -> None:
+    jsonio.write(folder / NAME, jsonio.pretty(Replays(sessions=sessions)))

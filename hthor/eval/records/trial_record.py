@@ -43,7 +43,7 @@ class TrialRecord(Struct, frozen=True, kw_only=True):
     metrics: TrialMetrics
     ticks: int
     met: bool
-    trust: int | None
+    ratings: dict[str, int | None]
     faults: tuple[Fault, ...]
     events: tuple[Event, ...]
     paths: dict[str, list[tuple[int, int, int]]]

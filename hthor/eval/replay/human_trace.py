@@ -98,15 +98,15 @@ def trace_human(
     """
     code_identity.keep_compiled()
     spec = trial.spec
-    session = Session(participant=spec.participant, trials=session_history.session_before(folder, trial))
+    session = Session(number=spec.session, trials=session_history.session_before(folder, trial))
     guests = GuestConfig(hidden=(str(folder.path.resolve()),), inputs=inputs or AgentInputs())
     runner = TrialRunner(session_history.replay_sources(folder, spec, files, guests))
     with runner.enter(session) as participants:
         participants.human = person = TracedHuman(participants.human)
         if not all(hasattr(type(person.human), name) for name in ("about", "listener")):
             raise HthorError(
-                f"the people of this run, '{spec.human}', record no decisions. --mind works with runs whose people "
-                "are the proxy, or a model based on it."
+                f"the people of this run, '{spec.humans[0].model}', record no decisions. --mind works with runs whose "
+                "people are the proxy, or a model based on it."
             )
         for number, one in enumerate(session.trials, 1):
             activity.say(f"playing trial {number} of {len(session.trials)} again")

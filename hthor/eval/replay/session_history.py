@@ -1,4 +1,4 @@
-"""Runs a logged trial again: the participant's session up to it, with its agents as they were or as they are now."""
+"""Runs a logged trial again: the session up to it, with its agents as they were or as they are now."""
 
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
@@ -60,7 +60,7 @@ class Rerun(Struct, frozen=True, kw_only=True):
 
 
 def session_before(folder: RunFolder, trial: TrialRecord) -> tuple[TrialSpec, ...]:
-    """The trials of the participant's session up to this one.
+    """The trials of the session up to this one.
 
     Raises:
         RunError: when trials before it are missing, or another version of hthor ran them.
@@ -73,11 +73,11 @@ def session_before(folder: RunFolder, trial: TrialRecord) -> tuple[TrialSpec, ..
             "in which people may decide differently. Play the run again with 'hthor eval', or use that version."
         )
     specs = [record.spec for record in folder.records()]
-    mine = [one for one in specs if one.participant == spec.participant and one.index <= spec.index]
+    mine = [one for one in specs if one.session == spec.session and one.index <= spec.index]
     if [one.index for one in mine] != list(range(spec.index + 1)):
         raise RunError(
-            f"{folder} lacks some of the trials that participant {spec.participant} did before this one, which shaped "
-            "their trust. Finish the run with the 'hthor eval' command that began it."
+            f"{folder} lacks some of the trials before this one in session {spec.session}, which shaped people's "
+            "trust. Finish the run with the 'hthor eval' command that began it."
         )
     return tuple(mine)
 
@@ -174,7 +174,7 @@ def rerun_trial(
     pairs = zip(trial.spec.robots, team.robots, strict=True)
     robots = tuple(msgspec.structs.replace(seat, agent=agent.ref) for seat, (_, agent) in pairs)
     trials = tuple(msgspec.structs.replace(spec, robots=robots) for spec in specs)
-    session = Session(participant=trial.spec.participant, trials=trials)
+    session = Session(number=trial.spec.session, trials=trials)
     sources = replay_sources(folder, trial.spec, files, guests, team)
     outcome = _last(make_runner(sources)(session), len(trials))
     return Rerun(

@@ -117,7 +117,7 @@ def estimate_metric(records: Sequence[TrialRecord], metric: Metric, seat: str = 
     return intervals.estimate(
         values,
         [spec.task.id for spec in specs],
-        [spec.participant for spec in specs],
+        [spec.session for spec in specs],
         within=metric.range_of(values, [spec.task.time_limit for spec in specs]),
     )
 

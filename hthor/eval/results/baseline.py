@@ -125,4 +125,4 @@ def _records(folder: Path) -> list[TrialRecord]:
         ]
     except RunError:
         return []
-    return sorted(kept, key=lambda record: (record.spec.participant, record.spec.index))
+    return sorted(kept, key=lambda record: (record.spec.session, record.spec.index))

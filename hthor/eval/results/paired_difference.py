@@ -92,7 +92,7 @@ def paired_difference(pairs: Sequence[Pair], metric: str, *, level: float = inte
         np.array([one for one, _, _ in rows], dtype=np.float64),
         np.array([other for _, other, _ in rows], dtype=np.float64),
         variance_components.group_codes([spec.task.id for _, _, spec in rows]),
-        variance_components.group_codes([spec.participant for _, _, spec in rows]),
+        variance_components.group_codes([spec.session for _, _, spec in rows]),
         registry.get(metric),
         limit_s=mean_limit([spec.task.time_limit for _, _, spec in rows]),
         level=level,
@@ -262,7 +262,7 @@ def trial_noise(pairs: Sequence[Pair], metric: str) -> Noise:
     """How much single trials of these pairs vary in a metric that every trial has."""
     values = np.array([[one.metrics[metric] for one in (pair.one, pair.other)] for pair in pairs], dtype=float)
     tasks = variance_components.group_codes([pair.one.spec.task.id for pair in pairs])
-    people = variance_components.group_codes([pair.one.spec.participant for pair in pairs])
+    people = variance_components.group_codes([pair.one.spec.session for pair in pairs])
     gap = difference_spread((values[:, 1] - values[:, 0])[None], tasks, people, share=registry.get(metric).is_share)
     each = variance_components.two_way_spread(values.T, tasks, people)
     count = len(pairs)

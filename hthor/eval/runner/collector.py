@@ -43,7 +43,7 @@ class CollectedTrials:
         received: trials that workers reported.
         restarts: sessions that were run again.
         lost: sessions that were given up.
-        void: participants whose sessions are to be run again; what their workers still report does not count.
+        void: sessions that are to be run again; what their workers still report does not count.
     """
 
     cpu_s: float = 0.0
@@ -81,7 +81,7 @@ class Collector:
         """
         collected = self._collected
         self._listen(sessions, make)
-        if (left := [one for one in sessions if one.participant in collected.void]) and not self._stop.is_set():
+        if (left := [one for one in sessions if one.number in collected.void]) and not self._stop.is_set():
             collected.void.clear()
             self._listen(left, make)
         if collected.different and repeatable:
@@ -115,10 +115,10 @@ class Collector:
             collected.cpu_s += message.cpu_s
         elif isinstance(message, SessionRestarted):
             collected.restarts += 1
-            self._watcher.note(f"the session of participant {message.participant} begins again: {message.cause}")
+            self._watcher.note(f"session {message.session} begins again: {message.cause}")
         elif isinstance(message, SessionAbandoned) and not self._is_void(message):
             collected.lost.append(message)
-            self._watcher.note(f"the session of participant {message.participant} is given up: {message.cause}")
+            self._watcher.note(f"session {message.session} is given up: {message.cause}")
 
     def _keep(self, trial: TrialDone) -> None:
         if not self._log.append(trial.key, trial.line):
@@ -131,14 +131,12 @@ class Collector:
 
     def _is_void(self, message: TrialDone | SessionAbandoned, *, known: bool = False) -> bool:
         """Whether a message does not count, because its session is to be run again after a killed agent."""
-        if message.participant not in self._collected.void:
-            if known or not message.killed or not self._restarts.take(message.participant):
+        if message.session not in self._collected.void:
+            if known or not message.killed or not self._restarts.take(message.session):
                 return False
-            self._collected.void.add(message.participant)
+            self._collected.void.add(message.session)
             self._collected.restarts += 1
-            self._watcher.note(
-                f"the session of participant {message.participant} begins again: an agent's process was killed"
-            )
+            self._watcher.note(f"session {message.session} begins again: an agent's process was killed")
         return True
 
 
@@ -146,10 +144,10 @@ def unfinished_error(
     folder: RunFolder, lost: Sequence[SessionAbandoned], missing: int, expected: int
 ) -> Unfinished | InternalFailure:
     """The error for sessions that were given up; their tracebacks go to a file."""
-    causes = "; ".join(f"participant {one.participant}: {one.cause.rstrip('.')}" for one in lost[:_HOPELESS])
+    causes = "; ".join(f"session {one.session}: {one.cause.rstrip('.')}" for one in lost[:_HOPELESS])
     more = f"; and {len(lost) - _HOPELESS} more" if len(lost) > _HOPELESS else ""
     tail = f"{missing} of {expected} trials are missing, all others are kept."
-    if details := [f"participant {one.participant}\n{one.detail}" for one in lost if one.detail]:
+    if details := [f"session {one.session}\n{one.detail}" for one in lost if one.detail]:
         folder.write(ERRORS, "\n".join(details).encode())
         return InternalFailure(f"{causes}{more}. {tail} The traceback is in {folder.path / ERRORS}.")
     return Unfinished(

@@ -100,7 +100,7 @@ class FaultReport(Struct, frozen=True, kw_only=True):
     schema: str = SCHEMA
     key: str
     task: str
-    participant: int
+    session: int
     index: int
     failures: tuple[Failure, ...]
     again: str = ""
@@ -125,9 +125,7 @@ def describe_faults(key: str, trial: TrialSpec, faults: Sequence[Fault], agents:
                 looks=tuple(_look(*pair) for pair in looks),
             )
         )
-    return FaultReport(
-        key=key, task=trial.task.id, participant=trial.participant, index=trial.index, failures=tuple(failures)
-    )
+    return FaultReport(key=key, task=trial.task.id, session=trial.session, index=trial.index, failures=tuple(failures))
 
 
 def _look(observation: Observation, action: Action | None) -> Look:

@@ -31,7 +31,7 @@ class TrialDone(Struct, frozen=True, kw_only=True):
     """
 
     key: str
-    participant: int
+    session: int
     line: bytes
     met: bool
     faulty: bool
@@ -48,7 +48,7 @@ class Finished(Struct, frozen=True, kw_only=True):
 class SessionRestarted(Struct, frozen=True, kw_only=True):
     """A session is run again from its first trial, because its worker was lost."""
 
-    participant: int
+    session: int
     cause: str
 
 
@@ -60,7 +60,7 @@ class SessionAbandoned(Struct, frozen=True, kw_only=True):
         killed: whether an agent's process was killed, apparently from outside, before the agent was known.
     """
 
-    participant: int
+    session: int
     cause: str
     detail: str = ""
     killed: bool = False

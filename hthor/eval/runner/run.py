@@ -90,9 +90,9 @@ def _run_missing(
     stop: threading.Event,
 ) -> CollectedTrials | None:
     """Run the sessions that lack trials; None when no session does."""
-    keys = {session.participant: [trial_record.key(trial) for trial in session.trials] for session in sessions}
+    keys = {session.number: [trial_record.key(trial) for trial in session.trials] for session in sessions}
     expected = [key for some in keys.values() for key in some]
-    left = [session for session in sessions if any(key not in log for key in keys[session.participant])]
+    left = [session for session in sessions if any(key not in log for key in keys[session.number])]
     watcher.begin(len(expected), sum(key in log for key in expected))
     if log.torn:
         watcher.note(f"cut {log.torn} bytes of a trial that was being written when the last command ended")

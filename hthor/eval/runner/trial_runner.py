@@ -86,7 +86,7 @@ class TrialRunner:
         """A new human and new agents for a session."""
         first = session.trials[0]
         make_agent = functools.partial(self._make_agent, step_limit_s=first.step_limit_s or None)
-        human = self._population_of(first).make_model(first.seed, first.participant)
+        human = self._population_of(first).make_model(first.seed, first.humans[0].participant)
         return Participants(human, first.robots, make_agent)
 
     def world(self, trial: TrialSpec) -> World:
@@ -167,10 +167,10 @@ class TrialRunner:
         from hthor.humans.population import resolve
 
         if not self._sources.humans:
-            return resolve.resolve_humans(trial.human)
+            return resolve.resolve_humans(trial.humans[0].model)
         if self._population is None:
             self._population = resolve.resolve_humans(self._sources.humans)
-        if self._population.sha256 != trial.human_sha256:
+        if self._population.sha256 != trial.humans[0].sha256:
             raise HthorError(_changed_message(self._sources.humans))
         return self._population
 

@@ -67,7 +67,7 @@ class SessionPlayer:
                     record = outcome.record
                     yield TrialDone(
                         key=record.key,
-                        participant=session.participant,
+                        session=session.number,
                         line=trial_record.encode(record),
                         met=record.met,
                         faulty=bool(record.faults),
@@ -75,22 +75,22 @@ class SessionPlayer:
                         killed=any(fault.kind == KILLED for fault in record.faults),
                     )
         except Exception as error:
-            yield _failure(session.participant, error)
+            yield _failure(session.number, error)
             return
         before, self._cpu_s = self._cpu_s, _cpu_s()
         yield Finished(cpu_s=self._cpu_s - before)
 
 
-def _failure(participant: int, error: Exception) -> Failed | SessionAbandoned:
+def _failure(session: int, error: Exception) -> Failed | SessionAbandoned:
     """An error that the user can fix ends the run; a bug, or a killed agent, only costs the session."""
     if isinstance(error, AgentKilled):
-        return SessionAbandoned(participant=participant, cause=str(error), killed=True)
+        return SessionAbandoned(session=session, cause=str(error), killed=True)
     if isinstance(error, HthorError):
         return Failed(exit_code=error.exit_code, message=str(error))
     if isinstance(error, OSError) and error.errno in _MENDABLE:
         return Failed(exit_code=HthorError.exit_code, message=f"{error.filename or 'a file'}: {error.strerror}.")
     summary = "".join(traceback.format_exception_only(error)).strip()
-    return SessionAbandoned(participant=participant, cause=summary, detail="".join(traceback.format_exception(error)))
+    return SessionAbandoned(session=session, cause=summary, detail="".join(traceback.format_exception(error)))
 
 
 def end_with_parent(parent: int) -> None:

@@ -35,7 +35,7 @@ class LoggedTrial(Struct, frozen=True, kw_only=True):
 
     spec: TrialSpec
     ticks: int
-    trust: int | None
+    ratings: dict[str, int | None]
     events: tuple[Event, ...]
     paths: dict[str, list[tuple[int, int, int]]]
     journal: tuple[Event, ...] = ()
@@ -114,7 +114,7 @@ def _read(path: str) -> dict[int, list[LoggedTrial]]:
                 trial = decoder.decode(line)
         except documents.Unreadable as error:
             raise HthorError(f"{path}, line {number}: {error}. {_HINT}") from None
-        trials.setdefault(trial.spec.participant, []).append(trial)
+        trials.setdefault(trial.spec.humans[0].participant, []).append(trial)
     if not trials:
         raise HthorError(f"{path} has no complete trial. {_HINT}")
     return {number: sorted(own, key=lambda trial: trial.spec.index) for number, own in trials.items()}

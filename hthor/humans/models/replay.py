@@ -25,7 +25,7 @@ from hthor.geometry.plane import turn, wrap
 from hthor.humans.models import _logged_trials
 from hthor.humans.models._logged_trials import LoggedTrial
 from hthor.humans.population.participant import Participant
-from hthor.types import Action, Briefing, Motion, Move, Observation, Pose, Reply, Rotate, Wait
+from hthor.types import HUMAN, Action, Briefing, Motion, Move, Observation, Pose, Reply, Rotate, Wait
 
 _EVERY = rules.LOG_EVERY_TICKS
 _THERE_M = 0.003
@@ -83,7 +83,7 @@ class Model:
     def rate(self, met: bool, tick: int) -> int | None:  # noqa: ARG002  the log has the answer
         """The logged rating."""
         self.trials += 1
-        return self._again.trial.trust if self._again is not None and self._brief.teammates else None
+        return self._again.trial.ratings[HUMAN] if self._again is not None and self._brief.teammates else None
 
     def state(self) -> dict[str, Any]:
         """The number of trials done."""

@@ -49,8 +49,8 @@ def verify_fresh_tasks(entry: Entry, board: Path, request: Request) -> Fresh:
         whole = sessions.make_sessions(chosen.suite, agent=team, human=humans, **clock)
         sources = replay.make_sources_of(folder, team, humans, request)
         played = replay.run_sessions(entry, whole, functools.partial(make_runner, sources), request.jobs)
-    records = sorted((one for one, _ in played), key=lambda one: (one.spec.participant, one.spec.index))
-    owners = [one.spec.participant for one in records]
+    records = sorted((one for one, _ in played), key=lambda one: (one.spec.session, one.spec.index))
+    owners = [one.spec.session for one in records]
     values = {name: trial_metrics.column((one.metrics for one in records), name) for name in ("sr", "twsr")}
     return judge_fresh_tasks(entry, chosen.suite.sha256, values, owners)
 

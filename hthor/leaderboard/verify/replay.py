@@ -74,7 +74,7 @@ def replay_trials(entry: Entry, places: Sequence[int], request: Request) -> dict
     )
     wanted, seats = _cut(job.sessions, places)
     played = run_sessions(entry, wanted, job.make_runner, request.jobs)
-    return {seats[one.spec.participant, one.spec.index]: (one, line) for one, line in played}
+    return {seats[one.spec.session, one.spec.index]: (one, line) for one, line in played}
 
 
 def run_sessions(
@@ -92,9 +92,9 @@ def run_sessions(
             if isinstance(news, TrialDone):
                 found.append((trial_record.decode(news.line), news.line))
             elif isinstance(news, SessionAbandoned):
-                lost.append(f"participant {news.participant}: {news.cause.rstrip('.')}")
-    asked = {(one.participant, index) for one in wanted for index in range(len(one.trials))}
-    missing = asked - {(one.spec.participant, one.spec.index) for one, _ in found}
+                lost.append(f"session {news.session}: {news.cause.rstrip('.')}")
+    asked = {(one.number, index) for one in wanted for index in range(len(one.trials))}
+    missing = asked - {(one.spec.session, one.spec.index) for one, _ in found}
     if missing:
         causes = f" ({'; '.join(lost[:_SHOWN])})" if lost else ""
         raise BoardError(
@@ -142,13 +142,13 @@ def _cut(whole: Sequence[Session], places: Sequence[int]) -> tuple[list[Session]
     seats: dict[tuple[int, int], int] = {}
     for one in whole:
         for index in range(len(one.trials)):
-            seats[one.participant, index] = len(seats)
+            seats[one.number, index] = len(seats)
     asked = set(places)
     wanted = []
     for one in whole:
-        last = max((index for index in range(len(one.trials)) if seats[one.participant, index] in asked), default=-1)
+        last = max((index for index in range(len(one.trials)) if seats[one.number, index] in asked), default=-1)
         if last >= 0:
-            wanted.append(Session(participant=one.participant, trials=one.trials[: last + 1]))
+            wanted.append(Session(number=one.number, trials=one.trials[: last + 1]))
     return wanted, seats
 
 

@@ -27,7 +27,7 @@ class ExampleTrial(Struct, frozen=True, kw_only=True):
     task: str
     instruction: str
     house: str
-    participant: int
+    session: int
     index: int
     met: bool
     time_s: float
@@ -53,7 +53,7 @@ class FaultGroup(Struct, frozen=True, kw_only=True):
     whole: int
     key: str
     task: str
-    participant: int
+    session: int
     index: int
     after_s: float
     detail: str

@@ -46,7 +46,7 @@ class Run(Struct, frozen=True, kw_only=True, eq=False):
 def pairing_key(record: TrialRecord) -> Pair:
     """The key by which a trial is paired with that of the same person at the same task with other robots."""
     spec = record.spec
-    return (spec.seed, spec.participant, spec.index, spec.task.id)
+    return (spec.seed, spec.session, spec.index, spec.task.id)
 
 
 def load_runs(folders: Sequence[Path]) -> list[Run]:

@@ -37,7 +37,9 @@ def time_spent(run: Run) -> TimeSpent:
 
 def trust_curve(run: Run) -> TrustCurve | None:
     """Trust by trial of the session; None if nobody rated a robot."""
-    rated = [(one.spec.participant, one.spec.index, one.trust) for one in run.records if one.trust is not None]
+    rated = [
+        (one.spec.session, one.spec.index, value) for one in run.records if (value := one.metrics["trust"]) is not None
+    ]
     if not run.plan.seats or not rated:
         return None
     indices = sorted({index for _, index, _ in rated})
@@ -55,11 +57,11 @@ def trust_curve(run: Run) -> TrustCurve | None:
     )
 
 
-def _people(rated: Sequence[tuple[int, int, int]]) -> list[int]:
+def _people(rated: Sequence[tuple[int, int, float]]) -> list[int]:
     return sorted({person for person, _, _ in rated})
 
 
-def _slope(marks: Sequence[tuple[int, int]]) -> float | None:
+def _slope(marks: Sequence[tuple[int, float]]) -> float | None:
     """Least-squares slope of one person's ratings [points per trial]; None if there is only one rating."""
     if len(marks) < 2:
         return None

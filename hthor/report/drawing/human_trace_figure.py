@@ -61,7 +61,7 @@ def figure(record: TrialRecord, house: HouseSpec, stream: HumanTrace) -> Figure:
     human_trace_timeline.draw_timeline(sheet.add_subplot(grid[rows, :]), record, stream)
     _write(sheet.add_subplot(grid[rows + 1, :]), words)
     spec = record.spec
-    whose = f"{spec.task.id}, participant {spec.participant}, trial {spec.index + 1}"
+    whose = f"{spec.task.id}, session {spec.session}, trial {spec.index + 1}"
     title = text_fit.wrapped(f"“{spec.task.instruction}”   {whose}", inches - _EDGE_IN, _TITLE_PT)
     sheet.suptitle(title, fontsize=_TITLE_PT, x=0.01, ha="left", color=trial_trace.INK)
     text_fit.legend(sheet, _legend(), 6, loc="outside lower center")

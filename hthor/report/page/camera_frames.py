@@ -83,7 +83,7 @@ def render_frames(
         HthorError: if a file that was not given is needed.
     """
     spec, run = wanted.spec, RunFolder(folder)
-    session = Session(participant=spec.participant, trials=session_history.session_before(run, wanted))
+    session = Session(number=spec.session, trials=session_history.session_before(run, wanted))
     guests = GuestConfig(hidden=(str(folder.resolve()),), inputs=given or AgentInputs())
     files = RunFiles(agents=tuple(agents), humans=humans)
     stage = trial_runner.TrialRunner(session_history.replay_sources(run, spec, files, guests))

@@ -58,7 +58,7 @@ def write_case_study(
         rows.append(Row(label=run.label, record=record, moments=held, views=views))
     made = case_study.case_study_figure(rows, house)
     spec = chosen[0].spec
-    stem = f"case-{spec.task.id.replace('/', '-')}-{spec.participant}"
+    stem = f"case-{spec.task.id.replace('/', '-')}-{spec.session}"
     words = f"{spec.task.instruction} One person at this task with: {', '.join(run.label for run in runs)}."
     drawn, seen = out / f"{stem}.svg", out / f"{stem}.png"
     jsonio.write(drawn, matplotlib_svg.svg_document(matplotlib_svg.to_svg(made, "case", words)).encode())

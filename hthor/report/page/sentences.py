@@ -146,7 +146,7 @@ def example_trial(one: ExampleTrial) -> str:
     text = f"“{one.instruction}” {_upper(end)}"
     if one.alone_s is not None:
         text += f"; alone {f'done in {one.alone_s:.1f} s' if one.alone_met else f'not done in {one.alone_s:.0f} s'}"
-    return f"{text}; T*\u00a0{one.t_star:.1f} s. {one.task}, person {one.participant}, trial {one.index + 1}."
+    return f"{text}; T*\u00a0{one.t_star:.1f} s. {one.task}, session {one.session}, trial {one.index + 1}."
 
 
 def time_gained(one: ExampleTrial) -> str:

@@ -36,7 +36,7 @@ def gathering():
 def log(*events: tuple, ticks: int = 900, met: bool = False, progress: float | None = None, **more) -> EpisodeLog:
     """A log of (tick, seat, kind, data) in which nobody moves unless ``paths`` says so."""
     still = [(0, 0, 0)] * (ticks // 2 + 1)
-    known = {"paths": dict.fromkeys((HUMAN, "robot", "robot2"), still), "trust": 4, "faults": (), **more}
+    known = {"paths": dict.fromkeys((HUMAN, "robot", "robot2"), still), "ratings": {HUMAN: 4}, "faults": (), **more}
     made = tuple(Event(tick=tick, seat=seat, kind=kind, data=data) for tick, seat, kind, data in events)
     return EpisodeLog(events=made, ticks=ticks, met=met, progress=progress, **known)
 

@@ -27,7 +27,7 @@ def test_the_key_is_fixed_by_the_trial_alone():
     assert len(trial_record.key(_trial())) == 16
 
 
-@pytest.mark.parametrize("field", ["seed", "participant", "index", "human_sha256", "code_sha256", "rules_sha256"])
+@pytest.mark.parametrize("field", ["seed", "session", "index", "humans", "code_sha256", "rules_sha256"])
 def test_everything_that_decides_a_trial_is_in_its_key(field: str):
     trial = _trial()
     value = getattr(trial, field)

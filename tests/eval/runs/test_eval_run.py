@@ -115,14 +115,12 @@ def test_sessions_that_cannot_be_played_do_not_stop_the_others(tmp_path: Path, r
     with pytest.raises(collector.InternalFailure) as caught:
         _run(tmp_path / "run", make, count=60, watch=watch)
     told = str(caught.value)
-    assert "participant 1: it ended 3 workers, the last by signal SIGSEGV" in told
-    assert "participant 5: ZeroDivisionError: our own" in told
+    assert "session 1: it ended 3 workers, the last by signal SIGSEGV" in told
+    assert "session 5: ZeroDivisionError: our own" in told
     assert "14 of 60 trials are missing, all others are kept." in told
     assert caught.value.exit_code == 1
     assert "eval_fakes.py" in (tmp_path / "run" / "error.txt").read_text()
-    assert (
-        sum("participant 1 begins again: its worker was ended by signal SIGSEGV" in note for note in watch.notes) == 2
-    )
+    assert sum("session 1 begins again: its worker was ended by signal SIGSEGV" in note for note in watch.notes) == 2
     assert sum("is given up" in note for note in watch.notes) == 2
     assert len(_lines(tmp_path / "run")) == 46
     assert _run(tmp_path / "run", count=60).counts.trials == 60
@@ -135,7 +133,7 @@ def test_a_worker_that_hangs_is_ended_and_its_session_played_again(tmp_path: Pat
     engine = engines.find_engine("local", jobs=2, limit_s=6.0)
     make, watch = functools.partial(fakes.sick_player, str(tmp_path), "hang"), Notes()
     result = run.run_evaluation(plan, dealt, make, folder=RunFolder(tmp_path / "run"), engine=engine, watcher=watch)
-    assert "participant 3 begins again: its worker was ended by the limit of 6 s for a trial" in watch.notes[0]
+    assert "session 3 begins again: its worker was ended by the limit of 6 s for a trial" in watch.notes[0]
     assert result.effort.replays == 1
     assert _lines(tmp_path / "run") == _lines(reference)
 
@@ -144,7 +142,7 @@ def test_a_worker_that_hangs_is_ended_and_its_session_played_again(tmp_path: Pat
 def test_a_session_that_always_ends_its_worker_has_its_own_exit_code(tmp_path: Path):
     make = functools.partial(fakes.dying_player, str(tmp_path), 9)
     with pytest.raises(
-        collector.Unfinished, match=r"participant 0: .*SIGKILL.*The same command tries them again"
+        collector.Unfinished, match=r"session 0: .*SIGKILL.*The same command tries them again"
     ) as caught:
         _run(tmp_path / "run", make, count=10)
     assert caught.value.exit_code == 1
@@ -164,9 +162,7 @@ def test_a_run_that_lacks_trials_does_not_keep_others_from_being_played(tmp_path
     monkeypatch.setattr(tasks, "load_suite", lambda name: fakes.suite(20) if name == "fake" else real(name))
     monkeypatch.setattr(trial_runner, "make_runner", fakes.lonely_player)
     options = run_options.RunOptions(agents=("none", "frontier"), suite="fake", jobs=1, out=tmp_path)
-    with pytest.raises(
-        collector.InternalFailure, match=r"participant 1: ZeroDivisionError.* 10 of 20 trials are missing"
-    ):
+    with pytest.raises(collector.InternalFailure, match=r"session 1: ZeroDivisionError.* 10 of 20 trials are missing"):
         list(experiment.run_experiment(options, lambda _: progress.Silent()))
     assert result_file.load_result(tmp_path / "frontier").counts.trials == 20
     assert result_file.load_result(tmp_path / "none") is None
@@ -228,7 +224,7 @@ def test_what_was_played_beside_a_killed_agent_does_not_count(tmp_path: Path):
         plan, dealt, make, folder=RunFolder(tmp_path / "killed"), engine=fakes.Here(), watcher=progress.Silent()
     )
     assert other.hashes.trials == calm.hashes.trials
-    assert session_restarts.load(tmp_path / "killed").participants == (dealt[0].participant,)
+    assert session_restarts.load(tmp_path / "killed").sessions == (dealt[0].number,)
 
 
 @pytest.mark.parametrize("times", [1, 2])
@@ -240,7 +236,7 @@ def test_an_agent_that_is_killed_while_it_starts_is_started_once_more(tmp_path: 
         return run.run_evaluation(plan, dealt, make, folder=RunFolder(tmp_path), engine=fakes.Here(), watcher=watch)
 
     if times == 2:
-        with pytest.raises(collector.Unfinished, match=r"participant 1: helper\.py: its process was killed.*10 of 30"):
+        with pytest.raises(collector.Unfinished, match=r"session 1: helper\.py: its process was killed.*10 of 30"):
             whole()
         assert len(_lines(tmp_path)) == 20
     else:

@@ -23,7 +23,7 @@ from hthor.types import Event
 
 
 def _log(ticks: int, met: bool, events: tuple[Event, ...] = (), trust: int | None = 4) -> EpisodeLog:
-    return EpisodeLog(events=events, paths={"human": []}, ticks=ticks, met=met, trust=trust, faults=())
+    return EpisodeLog(events=events, paths={"human": []}, ticks=ticks, met=met, ratings={"human": trust}, faults=())
 
 
 def _sent(message: int, seat: str = "robot") -> Event:
@@ -48,7 +48,7 @@ def test_a_small_log_worked_out_by_hand():
     trials = [trial for trial in TRIALS if trial.task.t_star == 8.0][:1] * 3
     made = [
         msgspec.structs.replace(
-            trial_record.make_record(trial, _log(*case)), spec=msgspec.structs.replace(trial, participant=number)
+            trial_record.make_record(trial, _log(*case)), spec=msgspec.structs.replace(trial, session=number)
         )
         for number, (trial, case) in enumerate(zip(trials, GOLDEN, strict=True))
     ]

@@ -46,7 +46,7 @@ def test_the_agent_has_no_say():
     one, other = (fakes.run_of(60, name=name, absent=name == "silent")[1] for name in ("helper", "silent"))
     for here, there in zip(one, other, strict=True):
         assert [trial.task.id for trial in here.trials] == [trial.task.id for trial in there.trials]
-        assert here.participant == there.participant
+        assert here.number == there.number
 
 
 def test_no_robot_is_no_robot():

@@ -174,7 +174,7 @@ def test_records_of_other_shards_and_other_outcomes_are_refused(shards: Sequence
     mixed.mkdir()
     (mixed / "run.json").write_bytes((shards[0] / "run.json").read_bytes())
     (mixed / "trials.jsonl").write_bytes((shards[1] / "trials.jsonl").read_bytes())
-    with pytest.raises(RunError, match=r"spec\.participant is 1, who is not in shard 1/4"):
+    with pytest.raises(RunError, match=r"spec\.session is 1, which is not in shard 1/4"):
         merge_shards.merge_shards([mixed], tmp_path / "whole")
     otherwise = _play(tmp_path / "otherwise", "2/4", make=fakes.forgetful_player)
     with pytest.raises(RunError, match=r"is not the same in .* and in .*otherwise"):

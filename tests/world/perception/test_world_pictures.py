@@ -246,7 +246,7 @@ print(t.trial_with_pictures())
 def trial_with_pictures() -> str:
     """Play a short trial in which the robot looks, and sends what it sees; what it saw and what the person got."""
     from hthor import episode, tasks
-    from hthor.types import Action, AgentRef, RobotSeat, Send, TrialSpec
+    from hthor.types import Action, AgentRef, HumanSeat, RobotSeat, Send, TrialSpec
 
     seen = []
 
@@ -266,9 +266,10 @@ def trial_with_pictures() -> str:
     kind = next(one.kind for one in tasks.load_suite("smoke").tasks if one.goal.relation == "find")
     short = msgspec.structs.replace(short, kind=kind, time_limit=1.0)
     agent = AgentRef(name="a", source="a", sha256="0")
-    hashes = dict.fromkeys(("human_sha256", "suite_sha256", "rules_sha256", "code_sha256"), "0")
+    hashes = dict.fromkeys(("suite_sha256", "rules_sha256", "code_sha256"), "0")
+    humans = (HumanSeat(seat="human", model="x", sha256="0", participant=0),)
     robots = (RobotSeat(seat="robot", robot="scout", agent=agent),)
-    trial = TrialSpec(task=short, robots=robots, human="x", participant=0, index=0, seed=0, **hashes)
+    trial = TrialSpec(task=short, robots=robots, humans=humans, session=0, index=0, seed=0, **hashes)
     log = episode.run_episode(trial, World(tiny.house(), robots=("scout",)), Mind(), {"robot": Mind()})
     assert not log.faults, log.faults
     assert (104, 160, 3) in seen

@@ -128,10 +128,10 @@ def _row(condition: str, numbers: dict[str, int], record: TrialRecord) -> dict[s
     return {
         **outcomes,
         "study": -1,
-        "session": number * 100_000 + spec.participant,
+        "session": number * 100_000 + spec.session,
         "point": 0,
         "condition": number,
-        "participant": spec.participant,
+        "participant": spec.session,
         "index": spec.index,
         "trust": outcomes["trust"] if spec.robots else 0,
         "valid": 1,

@@ -1,12 +1,15 @@
 """The human's trust in the robots."""
 
+import statistics
+
 from hthor import rules
 from hthor.eval.metrics.metric import HIGHER, Metric, Trial
 
 
-def trust(trial: Trial) -> int | None:
+def trust(trial: Trial) -> float | None:
     """The human's rating of the robot after the trial, 1 to 7 (P)."""
-    return trial.log.trust
+    given = [rating for rating in trial.log.ratings.values() if rating is not None]
+    return statistics.mean(given) if given else None
 
 
 _SCALE = (float(rules.TRUST_MIN), float(rules.TRUST_MAX))

@@ -149,11 +149,9 @@ class Queue:
     def again(self, session: Session, attempt: int, cause: str) -> SessionRestarted | SessionAbandoned:
         """A worker was lost while it ran this session: run it again next, or give it up after `ATTEMPTS`."""
         if attempt >= ATTEMPTS:
-            return SessionAbandoned(
-                participant=session.participant, cause=f"it ended {ATTEMPTS} workers, the last by {cause}"
-            )
+            return SessionAbandoned(session=session.number, cause=f"it ended {ATTEMPTS} workers, the last by {cause}")
         self._waiting.appendleft((session, attempt + 1))
-        return SessionRestarted(participant=session.participant, cause=f"its worker was ended by {cause}")
+        return SessionRestarted(session=session.number, cause=f"its worker was ended by {cause}")
 
     def clear(self) -> None:
         """Give out no more sessions."""

@@ -165,7 +165,7 @@ class SessionLost(HthorError):
 
     def __init__(self, lost: SessionAbandoned) -> None:
         self.exit_code, self.detail = 1 if lost.detail else HthorError.exit_code, lost.detail
-        super().__init__(lost.cause if lost.detail else f"the session of participant {lost.participant}: {lost.cause}")
+        super().__init__(lost.cause if lost.detail else f"session {lost.session}: {lost.cause}")
 
 
 def run_all_sessions(

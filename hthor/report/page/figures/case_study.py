@@ -177,7 +177,7 @@ def _headline(row: Row) -> str:
 
 def _task(record: TrialRecord) -> str:
     spec = record.spec
-    whose = f"{spec.task.id}, person {spec.participant}, trial {spec.index + 1}, T* {spec.task.t_star:.1f} s"
+    whose = f"{spec.task.id}, session {spec.session}, trial {spec.index + 1}, T* {spec.task.t_star:.1f} s"
     return f"“{spec.task.instruction}”  {whose}"
 
 

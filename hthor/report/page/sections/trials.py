@@ -64,7 +64,7 @@ def faults(found: Findings, _: Mapping[str, str]) -> list[str]:
 
 def _first(one: FaultGroup) -> list[str]:
     """The details of the first trial with one kind of fault."""
-    where = f"{one.task}, person {one.participant}, trial {one.index + 1}, after {one.after_s:.1f} s"
+    where = f"{one.task}, session {one.session}, trial {one.index + 1}, after {one.after_s:.1f} s"
     commands = [command for command in (one.again, one.replay) if command]
     return [
         f"<h3>{elements.inside(one.run)}, {elements.inside(Mark(one.kind, 'bad'))}: the first</h3>",
