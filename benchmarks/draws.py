@@ -24,7 +24,7 @@ import numpy as np
 
 from hthor import jsonio, seeds
 from hthor.agents import frontier, oracle
-from hthor.episode import run_episode
+from hthor.episode import play
 from hthor.eval.config import sessions
 from hthor.eval.metrics import trial_metrics
 from hthor.eval.runner import trial_runner
@@ -72,7 +72,7 @@ def played(agent: str, way: str, suite: str, people: int) -> dict[str, list[floa
         for hand in hands:
             human, minds = stage.enter(hand).human, {} if make is None else {"robot": make()}
             for trial in hand.trials:
-                log = run_episode(trial, stage.world(trial), human, minds)
+                log = play(trial, stage.world(trial), {"human": human}, minds)
                 measured = trial_metrics.measure(trial, log)
                 found["person"].append(trial.session)
                 for metric in METRICS:

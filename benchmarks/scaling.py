@@ -10,7 +10,7 @@ from multiprocessing import get_context
 
 from benchmarks.scenes import hands
 from benchmarks.table import Clock, Row
-from hthor.episode import run_episode
+from hthor.episode import play
 from hthor.eval.runner import trial_runner
 
 AGENT = "frontier"
@@ -49,6 +49,6 @@ def _play(order: tuple[str, int]) -> float:
             for _, trial in mine:
                 world = stage.world(trial)
                 clock = Clock()
-                run_episode(trial, world, company.human, company.ready_agents())
+                play(trial, world, {"human": company.human}, company.ready_agents())
                 spent += clock()
     return spent

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from benchmarks.scenes import TICKS, hands
 from benchmarks.table import Clock, Row
-from hthor.episode import run_episode
+from hthor.episode import play
 from hthor.eval.config import robot_team
 from hthor.eval.config.robot_team import RobotTeam
 from hthor.eval.runner import trial_runner
@@ -60,7 +60,7 @@ def cost(suite: str, agent: str | RobotTeam, each: int) -> dict[str, list[float]
     sessions = hands(suite, agent)
     with stage.enter(sessions[0]) as company:
         first = sessions[0].trials[0]
-        run_episode(first, stage.world(first), company.human, company.ready_agents())
+        play(first, stage.world(first), {"human": company.human}, company.ready_agents())
     wanted = {trial.task.house for session in sessions for trial in session.trials}
     for session in sessions:
         with stage.enter(session) as company:
@@ -68,7 +68,7 @@ def cost(suite: str, agent: str | RobotTeam, each: int) -> dict[str, list[float]
                 world = stage.world(trial)
                 robots = company.ready_agents()
                 clock = Clock()
-                log = run_episode(trial, world, company.human, robots)
+                log = play(trial, world, {"human": company.human}, robots)
                 costs[trial.task.house].append(clock() * TICKS / log.ticks)
         if all(len(costs[scene]) >= each for scene in wanted):
             break

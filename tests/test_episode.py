@@ -6,7 +6,7 @@ import pytest
 from episode_fakes import Mind, Stage, trial
 
 from hthor import plugins
-from hthor.episode import EpisodeLog, run_episode
+from hthor.episode import EpisodeLog, play
 from hthor.tasks.kinds.object_goal_navigation import ObjectGoalNavigation
 from hthor.types import (
     HUMAN,
@@ -25,7 +25,7 @@ from hthor.types import (
 
 
 def run(stage: Stage, human: Mind, robot: Mind | None, *privileges: str) -> EpisodeLog:
-    return run_episode(trial(*privileges), stage, human, {"robot": robot} if robot else {})  # type: ignore[arg-type]
+    return play(trial(*privileges), stage, {"human": human}, {"robot": robot} if robot else {})  # type: ignore[arg-type]
 
 
 def kinds(log: EpisodeLog) -> list[str]:

@@ -8,14 +8,14 @@ import eval_fakes as fakes
 import msgspec
 import pytest
 from episode_fakes import Mind, Stage, trial
+from hthor.thinking_time import Thinking
 from hypothesis import given
 from hypothesis import strategies as st
 
 from hthor import rules
-from hthor.episode import EpisodeLog, run_episode
+from hthor.episode import EpisodeLog, play
 from hthor.eval.records import trial_record
 from hthor.eval.results import pairing
-from hthor.thinking_time import Thinking
 from hthor.types import HUMAN, Action, Move, Observation, Send
 
 
@@ -43,7 +43,7 @@ class Thinker(Mind):
 
 def run(stage: Stage, robot: Thinker, *, realtime: bool = True) -> EpisodeLog:
     spec = msgspec.structs.replace(trial(), realtime=realtime or msgspec.UNSET)
-    return run_episode(spec, stage, Mind(), {"robot": robot}, clock=robot.clock)  # type: ignore[arg-type]
+    return play(spec, stage, {"human": Mind()}, {"robot": robot}, clock=robot.clock)  # type: ignore[arg-type]
 
 
 def starts(stage: Stage, seat: str) -> list[int]:

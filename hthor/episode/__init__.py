@@ -1,7 +1,22 @@
 """One trial from reset to its end: one clock, one mailbox, one goal, one list of events. Begin with `episode`."""
 
-from hthor.episode.episode import Episode, run_episode
+from hthor.episode.clocks import Charged, Concurrent, DecisionClock, LockStep
+from hthor.episode.episode import Episode, Observer
 from hthor.episode.episode_log import EpisodeLog, Fault
+from hthor.episode.episode_state import EpisodeState
+from hthor.episode.play import play
 from hthor.episode.trial_world import TrialWorld
 
-__all__ = ["Episode", "EpisodeLog", "Fault", "TrialWorld", "run_episode"]
+__all__ = [
+    "Charged",
+    "Concurrent",
+    "DecisionClock",
+    "Episode",
+    "EpisodeLog",
+    "EpisodeState",
+    "Fault",
+    "LockStep",
+    "Observer",
+    "TrialWorld",
+    "play",
+]

@@ -1,10 +1,19 @@
-"""A trial as a loop over ticks: calls agents, passes messages, starts motions, judges the goal, writes the log."""
+"""A trial that is driven from outside, one tick at a time: by `hthor.episode.play`, a live session or a learner.
 
-import time
+    episode = Episode(trial, world)
+    episode.reset()
+    while not episode.done:
+        for seat in episode.waiting:
+            episode.submit(seat, decide(episode.observe(seat)))
+        episode.advance()
+    log = episode.log()
+
+All seats that observe in one tick observe the same moment, and the order of calls within a tick makes no difference:
+only `advance` lets messages be read and sent, motions begin, and time pass.
+"""
+
 import traceback
 from collections.abc import Callable, Mapping, Sequence
-from functools import partial
-from typing import TypeVar
 
 import msgspec
 
@@ -12,210 +21,76 @@ from hthor import plugins, rules, seeds
 from hthor.comms import claims
 from hthor.comms.mailbox import Mailbox
 from hthor.episode.episode_log import EpisodeLog, Fault
+from hthor.episode.episode_state import EpisodeState
+from hthor.episode.goal_progress import GoalProgress
+from hthor.episode.log_writer import LogWriter
 from hthor.episode.trial_world import TrialWorld
-from hthor.humans.core.behaviour_log import BehaviourRecorder
-from hthor.humans.model import HumanModel
+from hthor.errors import HthorError
 from hthor.tasks.kind import TaskKind
-from hthor.thinking_time import Decision, Thinking
-from hthor.types import (
-    HUMAN,
-    Action,
-    Briefing,
-    Event,
-    HouseSpec,
-    Mind,
-    Observation,
-    Send,
-    Snapshot,
-    TaskSpec,
-    ThingState,
-    TrialSpec,
-    Wait,
-)
+from hthor.types import HUMAN, Action, Briefing, Drive, Event, Motion, Observation, Send, TrialSpec, is_person
 
-_T = TypeVar("_T")
-_EVERY_TICKS = round(1.0 / rules.TICK_S)
-"""[ticks] Progress is computed at least this often."""
-
-
-def run_episode(
-    trial: TrialSpec,
-    world: TrialWorld,
-    human: HumanModel,
-    robots: Mapping[str, Mind],
-    *,
-    clock: Callable[[], float] = time.perf_counter,
-) -> EpisodeLog:
-    """Run one trial from reset to its end.
-
-    Args:
-        trial: its task names the house, the starts, the goal and the time limit.
-        world: the simulation of the task's house, with a body for every seat of ``robots``.
-        human: the human model, which may remember earlier trials of the session.
-        robots: the agent of each robot, by seat.
-        clock: measures thinking time [s] in a real-time trial; not used in lock-step.
-
-    Raises:
-        Exception: any exception of the human model or the world; errors of agents become faults in the log.
-    """
-    return Episode(trial, world, human, robots, Thinking(clock) if trial.realtime else None).run()
+Observer = Callable[["Episode", Sequence[Event]], None]
+"""Called after `Episode.reset` and after every tick, with the events since its last call; it must change nothing."""
 
 
 class Episode:
-    """The state of one trial while it runs; `run_episode` makes one and runs it.
+    """One trial, from `reset` until it is `done`.
 
-    In every tick, each seat whose body is idle or that has mail is asked for an action; all observe the same moment.
-    Then messages are passed on, motions are started, and the world advances by one tick.
+    Args:
+        trial: its task names the house, the starts, the goal and the time limit.
+        world: the simulation of the task's house, with a body for every seat.
+        seats: the seats that take part, by default all of the world, people first.
 
-    The arguments are as in `run_episode`; ``thinking`` counts agents' thinking as trial time, and is None in lock-step.
+    Attributes:
+        seats: as above. events: everything that has happened so far, in order. faults: failures of agents so far.
+        met: whether the goal is met. voided: why the trial does not count; empty if it does.
     """
 
-    def __init__(
-        self,
-        trial: TrialSpec,
-        world: TrialWorld,
-        human: HumanModel,
-        robots: Mapping[str, Mind],
-        thinking: Thinking | None,
-    ) -> None:
-        self.task, self.world, self.human, self.thinking = trial.task, world, human, thinking
-        self.seed = seeds.derive(trial.seed, "world", trial.session, trial.index, trial.task.id)
-        self.agents: dict[str, Mind] = {HUMAN: human, **robots}
-        self.privileges = {robot.seat: robot.agent.privileges for robot in trial.robots}
-        self.kind: TaskKind = plugins.load("task kind", self.task.kind)
-        self.progress = GoalProgress(self.kind, self.task)
-        self.limit = round(self.task.time_limit / rules.TICK_S)
-        self.mailbox = Mailbox(robots=tuple(robots))
-        self.events: list[Event] = []
-        self.faults: list[Fault] = []
-        self.paths: dict[str, list[tuple[int, int, int]]] = {seat: [] for seat in self.agents}
-        self.idle = dict.fromkeys(self.agents, 0)
-        self.recorder = BehaviourRecorder(world.bodies[HUMAN], rules.TICK_S)
-        self.resting_since: dict[str, int | None] = dict.fromkeys(self.agents, 0)
+    def __init__(self, trial: TrialSpec, world: TrialWorld, seats: Sequence[str] | None = None) -> None:
+        self.trial, self.task, self.world = trial, trial.task, world
+        self.seats = tuple(world.seats if seats is None else seats)
+        self.people = tuple(seat for seat in self.seats if is_person(seat))
+        self._seed = seeds.derive(trial.seed, "world", trial.session, trial.index, trial.task.id)
+        self._privileges = {robot.seat: robot.agent.privileges for robot in trial.robots}
+        self._kind: TaskKind = plugins.load("task kind", self.task.kind)
+        self._limit = round(self.task.time_limit / rules.TICK_S)
+        self._observers: list[Observer] = []
 
-    def run(self) -> EpisodeLog:
-        """Run the trial to its end."""
-        self.world.reset(self.task, seed=self.seed)
-        self._trace()
-        self.events.extend(self.progress.update(self.world.snapshot(), self.world.house, has_events=True))
-        for seat, agent in tuple(self.agents.items()):
-            self._guarded(seat, partial(agent.begin, self._briefing(seat)))
-        met = False
-        while not met and self.world.tick < self.limit:
-            events = len(self.events)
-            self._tick()
-            snapshot = self.world.snapshot()
-            met = self.kind.met(self.task, snapshot, self.world.house)
-            if self.progress.value is not None:
-                has_events = len(self.events) > events
-                self.events.extend(self.progress.update(snapshot, self.world.house, met=met, has_events=has_events))
-        return self._log(met)
+    def reset(self) -> None:
+        """Begin the trial at tick 0, whatever has happened before."""
+        self.world.reset(self.task, seed=self._seed)
+        self.met, self.voided, self.paused = False, "", False
+        self._mailbox = Mailbox([seat for seat in self.seats if seat not in self.people], self.people)
+        self._progress = GoalProgress(self._kind, self.task)
+        self._writer = LogWriter({seat: self.world.bodies[seat] for seat in self.seats})
+        self.events, self.faults = self._writer.events, self._writer.faults
+        self._active = self.seats  # without those that were retired
+        self._observed: dict[str, Observation] = {}
+        self._actions: dict[str, tuple[Action, Observation | None]] = {}
+        self._failed: dict[str, Fault] = {}
+        self._writer.trace(self.world)
+        self.events.extend(self._progress.update(self.world.snapshot(), self.world.house, has_events=True))
+        self._notify(0)
 
-    def _log(self, met: bool) -> EpisodeLog:
-        ticks = self.world.tick
-        for seat in self.resting_since:
-            self._rest(seat, False)
-        self.events.append(Event(tick=ticks, seat=HUMAN, kind="success" if met else "timeout"))
-        return EpisodeLog(
-            events=tuple(self.events),
-            paths=self.paths,
-            ticks=ticks,
-            met=met,
-            ratings={HUMAN: self.human.rate(met, ticks)},
-            faults=tuple(self.faults),
-            progress=self.progress.value,
-            idle=self.idle,
-            journal=self.recorder.journal(getattr(self.human, "journal", ()), self.events),
-        )
+    @property
+    def tick(self) -> int:
+        """Ticks since `reset`."""
+        return self.world.tick
 
-    def _tick(self) -> None:
-        """Play one tick: all seats that must act observe the same moment; only then do their actions take effect."""
-        world, mailbox = self.world, self.mailbox
-        ready = [seat for seat in self.agents if world.idle(seat) or mailbox.changed(seat)]
-        asked = {seat: self._observe(seat) for seat in ready if self.thinking is None or not self.thinking.busy(seat)}
-        if HUMAN in asked and asked[HUMAN].inbox:
-            self.events.extend(mailbox.shown(world.tick))
-        actions = [(seat, self._ask(seat, observation)) for seat, observation in asked.items()]
-        for seat, action in actions if self.thinking is None else self._timely(self.thinking, actions):
-            if action is None:
-                continue
-            if action.say is not None:
-                self._say(seat, action)
-            if world.idle(seat):
-                if seat == HUMAN:
-                    self.recorder.motion(world.tick, action.motion)
-                world.start(seat, action.motion)
-                self._rest(seat, isinstance(action.motion, Wait) or world.idle(seat))
-        self.events.extend(world.advance())
-        self._trace()
+    @property
+    def done(self) -> bool:
+        """Whether the goal is met, the time is over, or the trial was voided."""
+        return self.met or bool(self.voided) or self.world.tick >= self._limit
 
-    def _timely(
-        self, thinking: Thinking, actions: Sequence[tuple[str, Action | None]]
-    ) -> Sequence[tuple[str, Action | None]]:
-        """The actions that are due by now in real time; bodies whose action is not due yet stand still."""
-        tick = self.world.tick
-        for seat, action in actions:
-            late = thinking.late(seat)
-            if action is None:
-                continue
-            free = self.world.idle(seat)
-            thinking.hold(Decision(seat=seat, action=action, moves=free), until=tick + late)
-            if late:
-                self.events.append(Event(tick=tick, seat=seat, kind="thought", data={"ticks": late}))
-                if free:
-                    self._rest(seat, True)
-        due = thinking.due(tick, self.agents)
-        for one in due:
-            if not one.moves and one.action.say is not None:  # while it moves, a seat may only speak
-                self._say(one.seat, one.action)
-        return [(one.seat, one.action) for one in due if one.moves]
+    @property
+    def waiting(self) -> tuple[str, ...]:
+        """The seats that are to be asked now: their body is free for a new motion, or their mail has changed."""
+        idle, changed = self.world.idle, self._mailbox.changed
+        return tuple([seat for seat in self._active if idle(seat) or changed(seat)])
 
-    def _ask(self, seat: str, observation: Observation) -> Action | None:
-        agent = self.agents[seat]
-        if seat == HUMAN:
-            return _checked(agent.act(observation))
-        act = agent.act if self.thinking is None else partial(self.thinking.ask, seat, agent)
-        return self._guarded(seat, lambda: _checked(act(observation)))
-
-    def _observe(self, seat: str) -> Observation:
-        world, tick = self.world, self.world.tick
-        return Observation(
-            tick=tick,
-            pose=world.pose(seat),
-            idle=world.idle(seat),
-            senses=world.senses(seat),
-            room=world.room(seat),
-            holding=world.holding(seat),
-            outcome=world.outcome(seat),
-            inbox=self.mailbox.inbox(seat),
-            receipt=self.mailbox.receipt(seat),
-            truth=world.truth() if "object_poses" in self.privileges.get(seat, ()) else (),
-        )
-
-    def _say(self, seat: str, action: Action) -> None:
-        tick, say = self.world.tick, action.say
-        if isinstance(say, Send):
-            events = self.mailbox.send(tick, seat, say, self.world.frame(seat))
-            self.events.extend(self._with_claim_error(event, say) for event in events)
-        elif say is not None:
-            self.events.extend(self.mailbox.reply(tick, seat, say))
-
-    def _with_claim_error(self, event: Event, send: Send) -> Event:
-        """The event; for a sent message, with the distance of its claim from the truth added."""
-        if event.kind != "sent":
-            return event
-        claim = claims.claim_error(send, event.data["position"], self.world.snapshot(), self.world.house)
-        return msgspec.structs.replace(event, data={**event.data, **claim})
-
-    def _rest(self, seat: str, resting: bool) -> None:
-        """Note whether the seat's body rests (does nothing or waits) from now on, and add up its idle time."""
-        tick, since = self.world.tick, self.resting_since[seat]
-        if since is not None and not resting:
-            self.idle[seat] += tick - since
-        self.resting_since[seat] = None if not resting else tick if since is None else since
-
-    def _briefing(self, seat: str) -> Briefing:
-        goal, privileges = self.task.goal, self.privileges.get(seat, ())
+    def briefing(self, seat: str) -> Briefing:
+        """What the seat's agent or human model is told before the trial."""
+        goal, privileges = self.task.goal, self._privileges.get(seat, ())
         return Briefing(
             seat=seat,
             instruction=self.task.instruction,
@@ -225,7 +100,7 @@ class Episode:
             body=self.world.bodies[seat],
             tick_s=rules.TICK_S,
             time_limit=self.task.time_limit,
-            teammates=tuple(other for other in self.agents if other != seat),
+            teammates=tuple(other for other in self.seats if other != seat),
             privileges=privileges,
             house=self.world.house if "house_map" in privileges else None,
             kind=self.task.kind,
@@ -233,66 +108,213 @@ class Episode:
             crew=dict(self.world.bodies),
         )
 
-    def _guarded(self, seat: str, call: Callable[[], _T]) -> _T | None:
-        """Call an agent or the human model. An agent that fails leaves the trial; a human model's error is raised."""
-        if seat == HUMAN:
-            return call()
-        try:
-            return call()
-        except Exception as error:
-            self._retire(seat, error)
-            return None
-
-    def _retire(self, seat: str, error: Exception) -> None:
-        """Take a failed agent out of the trial: its body stays where it is, and its fault is logged."""
-        tick, kind = self.world.tick, str(getattr(error, "kind", type(error).__name__))
-        detail = str(getattr(error, "detail", "")) or "".join(traceback.format_exception(error, limit=-4))
-        self.faults.append(Fault(seat=seat, kind=kind, tick=tick, detail=detail))
-        self.events.append(Event(tick=tick, seat=seat, kind="fault", data={"kind": kind}))
-        self._rest(seat, True)
-        del self.agents[seat]
-
-    def _trace(self) -> None:
-        if self.world.tick % rules.LOG_EVERY_TICKS:
-            return
-        for seat, path in self.paths.items():
-            pose = self.world.pose(seat)
-            path.append((round(pose.x * 1000), round(pose.y * 1000), round(pose.yaw * 1000)))
-            if seat == HUMAN:
-                self.recorder.head(self.world.tick, pose.pitch)
-
-
-def _checked(action: object) -> Action:
-    if not isinstance(action, Action):
-        raise TypeError(f"act must return an hthor.types.Action, got {type(action).__name__}")
-    return action
-
-
-class GoalProgress:
-    """The share of the goal that is met: ``value``, from 0 to 1, or None for task kinds without partial goals."""
-
-    def __init__(self, kind: TaskKind, task: TaskSpec) -> None:
-        counts = type(kind).progress is not TaskKind.progress
-        self.value: float | None = 0.0 if counts else None
-        self._kind, self._task, self._last = kind, task, round(task.time_limit / rules.TICK_S)
-        self._things: Mapping[str, ThingState] | None = None
-
-    def update(self, snapshot: Snapshot, house: HouseSpec, *, met: bool = False, has_events: bool) -> tuple[Event, ...]:
-        """The event "progress" if the share changed.
-
-        It is computed when an object changed, once a second, and at the end; not while an object is only carried.
+    def observe(self, seat: str, *, frozen: bool = False) -> Observation:
+        """What the seat observes at this tick; the same record until the next `advance`.
 
         Args:
-            met: whether the goal is met.
-            has_events: whether anything happened in this tick.
+            frozen: whether its sensors must still show this moment when the world has gone on, as a reader in another
+                thread needs; otherwise they may be read until the next `advance`.
         """
-        changed = snapshot.things is not self._things and (has_events or not any(snapshot.holding.values()))
-        due = met or changed or snapshot.tick % _EVERY_TICKS == 0 or snapshot.tick == self._last
-        if self.value is None or not due:
-            return ()
-        self._things = snapshot.things
-        share = 1.0 if met else round(min(1.0, max(0.0, float(self._kind.progress(self._task, snapshot, house)))), 4)
-        if share == self.value:
-            return ()
-        self.value = share
-        return (Event(tick=snapshot.tick, seat=HUMAN, kind="progress", data={"value": share}),)
+        known = self._observed.get(seat)
+        if known is not None:
+            return known
+        world = self.world
+        observation = Observation(
+            tick=world.tick,
+            pose=world.pose(seat),
+            idle=world.idle(seat),
+            senses=world.frozen_senses(seat) if frozen else world.senses(seat),
+            room=world.room(seat),
+            holding=world.holding(seat),
+            outcome=world.outcome(seat),
+            inbox=self._mailbox.inbox(seat),
+            receipt=self._mailbox.receipt(seat),
+            truth=world.truth() if "object_poses" in self._privileges.get(seat, ()) else (),
+        )
+        self._observed[seat] = observation
+        return observation
+
+    def submit(self, seat: str, action: Action, observation: Observation | None = None) -> None:
+        """Let a seat act: what it says takes effect in the next `advance`, and its motion too if the body is free.
+
+        A second action in the same tick replaces the first, but for what the first said if the second says nothing.
+
+        Args:
+            observation: what the seat saw when it decided, if that was in an earlier tick; a motion counts only if the
+                body was free then.
+
+        Raises:
+            TypeError: when ``action`` is not an `Action`.
+            HthorError: when there is no such seat.
+        """
+        if not isinstance(action, Action):
+            raise TypeError(f"submit needs an hthor.types.Action, got {type(action).__name__}")
+        if seat not in self.seats:
+            raise HthorError(f"'{seat}' is no seat of this trial; its seats are {', '.join(self.seats)}")
+        if seat in self._actions and action.say is None:
+            action = msgspec.structs.replace(action, say=self._actions[seat][0].say)
+        self._actions[seat] = (action, observation)
+
+    def retire(self, seat: str, error: Exception) -> None:
+        """Take a failed agent out of the trial: its body stays where it is from now on, and its fault is logged."""
+        kind = str(getattr(error, "kind", type(error).__name__))
+        detail = str(getattr(error, "detail", "")) or "".join(traceback.format_exception(error, limit=-4))
+        self._failed.setdefault(seat, Fault(seat=seat, kind=kind, tick=self.tick, detail=detail))
+
+    def advance(self) -> tuple[Event, ...]:
+        """Let one tick pass, and return its events.
+
+        Messages that were observed count as shown, and failed agents leave. Then every seat in order says what it has
+        to say and begins its motion. Then the world moves on, and the goal is judged.
+
+        Raises:
+            HthorError: when the trial is done or paused.
+            PhysicsError: when the world lost its state.
+        """
+        if self.paused or self.done:
+            raise HthorError(f"this trial is {'paused' if self.paused else 'over'}, so no time passes in it")
+        first, events = len(self.events), self.events
+        for seat in self.seats:
+            if seat in self._observed and self._observed[seat].inbox:
+                events.extend(self._mailbox.shown(self.tick, seat))
+        if self._failed:
+            self._dismiss_failed()
+        self._act()
+        events.extend(self.world.advance())
+        self._observed.clear()
+        self._writer.trace(self.world)
+        snapshot = self.world.snapshot()
+        self.met = self._kind.met(self.task, snapshot, self.world.house)
+        if self._progress.value is not None:
+            changes = self._progress.update(
+                snapshot, self.world.house, met=self.met, has_events=len(self.events) > first
+            )
+            events.extend(changes)
+        self._notify(first)
+        return tuple(events[first:])
+
+    # ------------------------------------------------------------------------------------- pausing, ending, watching
+
+    def pause(self, reason: str = "") -> None:
+        """Stop the trial's time until `resume`; the log has when and why, and nothing else changes."""
+        if not self.paused:
+            self.paused = True
+            self.events.append(Event(tick=self.tick, seat=HUMAN, kind="paused", data={"reason": reason}))
+
+    def resume(self) -> None:
+        """Let time pass again."""
+        if self.paused:
+            self.paused = False
+            self.events.append(Event(tick=self.tick, seat=HUMAN, kind="resumed"))
+
+    def void(self, reason: str) -> None:
+        """End the trial and mark it as one that does not count, such as one in which a cable came loose."""
+        if not reason:
+            raise HthorError("a trial is voided for a reason; say which")
+        self.voided = self.voided or reason
+
+    def attach(self, observer: Observer) -> None:
+        """Let an observer watch the trial from now on."""
+        self._observers.append(observer)
+
+    def save_state(self) -> EpisodeState:
+        """A copy of the trial in its present state, without the agents and human models, which have their own."""
+        return EpisodeState(
+            world=self.world.save_state(),
+            mailbox=self._mailbox.save_state(),
+            log=self._writer.save_state(),
+            met=self.met,
+            voided=self.voided,
+            paused=self.paused,
+            progress=self._progress.save_state(self.world.snapshot()),
+            active=self._active,
+            observed={seat: msgspec.structs.replace(one, senses=None) for seat, one in self._observed.items()},
+            actions=dict(self._actions),
+            failed=dict(self._failed),
+        )
+
+    def load_state(self, state: EpisodeState) -> None:
+        """Continue from a copy of this trial; with the same actions it has the same future, byte for byte.
+
+        Raises:
+            HthorError: when the world's state is that of another world.
+        """
+        self.reset()
+        self.world.load_state(state.world)
+        self._mailbox.load_state(state.mailbox)
+        self._writer.load_state(state.log)
+        self.met, self.voided, self.paused = state.met, state.voided, state.paused
+        self._progress.load_state(state.progress, self.world.snapshot())
+        self._active, self._actions, self._failed = state.active, dict(state.actions), dict(state.failed)
+        self._observed = {
+            seat: msgspec.structs.replace(one, senses=self.world.senses(seat)) for seat, one in state.observed.items()
+        }
+
+    def log(
+        self, ratings: Mapping[str, int | None] | None = None, journals: Mapping[str, Sequence[Event]] | None = None
+    ) -> EpisodeLog:
+        """The trial's log up to now.
+
+        Args:
+            ratings: each person's rating of trust in the robots after the trial, by seat.
+            journals: each human model's own events, by seat, for the journal.
+        """
+        end = "voided" if self.voided else "success" if self.met else "timeout" if self.done else ""
+        log = self._writer.log(self.tick, end, self.voided, journals or {})
+        return msgspec.structs.replace(
+            log, met=self.met, progress=self._progress.value, ratings=dict(ratings or {})
+        )
+
+    # ----------------------------------------------------------------------------------------------- within one tick
+
+    def _dismiss_failed(self) -> None:
+        for seat in self._active:
+            if (fault := self._failed.get(seat)) is not None:
+                self.faults.append(fault)
+                self.events.append(Event(tick=self.tick, seat=seat, kind="fault", data={"kind": fault.kind}))
+                self._writer.rest.note(self.tick, seat, resting=True)
+        self._active = tuple(seat for seat in self._active if seat not in self._failed)
+        self._failed = {}
+
+    def _act(self) -> None:
+        """Let every seat that has acted say what it says and begin its motion."""
+        tick, idle, actions = self.tick, self.world.idle, self._actions
+        for seat in self._active:
+            if seat not in actions:
+                if idle(seat):
+                    self._writer.rest.note_unasked(tick, seat)
+                continue
+            action, seen = actions[seat]
+            if seen is not None and seen.tick < tick:
+                self.events.append(Event(tick=tick, seat=seat, kind="thought", data={"ticks": tick - seen.tick}))
+            if action.say is not None:
+                self._say(seat, action)
+            if isinstance(action.motion, Drive) or ((seen is None or seen.idle) and idle(seat)):
+                self._start(seat, action.motion)
+            elif idle(seat):
+                self._writer.rest.note_unasked(tick, seat)
+        self._actions = {}
+
+    def _start(self, seat: str, motion: Motion) -> None:
+        self.world.start(seat, motion)
+        self._writer.note_motion(self.tick, seat, motion, started=not self.world.idle(seat))
+
+    def _say(self, seat: str, action: Action) -> None:
+        tick, say = self.tick, action.say
+        if isinstance(say, Send):
+            image = None if seat in self.people else self.world.frame(seat)
+            events = self._mailbox.send(tick, seat, say, image)
+            self.events.extend(self._with_claim_error(event, say) for event in events)
+        elif say is not None:
+            self.events.extend(self._mailbox.reply(tick, seat, say))
+
+    def _with_claim_error(self, event: Event, send: Send) -> Event:
+        """The event; for a sent message, with the distance of its claim from the truth added."""
+        if event.kind != "sent":
+            return event
+        claim = claims.claim_error(send, event.data["position"], self.world.snapshot(), self.world.house)
+        return msgspec.structs.replace(event, data={**event.data, **claim})
+
+    def _notify(self, first: int) -> None:
+        for observer in self._observers:
+            observer(self, tuple(self.events[first:]))

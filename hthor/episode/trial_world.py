@@ -63,6 +63,22 @@ class TrialWorld(Protocol):
     def senses(self, seat: str) -> Senses:
         """The body's sensors, to be read during this tick only."""
 
+    def frozen_senses(self, seat: str) -> Senses:
+        """The body's sensors at this tick, which may also be read later, and from another thread."""
+
+    def save_state(self) -> bytes:
+        """The state of the world, with which `load_state` gives the same future."""
+
+    def load_state(self, state: bytes) -> None:
+        """Continue from a saved state of this world, or of another one of the same house, bodies and objects.
+
+        Raises:
+            HthorError: when it is the state of another world, or damaged.
+        """
+
+    def substep(self) -> None:
+        """Move bodies that drive by one of the `rules.SUBTICKS` steps of this tick; `advance` does those left."""
+
     def truth(self) -> tuple[ThingState, ...]:
         """The true states of all objects, for agents with the privilege "object_poses"."""
 

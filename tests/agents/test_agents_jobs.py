@@ -16,7 +16,7 @@ from hthor.agents.skills.knowledge import Knowledge, resting_points
 from hthor.agents.skills.message_timing import help_carry_text, look_inside_text
 from hthor.agents.skills.routes import HouseRoutes
 from hthor.agents.skills.task_allocation import TaskAllocation
-from hthor.episode import EpisodeLog, run_episode
+from hthor.episode import EpisodeLog, play
 from hthor.geometry import plane
 from hthor.types import (
     HUMAN,
@@ -95,7 +95,7 @@ def run(task: TaskSpec, *robots: str, human: Any = None) -> tuple[EpisodeLog, fl
         code_sha256="",
     )
     stage = world(tuple(body for body, _ in cast), tuple((one.id, one.kind) for one in task.objects))
-    log = run_episode(trial, stage, human or Bystander(), minds)
+    log = play(trial, stage, {"human": human or Bystander()}, minds)
     kind = plugins.load("task kind", task.kind)
     return log, kind.progress(task, stage.snapshot(), stage.house)
 

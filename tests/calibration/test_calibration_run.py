@@ -100,7 +100,7 @@ def test_a_changed_world_is_refused(trained, monkeypatch):
 @pytest.mark.slow
 def test_a_session_is_what_an_evaluation_would_have_played():
     """The same person out of the same population meets the same trials, whoever asks."""
-    from hthor.episode import run_episode
+    from hthor.episode import play
     from hthor.humans.models.proxy import Model
     from hthor.humans.population import participant
     from hthor.humans.population.participant import Participant, participant_root
@@ -115,7 +115,7 @@ def test_a_session_is_what_an_evaluation_would_have_played():
     human, logs = Model(Participant(seed=5, number=0, traits=traits)), []
     with stage.enter(dealt) as company:
         for trial in dealt.trials:
-            logs.append((trial, run_episode(trial, stage.world(trial), human, company.ready_agents())))
+            logs.append((trial, play(trial, stage.world(trial), {"human": human}, company.ready_agents())))
     for row, (trial, log) in zip(rows, logs, strict=True):
         told = dict(zip(session_simulation.OUTCOMES, row, strict=True))
         assert TINY.tasks[told["task"]].id == trial.task.id

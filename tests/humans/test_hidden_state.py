@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from hthor import tasks
-from hthor.episode import EpisodeLog, run_episode
+from hthor.episode import EpisodeLog, play
 from hthor.eval.config.sessions import make_sessions
 from hthor.eval.runner import trial_runner
 from hthor.tasks.suite import make_suite
@@ -117,9 +117,9 @@ def _one(
 ) -> EpisodeLog:
     world = stage.world(trial)
     if not veiled:
-        return run_episode(trial, world, company.human, company.ready_agents())
+        return play(trial, world, {"human": company.human}, company.ready_agents())
     shut = Shut(world)
-    return run_episode(trial, shut, Guarded(company.human, shut), company.ready_agents())  # type: ignore[arg-type]
+    return play(trial, shut, {"human": Guarded(company.human, shut)}, company.ready_agents())  # type: ignore[arg-type]
 
 
 @pytest.fixture(scope="module")
@@ -172,5 +172,5 @@ def test_the_veil_holds(stage: trial_runner.TrialRunner) -> None:
     few = make_suite("one", 1, smoke.tasks[:1])
     trial = make_sessions(few, agent="silent")[0].trials[0]
     shut = Shut(stage.world(trial))
-    log = run_episode(trial, shut, Guarded(Cheat(), shut), {})  # type: ignore[arg-type]
+    log = play(trial, shut, {"human": Guarded(Cheat(), shut)}, {})  # type: ignore[arg-type]
     assert not log.met

@@ -9,7 +9,7 @@ import pytest
 from fake_flat import BODY
 
 from hthor import houses, plugins, seeds, tasks
-from hthor.episode import run_episode
+from hthor.episode import play
 from hthor.humans.behaviours.behaviours import Behaviours
 from hthor.humans.communication.interpretation import AdviceTracker
 from hthor.humans.core.trial_context import HumanContext
@@ -97,7 +97,7 @@ def trial_of(task, participant=0):
 def run(world, task, participant=0, robot=None):
     """One trial: its log, the share of the goal that was met, and the person."""
     model = Model(Participant(seed=0, number=participant))
-    log = run_episode(trial_of(task, participant), world, model, {"robot": robot or Scripted()})
+    log = play(trial_of(task, participant), world, {"human": model}, {"robot": robot or Scripted()})
     assert not log.faults
     kind = plugins.load("task kind", task.kind)
     return log, kind.progress(task, world.snapshot(), world.house), model

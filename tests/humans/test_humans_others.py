@@ -108,8 +108,8 @@ def log(world, tmp_path_factory) -> Path:
     lines = b""
     for index, support in enumerate(FROM):
         trial = spec(bring(support), index=index)
-        done = umpire.run_episode(
-            trial, world, person, {"robot": Teller(Send(text="Here.", object="apple", position=at(support)))}
+        done = umpire.play(
+            trial, world, {"human": person}, {"robot": Teller(Send(text="Here.", object="apple", position=at(support)))}
         )
         assert done.met
         assert done.ratings[HUMAN] is not None
@@ -149,8 +149,11 @@ def test_plays_whole_trials_in_the_real_world_the_same_twice(name, world, log):
         person, found = model(name, log, state), []
         for index, support in enumerate(FROM):
             trial = spec(bring(support), index=index)
-            done = umpire.run_episode(
-                trial, world, person, {"robot": Teller(Send(text="Here.", object="apple", position=at(support)))}
+            done = umpire.play(
+                trial,
+                world,
+                {"human": person},
+                {"robot": Teller(Send(text="Here.", object="apple", position=at(support)))},
             )
             assert done.ratings[HUMAN] in range(rules.TRUST_MIN, rules.TRUST_MAX + 1)
             found.append(trial_record.encode(trial_record.make_record(trial, done)))
@@ -165,11 +168,14 @@ def test_plays_whole_trials_in_the_real_world_the_same_twice(name, world, log):
 @pytest.mark.parametrize("name", MODELS)
 def test_goes_on_from_its_state_as_if_never_interrupted(name, world, log):
     def second(person):
-        return umpire.run_episode(spec(bring(COFFEE), index=1), world, person, {"robot": Teller()})
+        return umpire.play(spec(bring(COFFEE), index=1), world, {"human": person}, {"robot": Teller()})
 
     whole = model(name, log)
-    umpire.run_episode(
-        spec(bring(BED)), world, whole, {"robot": Teller(Send(text="Here.", object="apple", position=at(BED)))}
+    umpire.play(
+        spec(bring(BED)),
+        world,
+        {"human": whole},
+        {"robot": Teller(Send(text="Here.", object="apple", position=at(BED)))},
     )
     state = msgspec.json.decode(msgspec.json.encode(whole.state()))
     assert second(whole) == second(model(name, log, state))
@@ -318,7 +324,7 @@ def test_a_replay_does_the_same_whatever_the_robot_says(robot, world, log):
     person = model("replay", log)
     for one, support in zip(past_, FROM, strict=True):
         says = [Send(text="Here.", object="apple", position=at(support))] if robot == "same" else []
-        done = umpire.run_episode(one.spec, world, person, {"robot": Teller(*says)})
+        done = umpire.play(one.spec, world, {"human": person}, {"robot": Teller(*says)})
         assert paths(done) == one.paths["human"]
         wanted = [(e.tick, e.kind, e.data) for e in one.events if e.seat == "human"]
         answered = {"accepted", "shown"} if robot == "silent" else set()
@@ -331,7 +337,7 @@ def test_a_replay_answers_what_is_shown_when_the_logged_person_answered(world, l
     one = _logged_trials.read_logged_trials(str(log))[0][0]
     (tick, accept), *_ = one.answers()
     says = (Send(text="Look here.", object="apple", position=(9.0, 2.7, 0.5)), Send(text="Or here.", object="apple"))
-    done = umpire.run_episode(one.spec, world, model("replay", log), {"robot": Teller(*says, at=tick - 1)})
+    done = umpire.play(one.spec, world, {"human": model("replay", log)}, {"robot": Teller(*says, at=tick - 1)})
     answered = [event for event in done.events if event.kind in ("accepted", "declined")]
     assert [(event.tick, event.kind == "accepted") for event in answered] == [(tick, accept)]
 
@@ -349,10 +355,10 @@ def test_a_replay_waits_for_a_robot_in_its_way_and_catches_up(world, log):
     x, y, _ = next(pose for pose in one.paths["human"] if pose[0] > 5700)
     start = Pose(x=x / 1000.0, y=y / 1000.0, yaw=math.pi / 2)
     task = msgspec.structs.replace(one.spec.task, robot_starts=(start,))
-    done = umpire.run_episode(spec(task), world, model("replay", log), {"robot": Blocker(at=one.ticks)})
+    done = umpire.play(spec(task), world, {"human": model("replay", log)}, {"robot": Blocker(at=one.ticks)})
     assert [kind for _, kind, _ in deeds(done) if kind != "accepted"] == ["picked", "placed", "success"]
     assert done.ticks > one.ticks
-    blocked = umpire.run_episode(spec(task), world, model("replay", log), {"robot": Blocker(at=10_000)})
+    blocked = umpire.play(spec(task), world, {"human": model("replay", log)}, {"robot": Blocker(at=10_000)})
     assert not blocked.met
     assert blocked.ticks == 900
     assert max(p[0] for p in paths(blocked)) < 1000 * start.x
@@ -361,7 +367,7 @@ def test_a_replay_waits_for_a_robot_in_its_way_and_catches_up(world, log):
 def test_a_replay_stands_still_after_the_end_of_its_log(world, log):
     one = _logged_trials.read_logged_trials(str(log))[0][0]
     task = msgspec.structs.replace(one.spec.task, objects=(on(COUNTER, "apple"),))  # it lies somewhere else now
-    done = umpire.run_episode(spec(task), world, model("replay", log), {"robot": Teller()})
+    done = umpire.play(spec(task), world, {"human": model("replay", log)}, {"robot": Teller()})
     assert not done.met
     assert done.ticks == 900
     assert len(set(paths(done)[one.ticks // 2 + 2 :])) == 1
@@ -377,10 +383,10 @@ def test_a_replay_stands_still_after_the_end_of_its_log(world, log):
 )
 def test_a_log_of_another_task_is_an_error_that_says_so(task, participant, words, world, log):
     with pytest.raises(HthorError) as error:
-        umpire.run_episode(
+        umpire.play(
             spec(task, participant=participant),
             world,
-            model("replay", log, participant=participant),
+            {"human": model("replay", log, participant=participant)},
             {"robot": Teller()},
         )
     assert words in str(error.value)

@@ -6,7 +6,7 @@ import msgspec
 import pytest
 
 from hthor import rules, tasks
-from hthor.episode import EpisodeLog, run_episode
+from hthor.episode import EpisodeLog, play
 from hthor.eval.config.sessions import make_sessions
 from hthor.eval.runner import trial_runner
 from hthor.tasks.suite import make_suite
@@ -60,7 +60,7 @@ def first_trials(agent: str, stage: trial_runner.TrialRunner, mind: object = Non
         with stage.enter(session) as company:
             for trial in session.trials[:TRIALS]:
                 robots = {"robot": mind} if mind else company.ready_agents()
-                logs.append(run_episode(trial, stage.world(trial), company.human, robots))
+                logs.append(play(trial, stage.world(trial), {"human": company.human}, robots))
     return logs
 
 

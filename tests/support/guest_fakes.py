@@ -10,7 +10,7 @@ import eval_fakes as fakes
 import msgspec
 
 from hthor import guest
-from hthor.episode import run_episode
+from hthor.episode import play
 from hthor.eval.config.sessions import Session
 from hthor.eval.runner import trial_runner
 from hthor.eval.runner.messages import TrialOutcome
@@ -52,8 +52,8 @@ def player(agent: str, level: str) -> Callable[[Session], Iterator[TrialOutcome]
             for memory, trial in enumerate(session.trials):
                 task = msgspec.structs.replace(trial.task, kind="object_goal_navigation")
                 stage = Stage(seen=fakes.episode(trial, memory).ticks // 10)
-                log = run_episode(
-                    msgspec.structs.replace(trial, task=task), stage, company.human, company.ready_agents()
+                log = play(
+                    msgspec.structs.replace(trial, task=task), stage, {"human": company.human}, company.ready_agents()
                 )
                 for seat in dict.fromkeys(fault.seat for fault in log.faults):
                     company.dismiss(seat)

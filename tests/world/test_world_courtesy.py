@@ -11,7 +11,7 @@ import world_house as tiny
 from world_house import FRIDGE, on
 
 from hthor import plugins
-from hthor.episode import run_episode
+from hthor.episode import play
 from hthor.geometry.plane import wrap
 from hthor.types import (
     HUMAN,
@@ -82,7 +82,7 @@ def test_a_robot_in_a_doorway_lets_the_person_through(name: str, yaw: float) -> 
         code_sha256="0",
     )
     walker = Walker()
-    log = run_episode(trial, world, walker, {"robot": agent()})  # type: ignore[arg-type]
+    log = play(trial, world, {"human": walker}, {"robot": agent()})  # type: ignore[arg-type]
     assert not log.faults
     assert {event.kind for event in log.events if event.seat == HUMAN} >= {"in_way"}, "it did stand in the way"
     assert 0 < walker.arrived < 150, "the person is through within a quarter of a minute"

@@ -10,7 +10,7 @@ from typing import Any
 from msgspec import Struct
 
 from hthor import plugins, rules
-from hthor.episode import EpisodeLog, run_episode
+from hthor.episode import EpisodeLog, play
 from hthor.errors import HthorError
 from hthor.eval.runner.messages import TrialOutcome
 from hthor.eval.runner.trial_runner import Sources, TrialRunner
@@ -102,7 +102,7 @@ def run_trials(trials: Sequence[TrialSpec], population: Parameters, runner: Tria
     human = Model(Participant(seed=seed, number=participant, traits=traits))
     agents = {seat.seat: plugins.load("agent", seat.agent.name)() for seat in trials[0].robots}
     for trial in trials:
-        yield run_episode(trial, runner.world(trial), human, agents)
+        yield play(trial, runner.world(trial), {"human": human}, agents)
 
 
 def outcome_row(number: int, trial: TrialSpec, log: EpisodeLog) -> OutcomeRow:

@@ -8,7 +8,8 @@ import msgspec
 from msgspec import Struct
 
 from hthor import activity, rules, tasks
-from hthor.episode import EpisodeLog, Fault, run_episode
+from hthor.episode import EpisodeLog, Fault, play
+from hthor.episode.clocks import TimedSenses as Timed
 from hthor.eval.config import robot_team
 from hthor.eval.config.robot_team import AgentInfo
 from hthor.eval.config.sessions import Session, make_sessions
@@ -18,7 +19,6 @@ from hthor.eval.runner.fault_report import RecordedAgent
 from hthor.guest import Guest
 from hthor.guest.process_tools import resource_usage
 from hthor.tasks.suite import make_suite
-from hthor.thinking_time import Timed
 from hthor.types import Action, Briefing, Detection, Event, Observation, Send, TrialSpec, Wait
 from hthor.types.cameras import OWN
 
@@ -94,7 +94,7 @@ class ProbeTrials:
         human = self._stage.enter(Session(number=trial.session, trials=(trial,))).human
         noted, world = _Noted(guest), self._stage.world(trial)
         seat = trial.robots[0].seat
-        log = run_episode(trial, world, human, {seat: noted})
+        log = play(trial, world, {"human": human}, {seat: noted})
         done = [(look.tick, action) for look, action in noted.looks if action is not None]
         says = [(action.say, seen) for (_, action), seen in zip(done, noted.seen, strict=False)]
         about = [(say.object, seen) for say, seen in says if isinstance(say, Send) and say.object]

@@ -272,10 +272,10 @@ def make_runner(sources: Sources | None = None) -> Callable[[Session], Iterator[
 
 def _run_trial(world: TrialWorld, participants: Participants, trial: TrialSpec) -> EpisodeLog:
     """Run one trial. An error in a plug-in of the user's is reported as theirs to fix."""
-    from hthor.episode import run_episode
+    from hthor.episode import play
 
     try:
-        return run_episode(trial, world, participants.human, participants.ready_agents())
+        return play(trial, world, {"human": participants.human}, participants.ready_agents())
     except (Exception, SystemExit) as error:
         if (own := plugins.user_error(error)) is None:
             raise

@@ -24,19 +24,21 @@ from collections.abc import Iterable, Sequence
 
 import msgspec
 
-from hthor.types import HUMAN, BodySpec, Event, Motion, Move
+from hthor.types import BodySpec, Event, Motion, Move
 
 _THOUSAND = 1000
 """[count] Steps per full deflection of the stick, and per radian of pitch. Our choice."""
 _DONE = {"pick": "picked", "place": "placed", "open": "opened", "close": "closed", "drop": "dropped"}
 """The kind of event in the trial's log for each kind of attempt that succeeds."""
 
+RecorderState = tuple[tuple[int, ...], tuple[int, ...]]
+
 
 class BehaviourRecorder:
     """Records stick and pitch of one trial as run lengths; full deflection of the stick gives the body's speed."""
 
-    def __init__(self, body: BodySpec, tick_s: float) -> None:
-        self.body, self.tick_s, self._step = body, tick_s, body.speed * tick_s
+    def __init__(self, seat: str, body: BodySpec, tick_s: float) -> None:
+        self.seat, self.body, self.tick_s, self._step = seat, body, tick_s, body.speed * tick_s
         self._stick: list[int] = [0, 0]
         self._pitch: list[int] = []
 
@@ -58,13 +60,21 @@ class BehaviourRecorder:
 
     def journal(self, own: Iterable[Event], events: Iterable[Event]) -> tuple[Event, ...]:
         """The whole journal: the human model's own events, with successes from the trial's log (``events``)."""
-        stick = Event(tick=0, seat=HUMAN, kind="stick", data={"full": self.body.speed, "runs": self._stick})
+        stick = Event(tick=0, seat=self.seat, kind="stick", data={"full": self.body.speed, "runs": self._stick})
         pitch = {"fastest": self.body.turn_rate, "pitch": self._pitch}
-        done = [event for event in events if event.seat == HUMAN and event.kind in _DONE.values()]
+        done = [event for event in events if event.seat == self.seat and event.kind in _DONE.values()]
         written = list(own)
         tried = [event.tick for event in written if event.kind == "attempt"]
         ended = (self._completed(event, done, tried) if _is_open(event) else event for event in written)
-        return (stick, Event(tick=0, seat=HUMAN, kind="head", data=pitch), *ended)
+        return (stick, Event(tick=0, seat=self.seat, kind="head", data=pitch), *ended)
+
+    def save_state(self) -> RecorderState:
+        """A copy of what was recorded."""
+        return tuple(self._stick), tuple(self._pitch)
+
+    def load_state(self, state: RecorderState) -> None:
+        """Continue from a copy."""
+        self._stick, self._pitch = list(state[0]), list(state[1])
 
     def _completed(self, attempt: Event, done: Sequence[Event], tried: Sequence[int]) -> Event:
         """The attempt, with its success if that is in ``done`` before the next attempt (``tried``: all ticks)."""

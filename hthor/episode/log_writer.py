@@ -1,0 +1,94 @@
+"""Writes the log of a trial while it runs: events, paths, rest times, and what people's recorders see."""
+
+from collections.abc import Mapping, Sequence
+
+from msgspec import Struct
+
+from hthor import rules
+from hthor.episode.episode_log import EpisodeLog, Fault
+from hthor.episode.rest_time import RestState, RestTime
+from hthor.episode.trial_world import TrialWorld
+from hthor.humans.core.behaviour_log import BehaviourRecorder, RecorderState
+from hthor.types import HUMAN, BodySpec, Event, Motion, is_person
+
+_THOUSAND = 1000.0
+"""Millimetres in a metre, milliradians in a radian."""
+
+
+class LogState(Struct, frozen=True, kw_only=True):
+    """A copy of everything that was written, from `LogWriter.save_state`."""
+
+    events: tuple[Event, ...]
+    faults: tuple[Fault, ...]
+    paths: dict[str, tuple[tuple[int, int, int], ...]]
+    rest: RestState
+    recorders: dict[str, RecorderState]
+
+
+class LogWriter:
+    """The log of one trial as far as it has come; ``bodies`` are those of the seats that take part.
+
+    Attributes:
+        events, faults: as in `EpisodeLog`; the episode appends to them. rest: how long each body has rested.
+    """
+
+    def __init__(self, bodies: Mapping[str, BodySpec]) -> None:
+        self.events: list[Event] = []
+        self.faults: list[Fault] = []
+        self.rest = RestTime(bodies)
+        self._paths: dict[str, list[tuple[int, int, int]]] = {seat: [] for seat in bodies}
+        self._recorders = {
+            seat: BehaviourRecorder(seat, body, rules.TICK_S) for seat, body in bodies.items() if is_person(seat)
+        }
+
+    def trace(self, world: TrialWorld) -> None:
+        """Add the bodies' poses to their paths, every `rules.LOG_EVERY_TICKS` ticks."""
+        if world.tick % rules.LOG_EVERY_TICKS:
+            return
+        for seat, path in self._paths.items():
+            pose = world.pose(seat)
+            path.append((round(pose.x * _THOUSAND), round(pose.y * _THOUSAND), round(pose.gaze * _THOUSAND)))
+            if seat in self._recorders:
+                self._recorders[seat].head(world.tick, pose.pitch)
+
+    def note_motion(self, tick: int, seat: str, motion: Motion, *, started: bool) -> None:
+        """Note a motion that begins; ``started`` is false if the body is still free after it."""
+        if seat in self._recorders:
+            self._recorders[seat].motion(tick, motion)
+        self.rest.note_motion(tick, seat, motion, started=started)
+
+    def log(self, tick: int, end: str, reason: str, journals: Mapping[str, Sequence[Event]]) -> EpisodeLog:
+        """The log up to this tick, with ``end`` as its last event unless that is empty, and the people's journals."""
+        events = tuple(self.events)
+        if end:
+            events += (Event(tick=tick, seat=HUMAN, kind=end, data={"reason": reason} if reason else {}),)
+        recorders = self._recorders.items()
+        journal = [event for seat, one in recorders for event in one.journal(journals.get(seat, ()), events)]
+        return EpisodeLog(
+            events=events,
+            paths={seat: list(path) for seat, path in self._paths.items()},
+            ticks=tick,
+            met=False,
+            ratings={},
+            faults=tuple(self.faults),
+            idle=self.rest.totals(tick),
+            journal=tuple(journal),
+        )
+
+    def save_state(self) -> LogState:
+        """A copy of everything that was written."""
+        return LogState(
+            events=tuple(self.events),
+            faults=tuple(self.faults),
+            paths={seat: tuple(path) for seat, path in self._paths.items()},
+            rest=self.rest.save_state(),
+            recorders={seat: recorder.save_state() for seat, recorder in self._recorders.items()},
+        )
+
+    def load_state(self, state: LogState) -> None:
+        """Continue from a copy."""
+        self.events[:], self.faults[:] = state.events, state.faults
+        self._paths = {seat: list(path) for seat, path in state.paths.items()}
+        self.rest.load_state(state.rest)
+        for seat, recorder in self._recorders.items():
+            recorder.load_state(state.recorders[seat])

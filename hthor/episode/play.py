@@ -1,0 +1,68 @@
+"""Plays a trial with human models and agents, from its beginning to its end."""
+
+from collections.abc import Mapping
+
+from hthor.episode.clocks import DecisionClock, make_clock
+from hthor.episode.episode import Episode
+from hthor.episode.episode_log import EpisodeLog
+from hthor.episode.trial_world import TrialWorld
+from hthor.humans.model import HumanModel
+from hthor.types import Mind, TrialSpec
+
+
+def play(
+    trial: TrialSpec,
+    world: TrialWorld,
+    humans: Mapping[str, HumanModel],
+    robots: Mapping[str, Mind],
+    clock: DecisionClock | None = None,
+) -> EpisodeLog:
+    """Run one trial from reset to its end.
+
+    Args:
+        trial: its task names the house, the starts, the goal and the time limit.
+        world: the simulation of the task's house, with a body for every seat.
+        humans: the human model of each person, by seat, which may remember earlier trials of the session.
+        robots: the agent of each robot, by seat.
+        clock: when agents' answers take effect; by default the decision clock that the trial names.
+
+    Raises:
+        Exception: any exception of a human model or the world; errors of agents become faults in the log.
+    """
+    episode, clock = Episode(trial, world, (*humans, *robots)), clock or make_clock(trial)
+    episode.reset()
+    try:
+        begin(episode, humans, robots, clock)
+        while not episode.done:
+            for seat in episode.waiting:
+                if seat in humans:
+                    episode.submit(seat, humans[seat].act(episode.observe(seat)))
+                elif not clock.busy(seat):
+                    clock.ask(seat, robots[seat], episode.observe(seat, frozen=clock.frozen))
+            take_answers(episode, clock)
+            episode.advance()
+    finally:
+        clock.close()
+    ratings = {seat: human.rate(episode.met, episode.tick) for seat, human in humans.items() if not episode.voided}
+    return episode.log(ratings, {seat: getattr(human, "journal", ()) for seat, human in humans.items()})
+
+
+def begin(episode: Episode, humans: Mapping[str, HumanModel], robots: Mapping[str, Mind], clock: DecisionClock) -> None:
+    """Brief everybody; an agent that fails leaves the trial."""
+    for seat, human in humans.items():
+        human.begin(episode.briefing(seat))
+    for seat, mind in robots.items():
+        try:
+            clock.begin(seat, mind, episode.briefing(seat))
+        except Exception as error:
+            episode.retire(seat, error)
+
+
+def take_answers(episode: Episode, clock: DecisionClock) -> None:
+    """Submit the answers that take effect now; an agent that failed leaves the trial."""
+    for answer in clock.answers(episode.tick):
+        if answer.action is not None:
+            episode.submit(answer.seat, answer.action, answer.observation)
+        else:
+            assert answer.error is not None
+            episode.retire(answer.seat, answer.error)
