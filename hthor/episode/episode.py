@@ -261,9 +261,7 @@ class Episode:
         """
         end = "voided" if self.voided else "success" if self.met else "timeout" if self.done else ""
         log = self._writer.log(self.tick, end, self.voided, journals or {})
-        return msgspec.structs.replace(
-            log, met=self.met, progress=self._progress.value, ratings=dict(ratings or {})
-        )
+        return msgspec.structs.replace(log, met=self.met, progress=self._progress.value, ratings=dict(ratings or {}))
 
     # ----------------------------------------------------------------------------------------------- within one tick
 

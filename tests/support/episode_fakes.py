@@ -83,6 +83,8 @@ class Stage:
     def senses(self, seat: str) -> Any:
         return None
 
+    frozen_senses = senses
+
     def truth(self) -> tuple[ThingState, ...]:
         return (ThingState(id="apple", kind="apple", position=(0.0, 0.0, 0.0)),)
 

@@ -269,13 +269,8 @@ def trial_with_pictures() -> str:
     hashes = dict.fromkeys(("suite_sha256", "rules_sha256", "code_sha256"), "0")
     humans = (HumanSeat(seat="human", model="x", sha256="0", participant=0),)
     robots = (RobotSeat(seat="robot", robot="scout", agent=agent),)
-<<<<<<< HEAD
     trial = TrialSpec(task=short, robots=robots, humans=humans, session=0, index=0, seed=0, **hashes)
-    log = episode.run_episode(trial, World(tiny.house(), robots=("scout",)), Mind(), {"robot": Mind()})
-=======
-    trial = TrialSpec(task=short, robots=robots, human="x", participant=0, index=0, seed=0, **hashes)
     log = episode.play(trial, World(tiny.house(), robots=("scout",)), {"human": Mind()}, {"robot": Mind()})
->>>>>>> 626079c1 (The episode is open: reset, observe, submit, advance; play and three decision clocks drive it)
     assert not log.faults, log.faults
     assert (104, 160, 3) in seen
     assert all(all(one) for one in seen)
