@@ -177,7 +177,7 @@ def _together(
             for stage, company, trial in ((one[0], mine, first), (other[0], yours, second)):
                 world, robots = stage.world(trial), company.ready_agents()
                 spent, begin = resource_usage.cpu_s(os.getpid()), time.perf_counter()
-                ticks.add(play(trial, world, {"human": company.human}, robots).ticks)
+                ticks.add(play(trial, world, company.humans, robots).ticks)
                 company.finish_trial()
                 wall = time.perf_counter() - begin
                 time.sleep(0.05)  # so that a guest's end is counted too

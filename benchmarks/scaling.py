@@ -49,6 +49,6 @@ def _play(order: tuple[str, int]) -> float:
             for _, trial in mine:
                 world = stage.world(trial)
                 clock = Clock()
-                play(trial, world, {"human": company.human}, company.ready_agents())
+                play(trial, world, company.humans, company.ready_agents())
                 spent += clock()
     return spent

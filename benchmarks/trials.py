@@ -60,7 +60,7 @@ def cost(suite: str, agent: str | RobotTeam, each: int) -> dict[str, list[float]
     sessions = hands(suite, agent)
     with stage.enter(sessions[0]) as company:
         first = sessions[0].trials[0]
-        play(first, stage.world(first), {"human": company.human}, company.ready_agents())
+        play(first, stage.world(first), company.humans, company.ready_agents())
     wanted = {trial.task.house for session in sessions for trial in session.trials}
     for session in sessions:
         with stage.enter(session) as company:
@@ -68,7 +68,7 @@ def cost(suite: str, agent: str | RobotTeam, each: int) -> dict[str, list[float]
                 world = stage.world(trial)
                 robots = company.ready_agents()
                 clock = Clock()
-                log = play(trial, world, {"human": company.human}, robots)
+                log = play(trial, world, company.humans, robots)
                 costs[trial.task.house].append(clock() * TICKS / log.ticks)
         if all(len(costs[scene]) >= each for scene in wanted):
             break

@@ -255,8 +255,8 @@ def test_everything_that_a_trial_runs_counts(sources: Sources, suite: str, agent
     """A trial is played under a profiler: no function outside of the counted modules is called."""
     chosen = tasks.load_suite(suite)
     stage = trial_runner.TrialRunner()
-    trial = sessions.make_sessions(chosen, agent=agent, robot=robot, human=model)[0].trials[0]
-    with stage.enter(sessions.make_sessions(chosen, agent=agent, robot=robot, human=model)[0]) as company:
+    trial = sessions.make_sessions(chosen, agent=agent, robot=robot, humans=model)[0].trials[0]
+    with stage.enter(sessions.make_sessions(chosen, agent=agent, robot=robot, humans=model)[0]) as company:
         world = stage.world(trial)
         called = _called(lambda: stage.run(company, trial, world))
     roots = [trial_runner.__name__, trial_metrics.__name__, trial_record.__name__]
@@ -290,9 +290,9 @@ def test_what_robots_bring_counts_apart() -> None:
     """A run with a robot and its control without one have the same code."""
     assert code_identity.agent_sha256("frontier") != code_identity.agent_sha256("oracle")
     kinds = ["mobile_manipulation"]
-    assert code_identity.code_sha256("proxy", kinds) != code_identity.code_sha256("greedy", kinds)
-    assert code_identity.code_sha256("proxy", kinds) != code_identity.code_sha256("proxy", [*kinds, "tidying_up"])
-    assert code_identity.code_sha256("my_human.py", kinds) == code_identity.code_sha256("other", kinds)
+    assert code_identity.code_sha256(["proxy"], kinds) != code_identity.code_sha256(["greedy"], kinds)
+    assert code_identity.code_sha256(["proxy"], kinds) != code_identity.code_sha256(["proxy"], [*kinds, "tidying_up"])
+    assert code_identity.code_sha256(["my_human.py"], kinds) == code_identity.code_sha256(["other"], kinds)
 
 
 @pytest.mark.slow

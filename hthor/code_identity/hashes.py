@@ -16,16 +16,17 @@ _HEX = 64
 """Number of letters of a hash."""
 
 
-def code_sha256(model: str, kinds: Iterable[str]) -> str:
+def code_sha256(models: Iterable[str], kinds: Iterable[str]) -> str:
     """Hash of the code that runs and measures trials: world, episode, human model, task kinds, records, metrics.
 
     Robots have hashes of their own: `agent_sha256`, `robot_sha256`, `pictures_sha256`.
 
     Args:
-        model: the human model; a user's own model counts as all built-in ones, which it may use.
+        models: the human models; a user's own model counts as all built-in ones, which it may use.
         kinds: the task kinds, with the same rule.
     """
-    own = [*_modules("human model", model), *(name for kind in set(kinds) for name in _modules("task kind", kind))]
+    own = [name for model in dict.fromkeys(models) for name in _modules("human model", model)]
+    own += [name for kind in set(kinds) for name in _modules("task kind", kind)]
     metrics = [plugins.module_name("metric", name) for name in plugins.names("metric")]
     return modules_sha256([*roots(_TRIAL), *metrics, *own])
 

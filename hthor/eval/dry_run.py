@@ -81,7 +81,7 @@ class CostSampler:
 
     def measure(self, run: ScheduledRun) -> TrialCost | None:
         """The cost of a trial of this run; None when no trial ended in time, or an agent could not be loaded."""
-        same = (tuple(_robots_of(run.config)), run.population.model)
+        same = (tuple(_robots_of(run.config)), run.people.models)
         if same not in self._costs:
             self._say(f"{run.title}: {_TRIALS} trials are played to see what they take")
             with tempfile.TemporaryDirectory() as folder:

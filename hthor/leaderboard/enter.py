@@ -138,7 +138,7 @@ def _whole(folder: Path, config: RunConfig, there: int) -> None:
             f"{folder} lacks {config.trials - there} of its {config.trials} trials; only whole runs go on the board. "
             f"Finish it: {cli_command.resume_command(folder, config)}"
         )
-    if config.code_sha256 != (here := code_identity.code_sha256(config.humans.model, config.kinds or ())):
+    if config.code_sha256 != (here := code_identity.code_sha256(config.humans.models, config.kinds or ())):
         raise RunError(
             f"{folder / 'run.json'}: code_sha256 is {config.code_sha256[:10]}, and here it is {here[:10]}: it was run "
             "with a different version of hthor. Add it with that version, or run it again."

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from hthor.errors import HthorError
 from hthor.eval.comparison import population_matrix
-from hthor.eval.config import robot_team, run_config
+from hthor.eval.config import human_team, robot_team, run_config
 from hthor.eval.results import aggregate, result_file
 from hthor.eval.statistics import intervals
 
@@ -27,9 +27,9 @@ SUITE = eval_fakes.suite(30)
 @functools.cache
 def nothing(agent: str, model: str) -> result_file.RunResult:
     """The result of a run without a trial."""
-    who = msgspec.structs.replace(eval_fakes.persons(model), model=model)
+    who = human_team.form_team([msgspec.structs.replace(eval_fakes.persons(model), model=model)])
     return aggregate.make_result(
-        run_config.build_config(SUITE, CREWS[agent], human=who, seed=0, participants=None), [], []
+        run_config.build_config(SUITE, CREWS[agent], humans=who, seed=0, participants=None), [], []
     )
 
 

@@ -13,7 +13,7 @@ import guest_agents
 import msgspec
 import pytest
 from command_line import run
-from eval_fakes import persons, suite
+from eval_fakes import people, suite
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from typer.testing import CliRunner
@@ -80,7 +80,7 @@ def submitted() -> robot_team.RobotTeam:
 
 
 def plan(**more: object) -> run_config.RunConfig:
-    return run_config.build_config(suite(30), submitted(), human=persons(), seed=0, participants=None, **more)  # type: ignore[arg-type]
+    return run_config.build_config(suite(30), submitted(), humans=people(), seed=0, participants=None, **more)  # type: ignore[arg-type]
 
 
 def test_both_are_part_of_a_run_and_of_the_command_that_plays_it() -> None:
@@ -97,8 +97,8 @@ def test_both_are_part_of_a_run_and_of_the_command_that_plays_it() -> None:
 
 def test_a_deadline_is_part_of_the_trials_of_submitted_agents_alone() -> None:
     for who, there in ((submitted(), 2.5), (robot_team.form_team(["scout"], ["oracle"]), msgspec.UNSET)):
-        trial = sessions.make_sessions(suite(10), agent=who, human=persons(), step_limit_s=2.5)[0].trials[0]
-        usual = sessions.make_sessions(suite(10), agent=who, human=persons())[0].trials[0]
+        trial = sessions.make_sessions(suite(10), agent=who, humans=people(), step_limit_s=2.5)[0].trials[0]
+        usual = sessions.make_sessions(suite(10), agent=who, humans=people())[0].trials[0]
         assert trial.step_limit_s == there
         assert usual.step_limit_s is msgspec.UNSET
         assert (trial_record.key(trial) == trial_record.key(usual)) == (there is msgspec.UNSET)
@@ -132,7 +132,7 @@ def test_an_agent_that_takes_longer_than_the_limit_fails(tmp_path: Path, seconds
     (tmp_path / "slow.py").write_text(SLOW)
     slow = robot_team.load_agent_info(str(tmp_path / "slow.py"))
     who = robot_team.form_team(["scout"], [slow])
-    trials = sessions.make_sessions(suite(1), agent=who, human="greedy", step_limit_s=seconds)[0].trials
+    trials = sessions.make_sessions(suite(1), agent=who, humans="greedy", step_limit_s=seconds)[0].trials
     with trial_runner.TrialRunner(Sources(agent_paths=who.agent_paths, manifests=who.manifests)).enter(
         Session(number=0, trials=trials)
     ) as company:

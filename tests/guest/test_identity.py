@@ -435,7 +435,7 @@ class Quick(trial_runner.TrialRunner):
 
     def enter(self, session: Any) -> trial_runner.Participants:
         make = lambda seat: self._make_agent(seat, None)  # noqa: E731
-        return trial_runner.Participants(episode_fakes.Mind(), session.trials[0].robots, make)
+        return trial_runner.Participants({"human": episode_fakes.Mind()}, session.trials[0].robots, make)
 
     def world(self, trial: Any) -> Any:
         return guest_fakes.Stage(seen=20 + trial.index)

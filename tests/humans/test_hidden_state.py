@@ -117,9 +117,9 @@ def _one(
 ) -> EpisodeLog:
     world = stage.world(trial)
     if not veiled:
-        return play(trial, world, {"human": company.human}, company.ready_agents())
+        return play(trial, world, company.humans, company.ready_agents())
     shut = Shut(world)
-    return play(trial, shut, {"human": Guarded(company.human, shut)}, company.ready_agents())  # type: ignore[arg-type]
+    return play(trial, shut, {"human": Guarded(company.humans["human"], shut)}, company.ready_agents())  # type: ignore[arg-type]
 
 
 @pytest.fixture(scope="module")

@@ -216,11 +216,11 @@ def test_both_ends_play_every_kind_of_task(suite):
     from hthor.eval.runner import trial_runner
 
     task = msgspec.structs.replace(library.load_suite(suite).tasks[0], time_limit=30.0)
-    one = sessions.make_sessions(make_suite("one", 1, (task,)), agent="oracle", robot="tender", human="greedy")[0]
+    one = sessions.make_sessions(make_suite("one", 1, (task,)), agent="oracle", robot="tender", humans="greedy")[0]
     stage = trial_runner.TrialRunner()
     for made in (greedy.Model, random.Model):
         with stage.enter(one) as company:
-            company.human = made(Participant(seed=0, number=0, traits=QUICK))
+            company.humans[HUMAN] = made(Participant(seed=0, number=0, traits=QUICK))
             done = trial_runner._run_trial(stage.world(one.trials[0]), company, one.trials[0])
         assert done.met or done.ticks == round(task.time_limit / rules.TICK_S)
         assert not done.faults

@@ -60,7 +60,7 @@ def first_trials(agent: str, stage: trial_runner.TrialRunner, mind: object = Non
         with stage.enter(session) as company:
             for trial in session.trials[:TRIALS]:
                 robots = {"robot": mind} if mind else company.ready_agents()
-                logs.append(play(trial, stage.world(trial), {"human": company.human}, robots))
+                logs.append(play(trial, stage.world(trial), company.humans, robots))
     return logs
 
 

@@ -21,7 +21,7 @@ from rich.console import Console
 from hthor import cli, plugins, rules, tasks
 from hthor.errors import HthorError, PopulationError, UnknownName
 from hthor.eval.comparison import population_matrix
-from hthor.eval.config import human_populations, sessions
+from hthor.eval.config import human_populations, human_team, sessions
 from hthor.eval.config.human_populations import HumanModelRef
 from hthor.eval.results import result_file
 from hthor.eval.runner import experiment, progress, run_options, trial_runner
@@ -187,7 +187,7 @@ def test_a_model_that_is_made_from_something_else_has_no_population(files: Path)
         patch.setattr(plugins, "load", lambda *_: module.Model)
         patch.setattr(plugins, "summary", lambda *_: "a test")
         found = resolve.resolve_humans(f"fed:{files}/log")
-        ref = human_populations.human_model_ref(found, fakes.suite(20), crew)
+        ref = human_populations.human_model_ref(human_team.form_team([found]), fakes.suite(20), crew)
         assert found.make_model(0, 0).source == str(files / "log")
         assert (
             resolve.resolve_humans(found.word).sha256
@@ -275,14 +275,14 @@ def test_every_robot_meets_the_same_people(files: Path):
         fakes.crew("helper", "other"),
         fakes.crew("none", absent=True),
     ]
-    dealt = [sessions.make_sessions(suite, agent=crew, human=word, seed=4) for crew in crews]
+    dealt = [sessions.make_sessions(suite, agent=crew, humans=word, seed=4) for crew in crews]
     stage = trial_runner.TrialRunner(Sources(humans=resolve.resolve_humans(word).word))
     met = []
     for run in dealt:
         whole = []
         for one in run:
             trial = one.trials[0]
-            found = stage._population_of(trial)
+            found = stage._people_of(trial).members[0]
             whole.append(
                 (
                     one.number,
@@ -316,15 +316,17 @@ def test_people_who_are_alike_are_the_mean():
 
 def test_a_file_that_changes_during_a_run_stops_it(files: Path):
     found = resolve.resolve_humans(f"{files}/pop.npz")
-    (one, *_) = sessions.make_sessions(fakes.suite(10), agent=fakes.crew("helper"), human=found)
+    (one, *_) = sessions.make_sessions(
+        fakes.suite(10), agent=fakes.crew("helper"), humans=human_team.form_team([found])
+    )
     population_file.save_population(small(suite="other"), files / "pop")  # says something else of the same people
-    assert trial_runner.TrialRunner(Sources(humans=found.word))._population_of(one.trials[0]).sha256 == found.sha256
+    assert trial_runner.TrialRunner(Sources(humans=found.word))._people_of(one.trials[0]).sha256 == found.sha256
     rows = [[0.4, 0.2]]
     population_file.save_population(
         Population.make("pop", rows, names=("v_pace", "sigma"), purpose="", seed=0, command=""), files / "pop"
     )
     with pytest.raises(HthorError, match=r"pop\.npz was changed while its run was going on"):
-        trial_runner.TrialRunner(Sources(humans=found.word))._population_of(one.trials[0])
+        trial_runner.TrialRunner(Sources(humans=found.word))._people_of(one.trials[0])
 
 
 # ---------------------------------------------------------------------------------------------------------- validity
@@ -334,7 +336,9 @@ def refer(population: Population, count: int = 20, crew: Any = None) -> HumanMod
     found = msgspec.structs.replace(
         resolve.resolve_humans("literature"), population=population, name="pop", word="/dir/pop.npz"
     )
-    return human_populations.human_model_ref(found, fakes.suite(count), crew or fakes.crew("helper"))
+    return human_populations.human_model_ref(
+        human_team.form_team([found]), fakes.suite(count), crew or fakes.crew("helper")
+    )
 
 
 def test_people_are_valid_where_they_were_calibrated():
@@ -369,17 +373,17 @@ def test_elsewhere_they_are_not_and_it_says_where():
 
 
 def test_words_for_several_peoples(files: Path):
-    assert [one.name for one in human_populations.find_populations(["kinds"])] == [resolve.default_population(), *KINDS]
-    assert [one.name for one in human_populations.find_populations(["bracket"])] == [
+    assert [one.name for one in human_populations.find_people(["kinds"])] == [resolve.default_population(), *KINDS]
+    assert [one.name for one in human_populations.find_people(["bracket"])] == [
         "greedy",
         "random",
         resolve.default_population(),
     ]
-    named = human_populations.find_populations([f"kinds@{files}/pop.npz"])
+    named = human_populations.find_people([f"kinds@{files}/pop.npz"])
     assert [one.name for one in named] == ["pop", *(f"{kind}@pop" for kind in KINDS)]
     assert {one.population.sha256 for one in named} == {small().sha256}
     assert [
-        one.name for one in human_populations.find_populations(["proxy", resolve.default_population(), "slow", "slow"])
+        one.name for one in human_populations.find_people(["proxy", resolve.default_population(), "slow", "slow"])
     ] == [
         "proxy",
         "slow",
@@ -389,9 +393,9 @@ def test_words_for_several_peoples(files: Path):
         Population.make("pop", [[0.5]], names=["v_pace"], purpose="", seed=0, command=""), files / "sub" / "pop"
     )
     with pytest.raises(HthorError, match="two different populations are called 'pop'"):
-        human_populations.find_populations([f"{files}/pop.npz", f"{files}/sub/pop.npz"])
+        human_populations.find_people([f"{files}/pop.npz", f"{files}/sub/pop.npz"])
     with pytest.raises(UnknownName, match="'kinds'"):
-        human_populations.find_populations(["kindz"])
+        human_populations.find_people(["kindz"])
 
 
 @pytest.fixture
@@ -499,12 +503,12 @@ def test_a_worker_finds_files_by_path(files: Path):
     (files / "mine.py").write_text('"""Mine."""\n' + model)
     suite = fakes.make_suite("one", 1, tasks.load_suite("smoke").tasks[:1])
     found = resolve.resolve_humans(f"{files}/mine.py@{files}/pop.npz")
-    (one,) = sessions.make_sessions(suite, agent="none", human=found, participants=1)
+    (one,) = sessions.make_sessions(suite, agent="none", humans=human_team.form_team([found]), participants=1)
     code = (
         "import sys, msgspec\nfrom hthor.eval.runner import trial_runner\n"
         "from hthor.eval.runner.trial_runner import Sources\nfrom hthor.types import TrialSpec\n"
         "trial = msgspec.json.decode(sys.stdin.buffer.read(), type=TrialSpec)\n"
-        "found = trial_runner.TrialRunner(Sources(humans=sys.argv[1]))._population_of(trial)\n"
+        "found = trial_runner.TrialRunner(Sources(humans=sys.argv[1]))._people_of(trial).members[0]\n"
         "print(type(found.make_model(trial.seed, 0)).__module__, found.participant(0, 0).traits.v_pace)\n"
     )
     said = subprocess.run(

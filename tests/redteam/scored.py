@@ -88,7 +88,7 @@ def _play(home: Path, case: Case, text: str, held: guest.Isolation) -> dict[str,
     suite = make_suite("short", 1, (msgspec.structs.replace(task, time_limit=_LIMIT_S),))
     ref = AgentRef(name="agent", source="agent.py", sha256=hashlib.sha256(text.encode()).hexdigest())
     crew = robot_team.form_team(["scout"], [robot_team.AgentInfo(ref=ref, path=str(path))])
-    plan = run_config.build_config(suite, crew, human="proxy", seed=0, participants=None)
+    plan = run_config.build_config(suite, crew, humans="proxy", seed=0, participants=None)
     hidden = (str(home / "runs"), str(home / "official.json"))
     config = GuestConfig(isolation=held.level, hidden=hidden)
     make = functools.partial(trial_runner.make_runner, make_sources(crew, guests=config))

@@ -20,7 +20,8 @@ import msgspec
 from hthor import code_identity, seeds
 from hthor.episode import EpisodeLog, Fault
 from hthor.errors import KILLED, AgentKilled
-from hthor.eval.config import robot_team, run_config, sessions
+from hthor.eval.config import human_team, robot_team, run_config, sessions
+from hthor.eval.config.human_team import HumanTeam
 from hthor.eval.config.run_config import RunConfig
 from hthor.eval.config.sessions import Session
 from hthor.eval.records import trial_record
@@ -78,6 +79,11 @@ def persons(name: str = "proxy", *, calibrated: bool = True) -> ParticipantSourc
     )
 
 
+def people(name: str = "proxy") -> HumanTeam:
+    """One such person in every trial."""
+    return human_team.form_team([persons(name)])
+
+
 def character(name: str = "helper", guests: object = None, *, absent: bool = False) -> robot_team.AgentInfo:
     return robot_team.AgentInfo(ref=AgentRef(name=name, source=f"{name}.py", sha256="cd" * 32), absent=absent)
 
@@ -95,7 +101,7 @@ def run_of(
         mock.patch.object(resolve, "resolve_humans", return_value=persons()),
         mock.patch.object(code_identity, "code_sha256", return_value="34" * 32),
     ):
-        plan = run_config.build_config(tasks, who, human="proxy", seed=seed, participants=None)
+        plan = run_config.build_config(tasks, who, humans="proxy", seed=seed, participants=None)
         return plan, sessions.make_sessions(tasks, agent=who, seed=seed)
 
 

@@ -48,13 +48,11 @@ def player(agent: str, level: str) -> Callable[[Session], Iterator[TrialOutcome]
         return guest.Guest(agent, config=guest.GuestConfig(isolation=level))
 
     def perform(session: Session) -> Iterator[TrialOutcome]:
-        with trial_runner.Participants(episode_fakes.Mind(), session.trials[0].robots, mind) as company:
+        with trial_runner.Participants({HUMAN: episode_fakes.Mind()}, session.trials[0].robots, mind) as company:
             for memory, trial in enumerate(session.trials):
                 task = msgspec.structs.replace(trial.task, kind="object_goal_navigation")
                 stage = Stage(seen=fakes.episode(trial, memory).ticks // 10)
-                log = play(
-                    msgspec.structs.replace(trial, task=task), stage, {"human": company.human}, company.ready_agents()
-                )
+                log = play(msgspec.structs.replace(trial, task=task), stage, company.humans, company.ready_agents())
                 for seat in dict.fromkeys(fault.seat for fault in log.faults):
                     company.dismiss(seat)
                 yield fakes.outcome(trial, log)

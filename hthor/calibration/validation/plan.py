@@ -96,7 +96,7 @@ def report_folder(options: ValidationOptions) -> Path:
         options.seed,
         options.count,
         rules.sha256(),
-        code_identity.code_sha256(humans.model, (task.kind for task in suite.tasks)),
+        code_identity.code_sha256([humans.model], (task.kind for task in suite.tasks)),
     ]
     return RUNS / f"validation-{humans.name}-{jsonio.sha256(what)[:10]}"
 

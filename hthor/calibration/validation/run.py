@@ -18,7 +18,7 @@ from hthor.calibration.validation import plan
 from hthor.calibration.validation.plan import SUITE, ValidationOptions, ValidationRun
 from hthor.calibration.validation.report import build, measures, page
 from hthor.calibration.validation.report.findings import Findings, ModelFigures, ModelUnderTest, Setting
-from hthor.eval.config.sessions import participants_needed
+from hthor.eval.config.sessions import sessions_needed
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner import experiment
 from hthor.eval.runner.progress import Watcher
@@ -63,7 +63,7 @@ def run_validation(options: ValidationOptions, watcher: WatcherFactory) -> Valid
     made = build.PlayedTrials(
         trials=own,
         t_star=tables.suite_t_star(suite),
-        round_size=participants_needed(len(suite.tasks)),
+        round_size=sessions_needed(len(suite.tasks)),
         rivals={one.word: runs.trials(one) for one in planned if one.role == "rival"},
     )
     findings = build.make_findings(
@@ -126,7 +126,7 @@ def _setting(found: ParticipantSource, suite: Suite, options: ValidationOptions,
         seed=options.seed,
         participants=options.count,
         trials=trials,
-        code_sha256=code_identity.code_sha256(found.model, (task.kind for task in suite.tasks)),
+        code_sha256=code_identity.code_sha256([found.model], (task.kind for task in suite.tasks)),
         versions=installation.versions(),
         quick=options.quick or options.count < JUDGED,
     )

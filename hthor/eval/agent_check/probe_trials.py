@@ -91,10 +91,10 @@ class ProbeTrials:
         return found
 
     def _play(self, guest: Guest, trial: TrialSpec) -> ProbeResult:
-        human = self._stage.enter(Session(number=trial.session, trials=(trial,))).human
+        humans = self._stage.enter(Session(number=trial.session, trials=(trial,))).humans
         noted, world = _Noted(guest), self._stage.world(trial)
         seat = trial.robots[0].seat
-        log = play(trial, world, {"human": human}, {seat: noted})
+        log = play(trial, world, humans, {seat: noted})
         done = [(look.tick, action) for look, action in noted.looks if action is not None]
         says = [(action.say, seen) for (_, action), seen in zip(done, noted.seen, strict=False)]
         about = [(say.object, seen) for say, seen in says if isinstance(say, Send) and say.object]

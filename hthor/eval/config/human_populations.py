@@ -4,10 +4,13 @@ import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+import msgspec
 from msgspec import Struct
 
-from hthor import plugins, rules
+from hthor import jsonio, plugins, rules
 from hthor.errors import HthorError, UnknownName
+from hthor.eval.config import human_team
+from hthor.eval.config.human_team import HumanTeam
 from hthor.eval.config.robot_team import RobotInfo, RobotTeam
 from hthor.humans.population import kinds, parameter_registry, population_file, resolve
 from hthor.humans.population.population import Validity
@@ -18,12 +21,13 @@ from hthor.types import RobotSpec
 KINDS, BRACKET = "kinds", "bracket"
 """Words for several populations: the default with every kind of people; the default with the two extremes."""
 WORDS = (KINDS, BRACKET)
+_COMMA_HINT = "A comma joins the people of one trial, as in proxy,proxy."
 EXTREMES = ("greedy", "random")
 """Human models that bound real people: one accepts every message, one accepts none."""
 
 
 class HumanModelRef(Struct, frozen=True, kw_only=True):
-    """The human participants of a run.
+    """The human participants of a run, or those in one seat of its trials.
 
     Attributes:
         name: their name in tables and sentences.
@@ -33,6 +37,8 @@ class HumanModelRef(Struct, frozen=True, kw_only=True):
         population: the name of their distribution, empty where they replay a log; ``population_sha256`` is its hash.
         sha256: hash of everything that defines them, the population included.
         valid: whether the population is used where it was calibrated; ``notes`` say what differs.
+        people: set only if a trial has several people: those in each seat, in order. The other fields then describe
+            them together: names are joined by "+".
     """
 
     name: str
@@ -44,25 +50,36 @@ class HumanModelRef(Struct, frozen=True, kw_only=True):
     sha256: str
     valid: bool
     notes: tuple[str, ...]
+    people: "tuple[HumanModelRef, ...] | msgspec.UnsetType" = msgspec.UNSET
+
+    @property
+    def members(self) -> "tuple[HumanModelRef, ...]":
+        """Those in each seat, in order: one, or several."""
+        return self.people or (self,)
+
+    @property
+    def models(self) -> tuple[str, ...]:
+        """The human model of each person."""
+        return tuple(member.model for member in self.members)
 
 
-def find_populations(words: Sequence[str]) -> list[ParticipantSource]:
-    """The populations that the words of ``--humans`` stand for, each once.
+def find_people(words: Sequence[str]) -> list[HumanTeam]:
+    """The people that the words of ``--humans`` stand for, each once; a comma joins the people of one trial.
 
     Raises:
         UnknownName: when a word stands for no population.
         PopulationError: when a population's file cannot be used.
         HthorError: when two different populations have the same name.
     """
-    populations: dict[str, ParticipantSource] = {}
+    teams: dict[str, HumanTeam] = {}
     for word in dict.fromkeys(word for several in words for word in _expand_word(several)):
-        population = _find(word)
-        if population.sha256 in {other.sha256 for other in populations.values()}:
+        team = human_team.form_team([_find(part) for part in human_team.split_word(word)])
+        if team.sha256 in {other.sha256 for other in teams.values()}:
             continue
-        if population.name in populations:
-            raise HthorError(f"two different populations are called '{population.name}'. Rename one of the files.")
-        populations[population.name] = population
-    return list(populations.values())
+        if team.name in teams:
+            raise HthorError(f"two different populations are called '{team.name}'. Rename one of the files.")
+        teams[team.name] = team
+    return list(teams.values())
 
 
 def robot_settings(robot: str | RobotInfo, detector: str) -> dict[str, str | float]:
@@ -81,8 +98,32 @@ def robot_settings(robot: str | RobotInfo, detector: str) -> dict[str, str | flo
     }
 
 
-def human_model_ref(population: ParticipantSource, suite: Suite, team: RobotTeam) -> HumanModelRef:
-    """The population's entry in `run.json`, which says whether it was calibrated for this suite, world and robots."""
+def human_model_ref(people: HumanTeam, suite: Suite, team: RobotTeam) -> HumanModelRef:
+    """The people's entry in `run.json`, which says whether they were calibrated for this suite, world and robots."""
+    members = tuple(_ref(member, suite, team) for member in people.members)
+    if len(members) == 1:
+        return members[0]
+    hashes = dict.fromkeys(one.population_sha256 for one in members)
+    return HumanModelRef(
+        name=people.name,
+        source=human_team.COMMA.join(one.source for one in members),
+        model=_joined([one.model for one in members]),
+        kind=_joined([one.kind for one in members]),
+        population=_joined([one.population for one in members]),
+        population_sha256=next(iter(hashes)) if len(hashes) == 1 else jsonio.sha256(list(hashes)),
+        sha256=people.sha256,
+        valid=all(one.valid for one in members),
+        notes=tuple(dict.fromkeys(note for one in members for note in one.notes)),
+        people=members,
+    )
+
+
+def _joined(names: Sequence[str]) -> str:
+    """These names, each once."""
+    return "+".join(dict.fromkeys(name for name in names if name))
+
+
+def _ref(population: ParticipantSource, suite: Suite, team: RobotTeam) -> HumanModelRef:
     drawn = not population.source
     notes = tuple(_differences(population, suite, team)) if drawn else ()
     return HumanModelRef(
@@ -114,7 +155,13 @@ def _find(word: str) -> ParticipantSource:
     except UnknownName as error:
         if error.what != "people":
             raise
-        raise UnknownName("people", error.given, (*error.valid, *WORDS), error.hint) from None
+        if word.partition("@")[0] in WORDS:
+            raise HthorError(
+                f"'{word}' stands for several populations, so it cannot be one of the people of a trial. Name one "
+                "population for each of them, as in proxy,greedy."
+            ) from None
+        joined = f" {_COMMA_HINT}" if "+" in word else ""
+        raise UnknownName("people", error.given, (*error.valid, *WORDS), error.hint + joined) from None
 
 
 def _differences(people: ParticipantSource, suite: Suite, team: RobotTeam) -> Iterator[str]:

@@ -11,13 +11,13 @@ from msgspec import Struct
 
 from hthor import code_identity, installation, jsonio, rules
 from hthor.errors import HthorError
-from hthor.eval.config import human_populations, robot_team, sessions
+from hthor.eval.config import human_populations, human_team, robot_team, sessions
 from hthor.eval.config.human_populations import HumanModelRef
+from hthor.eval.config.human_team import HumanTeam
 from hthor.eval.config.robot_team import RobotTeam
 from hthor.eval.config.sessions import Shard
 from hthor.guest.agent.manifest import Manifest
-from hthor.humans.population import resolve
-from hthor.humans.population.resolve import PROXY, ParticipantSource
+from hthor.humans.population.resolve import PROXY
 from hthor.tasks import Suite
 from hthor.types import RobotSeat
 
@@ -68,6 +68,7 @@ class RunConfig(Struct, frozen=True, kw_only=True):
         agents: the files of every submitted agent.
         kind: the task kind that the suite was narrowed to, None for all its tasks; ``kinds``: the kinds of the tasks,
             which older runs do not have.
+        participants: how many people take part in all sessions together.
         trials: how many trials the whole run has.
         realtime: whether agents' thinking takes time of the trials.
         limit: how many tasks were chosen from the suite, if not all.
@@ -124,6 +125,11 @@ class RunConfig(Struct, frozen=True, kw_only=True):
         return tuple(robot for robot in self.robots if robot.seat)
 
     @property
+    def sessions(self) -> int:
+        """How many sessions the whole run has."""
+        return self.participants // len(self.humans.members)
+
+    @property
     def mode(self) -> str:
         """ "lockstep", where a trial waits for its agents, or "realtime", where it does not."""
         return REALTIME if self.realtime else LOCKSTEP
@@ -175,7 +181,7 @@ def build_config(
     suite: Suite,
     team: RobotTeam,
     *,
-    human: str | ParticipantSource,
+    humans: str | HumanTeam,
     seed: int,
     participants: int | None,
     kind: KindRef | None = None,
@@ -189,27 +195,27 @@ def build_config(
     """The configuration of a run, with every default resolved.
 
     Args:
-        human: the human population, or the word by which `hthor.humans.population.resolve` finds it.
-        participants: how many people; None for the number that is needed to do every task once.
+        humans: the people of each trial, or the word by which `hthor.eval.config.human_team` finds them.
+        participants: how many people in all; None for the number that is needed to do every task once.
         assets: the furniture pack that pictures show, with its own hash; None for our own furniture.
         realtime, step_limit_s: as in `RunConfig`; without a robot, or submitted agents, they make no difference.
         limit, houses, difficulty: how ``suite`` was narrowed; empty or None where it was not.
     """
-    population = resolve.resolve_humans(human) if isinstance(human, str) else human
+    people = human_team.find_team(humans) if isinstance(humans, str) else humans
     size = len(suite.tasks)
-    count = sessions.participants_needed(size) if participants is None else participants
+    count = sessions.count_sessions(size, participants, len(people.members))
     return RunConfig(
         robots=team.listed,
         agents=team.agents,
-        humans=human_populations.human_model_ref(population, suite, team),
+        humans=human_populations.human_model_ref(people, suite, team),
         suite=SuiteRef(name=suite.name, version=str(suite.version), sha256=suite.sha256),
         kind=kind,
         kinds=tuple(sorted({task.kind for task in suite.tasks})),
         seed=seed,
-        participants=count,
+        participants=count * len(people.members),
         trials=sessions.count_trials(size, range(count)),
         rules_sha256=rules.sha256(),
-        code_sha256=code_identity.code_sha256(population.model, (task.kind for task in suite.tasks)),
+        code_sha256=code_identity.code_sha256(people.models, (task.kind for task in suite.tasks)),
         versions=installation.versions(),
         assets=AssetsRef(
             name=assets.name if assets else PROCEDURAL,
@@ -227,14 +233,14 @@ def shard_config(config: RunConfig, shard: Shard, tasks: int) -> RunConfig:
     """The configuration of one shard of a run with ``tasks`` tasks.
 
     Raises:
-        HthorError: when there are more shards than participants.
+        HthorError: when there are more shards than sessions.
     """
-    if shard.of > config.participants:
+    if shard.of > config.sessions:
         raise HthorError(
-            f"--shard {shard.words}: a participant's tasks stay together, and this run has {config.participants} "
-            f"participants, so there can be {config.participants} shards at most."
+            f"--shard {shard.words}: the tasks of a session stay together, and this run has {config.sessions} "
+            f"sessions, so there can be {config.sessions} shards at most."
         )
-    trials = sessions.count_trials(tasks, shard.share(range(config.participants)))
+    trials = sessions.count_trials(tasks, shard.share(range(config.sessions)))
     return msgspec.structs.replace(config, shard=msgspec.structs.replace(shard, trials=trials))
 
 

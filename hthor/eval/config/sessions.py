@@ -1,4 +1,4 @@
-"""Assigning tasks to participants, ten each in some order, and dividing a run's sessions among machines."""
+"""Assigning tasks to sessions, ten each in some order, and dividing a run's sessions among machines."""
 
 import math
 import re
@@ -11,12 +11,12 @@ from msgspec import Struct
 
 from hthor import code_identity, rules, seeds
 from hthor.errors import HthorError
-from hthor.eval.config import robot_team
+from hthor.eval.config import human_team, robot_team
+from hthor.eval.config.human_team import HumanTeam
 from hthor.eval.config.robot_team import RobotTeam
-from hthor.humans.population import resolve
-from hthor.humans.population.resolve import PROXY, ParticipantSource
+from hthor.humans.population.resolve import PROXY
 from hthor.tasks import Suite
-from hthor.types import HUMAN, HumanSeat, TaskSpec, TrialSpec
+from hthor.types import TaskSpec, TrialSpec
 from hthor.types.detector_specs import OWN
 
 _T = TypeVar("_T")
@@ -33,9 +33,29 @@ class Session(Struct, frozen=True, kw_only=True):
     trials: tuple[TrialSpec, ...]
 
 
-def participants_needed(tasks: int) -> int:
-    """How many participants are needed to do every task once, at most `rules.SESSION_TASKS` tasks each."""
+def sessions_needed(tasks: int) -> int:
+    """How many sessions are needed to do every task once, at most `rules.SESSION_TASKS` tasks in each."""
     return max(1, math.ceil(tasks / rules.SESSION_TASKS))
+
+
+def count_sessions(tasks: int, participants: int | None, people: int) -> int:
+    """How many sessions a run has.
+
+    Args:
+        participants: how many people take part in all; None for as many as are needed to do every task once.
+        people: how many of them are together in a trial.
+
+    Raises:
+        HthorError: when they do not come out even.
+    """
+    if participants is None:
+        return sessions_needed(tasks)
+    if participants % people:
+        raise HthorError(
+            f"--participants {participants}: there are {people} people in every trial, so their number is a multiple "
+            f"of {people}, such as {people * math.ceil(participants / people)}."
+        )
+    return participants // people
 
 
 def make_sessions(
@@ -43,7 +63,7 @@ def make_sessions(
     *,
     agent: str | RobotTeam,
     robot: str = "scout",
-    human: str | ParticipantSource = PROXY,
+    humans: str | HumanTeam = PROXY,
     seed: int = 0,
     participants: int | None = None,
     detector: str = OWN,
@@ -54,27 +74,27 @@ def make_sessions(
 ) -> tuple[Session, ...]:
     """The sessions of a run.
 
-    Which tasks a participant does depends on suite, seed and participant alone, never on the robots, so that all robots
-    meet the same people with the same tasks.
+    Which tasks a session has depends on suite, seed and the session's number alone, never on the robots, so that all
+    robots meet the same people with the same tasks.
 
     Args:
         agent: a built-in agent's name or an agent file, in the body ``robot`` with the detector ``detector`` as
             `hthor.types.detector_specs.canonical_name` spells it; or a team, which includes bodies and detector.
-        human: the human population, or the word by which `hthor.humans.population.resolve` finds it.
-        participants: how many; by default the number that is needed to do every task exactly once.
+        humans: the people of each trial, or the word by which `hthor.eval.config.human_team` finds them.
+        participants: how many people in all; by default the number that is needed to do every task exactly once.
         assets_sha256: hash of the robots' pictures, as `robot_team.team_pictures_sha256`; None: of our own furniture.
         step_limit_s: seconds that submitted agents have for each action; None for the usual deadline.
     """
     team = robot_team.form_team([robot], [agent], detector) if isinstance(agent, str) else agent
-    population = resolve.resolve_humans(human) if isinstance(human, str) else human
+    people = human_team.find_team(humans) if isinstance(humans, str) else humans
     rules_hash = rules.sha256()
-    code_hash = code_identity.code_sha256(population.model, (task.kind for task in suite.tasks))
+    code_hash = code_identity.code_sha256(people.models, (task.kind for task in suite.tasks))
 
     def trial(task: TaskSpec, session: int, index: int) -> TrialSpec:
         return TrialSpec(
             task=task,
             robots=team.seats,
-            humans=(HumanSeat(seat=HUMAN, model=population.name, sha256=population.sha256, participant=session),),
+            humans=people.seats(session),
             session=session,
             index=index,
             seed=seed,
@@ -87,7 +107,7 @@ def make_sessions(
             step_limit_s=robot_team.step_limit_of(team, step_limit_s),
         )
 
-    count = participants_needed(len(suite.tasks)) if participants is None else participants
+    count = count_sessions(len(suite.tasks), participants, len(people.members))
     return tuple(
         Session(
             number=session,
@@ -97,35 +117,35 @@ def make_sessions(
     )
 
 
-def assign_many(tasks: Sequence[TaskSpec], seed: int, participants: Sequence[int]) -> list[list[int]]:
-    """`assign_tasks` for each of these participants; faster, as each deck is shuffled once."""
-    per_deck = participants_needed(len(tasks))
-    decks = {number: _deck(tasks, seed, number) for number in {participant // per_deck for participant in participants}}
-    return [_hand(decks[participant // per_deck], seed, participant) for participant in participants]
+def assign_many(tasks: Sequence[TaskSpec], seed: int, sessions: Sequence[int]) -> list[list[int]]:
+    """`assign_tasks` for each of these sessions; faster, as each deck is shuffled once."""
+    per_deck = sessions_needed(len(tasks))
+    decks = {number: _deck(tasks, seed, number) for number in {session // per_deck for session in sessions}}
+    return [_hand(decks[session // per_deck], seed, session) for session in sessions]
 
 
-def count_trials(tasks: int, participants: Sequence[int]) -> int:
-    """How many trials these participants have, with ``tasks`` tasks in the suite."""
-    hands = participants_needed(tasks)
-    numbers = (participant % hands for participant in participants)
+def count_trials(tasks: int, sessions: Sequence[int]) -> int:
+    """How many trials these sessions have, with ``tasks`` tasks in the suite."""
+    hands = sessions_needed(tasks)
+    numbers = (session % hands for session in sessions)
     return sum((number + 1) * tasks // hands - number * tasks // hands for number in numbers)
 
 
-def assign_tasks(tasks: Sequence[TaskSpec], seed: int, participant: int) -> list[int]:
-    """Indices of the tasks that a participant does, in order.
+def assign_tasks(tasks: Sequence[TaskSpec], seed: int, session: int) -> list[int]:
+    """Indices of the tasks of a session, in order.
 
     The tasks are a deck of cards, dealt in hands of at most `rules.SESSION_TASKS` tasks; a used-up deck is shuffled
     again. The houses alternate in the deck, so that each hand has its share of every house.
     """
-    return _hand(_deck(tasks, seed, participant // participants_needed(len(tasks))), seed, participant)
+    return _hand(_deck(tasks, seed, session // sessions_needed(len(tasks))), seed, session)
 
 
-def _hand(deck: Sequence[int], seed: int, participant: int) -> list[int]:
-    """The tasks that a participant gets from their deck, in order."""
-    hands = participants_needed(len(deck))
-    number = participant % hands
+def _hand(deck: Sequence[int], seed: int, session: int) -> list[int]:
+    """The tasks that a session gets from its deck, in order."""
+    hands = sessions_needed(len(deck))
+    number = session % hands
     hand = deck[number * len(deck) // hands : (number + 1) * len(deck) // hands]
-    return [hand[place] for place in seeds.shuffled(len(hand), seed, "order", participant)]
+    return [hand[place] for place in seeds.shuffled(len(hand), seed, "order", session)]
 
 
 def _deck(tasks: Sequence[TaskSpec], seed: int, deck: int) -> list[int]:

@@ -35,7 +35,7 @@ def run_reference_trial() -> TrialFingerprint:
     from hthor.eval.records import trial_record
     from hthor.eval.runner import trial_runner
 
-    first = sessions.make_sessions(tasks.load_suite(_SUITE), agent=_AGENT, human=_PEOPLE, seed=_SEED)[0]
+    first = sessions.make_sessions(tasks.load_suite(_SUITE), agent=_AGENT, humans=_PEOPLE, seed=_SEED)[0]
     done = next(iter(trial_runner.make_runner()(msgspec.structs.replace(first, trials=first.trials[:1])))).record
     course = msgspec.json.decode(trial_record.encode(done))
     for name in ("key", "spec", "check"):  # not part of the course of the trial

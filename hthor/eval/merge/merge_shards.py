@@ -118,7 +118,7 @@ def _read_shard(folder: RunFolder) -> _ShardLog:
 
 def _check_shard(folder: RunFolder, record: TrialRecord, shard: Shard) -> None:
     session = record.spec.session
-    if session not in shard.share(range(folder.config.participants)):
+    if session not in shard.share(range(folder.config.sessions)):
         raise RunError(
             f"{folder.log_file}: trial {record.key}: spec.session is {session}, which is not in shard "
             f"{shard.words}. The line belongs to another shard; delete it."

@@ -106,7 +106,7 @@ class RunFolder:
         spec, config = record.spec, self.config
         pairs = {
             "seed": (spec.seed, config.seed),
-            "humans": (tuple(one.sha256 for one in spec.humans), (config.humans.sha256,)),
+            "humans": (tuple(one.sha256 for one in spec.humans), tuple(one.sha256 for one in config.humans.members)),
             "suite_sha256": (spec.suite_sha256, config.suite.sha256),
             "rules_sha256": (spec.rules_sha256, config.rules_sha256),
             "code_sha256": (spec.code_sha256, config.code_sha256),

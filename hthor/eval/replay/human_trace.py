@@ -102,7 +102,7 @@ def trace_human(
     guests = GuestConfig(hidden=(str(folder.path.resolve()),), inputs=inputs or AgentInputs())
     runner = TrialRunner(session_history.replay_sources(folder, spec, files, guests))
     with runner.enter(session) as participants:
-        participants.human = person = TracedHuman(participants.human)
+        participants.humans[HUMAN] = person = TracedHuman(participants.humans[HUMAN])
         if not all(hasattr(type(person.human), name) for name in ("about", "listener")):
             raise HthorError(
                 f"the people of this run, '{spec.humans[0].model}', record no decisions. --mind works with runs whose "

@@ -66,7 +66,7 @@ def session_before(folder: RunFolder, trial: TrialRecord) -> tuple[TrialSpec, ..
         RunError: when trials before it are missing, or another version of hthor ran them.
     """
     config, spec = folder.config, trial.spec
-    here, logged = code_identity.code_sha256(config.humans.model, config.kinds or ()), spec.code_sha256
+    here, logged = code_identity.code_sha256(config.humans.models, config.kinds or ()), spec.code_sha256
     if here != logged:
         raise RunError(
             f"{folder} was played by another version of hthor (its code's hash was {logged[:10]} and is {here[:10]}), "

@@ -132,7 +132,7 @@ def _weakest_isolation(options: RunOptions, scheduled: ScheduledRun) -> Isolatio
 
 def _rerun_command(options: RunOptions, scheduled: ScheduledRun) -> str:
     """The `hthor agent run` command that runs a trial of a run once more, without the trial's key."""
-    team, people = scheduled.team, scheduled.population
+    team, people = scheduled.team, scheduled.people
     words = ["hthor", "agent", "run"]
     words += [word for path in dict.fromkeys(team.agent_paths.values()) for word in ("--agent", _relative(path))]
     words += [word for path in dict.fromkeys(team.robot_paths.values()) for word in ("--robot", _relative(path))]

@@ -1,10 +1,11 @@
-"""One run as a job: its configuration, team, humans, tasks, and the paths of everything that a worker needs."""
+"""One run as a job: its configuration, robots, people, tasks, and the paths of everything that a worker needs."""
 
 import functools
 from pathlib import Path
 
 from msgspec import Struct
 
+from hthor.eval.config.human_team import HumanTeam
 from hthor.eval.config.robot_team import RobotTeam
 from hthor.eval.config.run_config import RunConfig
 from hthor.eval.config.sessions import Session, make_sessions
@@ -14,7 +15,6 @@ from hthor.eval.runner import trial_runner
 from hthor.eval.runner.messages import RunnerFactory
 from hthor.eval.runner.trial_runner import Sources
 from hthor.guest import GuestConfig, Isolation
-from hthor.humans.population.resolve import ParticipantSource
 
 
 def make_sources(
@@ -44,7 +44,7 @@ class RunJob(Struct, frozen=True, kw_only=True):
 
     config: RunConfig
     team: RobotTeam
-    population: ParticipantSource
+    people: HumanTeam
     tasks: TaskSelection
     sources: Sources
 
@@ -55,7 +55,7 @@ class RunJob(Struct, frozen=True, kw_only=True):
         sessions = make_sessions(
             self.tasks.suite,
             agent=self.team,
-            human=self.population,
+            humans=self.people,
             seed=config.seed,
             participants=config.participants,
             kind_sha256=config.kind.sha256 if config.kind else "",

@@ -10,6 +10,7 @@ from msgspec import Struct
 from hthor import code_identity, guest
 from hthor.errors import HthorError
 from hthor.eval.config import human_populations, robot_team, run_config, sessions, task_selection
+from hthor.eval.config.human_team import HumanTeam
 from hthor.eval.config.robot_team import RobotTeam
 from hthor.eval.config.run_config import AssetsRef, RunConfig
 from hthor.eval.config.task_selection import TaskSelection
@@ -20,7 +21,7 @@ from hthor.eval.runner import engines, trial_runner
 from hthor.eval.runner.run_job import ScheduledRun, make_sources
 from hthor.guest import GuestConfig, Isolation
 from hthor.guest.agent import inputs
-from hthor.humans.population.resolve import PROXY, ParticipantSource
+from hthor.humans.population.resolve import PROXY
 from hthor.tasks.suites import library
 from hthor.types import cameras, detector_specs
 
@@ -101,14 +102,14 @@ def resolve_options(options: RunOptions) -> ResolvedRuns:
         )
     guests = guest_config(options)
     code_identity.keep_compiled()
-    populations = human_populations.find_populations(options.humans)
+    peoples = human_populations.find_people(options.humans)
     pack = trial_runner.load_pack(options.assets)
     assets = run_config.AssetsRef(name=pack.name, sha256=pack.sha256) if pack else None
     tasks = task_selection.select_tasks(options.suite, options.kind)
     tasks = task_selection.narrow_selection(tasks, options.houses, options.difficulty)
     tasks = task_selection.limit_selection(tasks, options.limit)
     planner = _Planner(options, tasks, assets, guests)
-    drafts = planner.runs(_teams(options, tasks, guests), populations)
+    drafts = planner.runs(_teams(options, tasks, guests), peoples)
     baselines = planner.baselines(drafts) if options.control and not options.shard else {}
     agents = sorted({agent for run in drafts for agent in run.team.agent_paths.values()})
     isolation = run_isolation.resolve_isolation(options.isolation, options.require_isolation, agents)
@@ -131,10 +132,10 @@ class _Planner:
         self._options, self._tasks, self._assets, self._guests = options, tasks, assets, guests
         self._brings_houses = bool(own_houses(options))
 
-    def runs(self, teams: Sequence[RobotTeam], populations: Sequence[ParticipantSource]) -> list[ScheduledRun]:
-        """Every team with every population, each in a folder of its own."""
-        sizes = len(teams), len(populations)
-        runs = [self._run(team, people, *sizes) for people in populations for team in teams]
+    def runs(self, teams: Sequence[RobotTeam], peoples: Sequence[HumanTeam]) -> list[ScheduledRun]:
+        """Every team with all people, each in a folder of its own."""
+        sizes = len(teams), len(peoples)
+        runs = [self._run(team, people, *sizes) for people in peoples for team in teams]
         names = [run.config.name for run in runs[: len(teams)]]
         twice = sorted({name for name in names if names.count(name) > 1})
         if twice:
@@ -150,7 +151,7 @@ class _Planner:
         for run in runs:
             if not run.config.seats or baseline.find_baseline(run.folder.path, run.config) is not None:
                 continue
-            same = [other for other in runs if other.population.sha256 == run.population.sha256]
+            same = [other for other in runs if other.people.sha256 == run.people.sha256]
             asked = next((other for other in same if not other.config.seats), None)
             found[run.folder.path] = asked or self._baseline(run, team, only=len(same) == 1)
         return found
@@ -166,14 +167,14 @@ class _Planner:
         sources = msgspec.structs.replace(run.sources, guests=guests)
         return msgspec.structs.replace(run, sources=sources, isolation=own)
 
-    def _run(self, team: RobotTeam, people: ParticipantSource, teams: int, populations: int) -> ScheduledRun:
+    def _run(self, team: RobotTeam, people: HumanTeam, teams: int, peoples: int) -> ScheduledRun:
         options = self._options
         config = self._config(team, people, self._assets)
         if options.name:
             own = run_config.check_title(options.name) + (f"-{config.team_name}" if teams > 1 else "")
             config = msgspec.structs.replace(config, title=own)
-        title = config.name if populations == 1 else f"{config.name}, {people.name} people"
-        path = _folder(options, config, teams, populations)
+        title = config.name if peoples == 1 else f"{config.name}, {people.name} people"
+        path = _folder(options, config, teams, peoples)
         if options.shard:
             number = sessions.parse_shard(options.shard)
             config = run_config.shard_config(config, number, len(self._tasks.suite.tasks))
@@ -182,23 +183,23 @@ class _Planner:
 
     def _baseline(self, run: ScheduledRun, team: RobotTeam, *, only: bool) -> ScheduledRun:
         """A run without a robot for this one; ``only`` when no other run has the same people."""
-        config = self._config(team, run.population, run.config.assets if self._options.assets else None, baseline=True)
+        config = self._config(team, run.people, run.config.assets if self._options.assets else None, baseline=True)
         if self._options.out is None and not self._options.name:
             path = RUNS / config.folder_name
         else:
             own = run.folder.path
             path = own / baseline.FOLDER if only else own.parent / config.team_name
         title = run.title.replace(run.config.name, robot_team.NO_ROBOT, 1)
-        return self._job(team, run.population, config, path, title)
+        return self._job(team, run.people, config, path, title)
 
     def _config(
-        self, team: RobotTeam, people: ParticipantSource, assets: AssetsRef | None, *, baseline: bool = False
+        self, team: RobotTeam, people: HumanTeam, assets: AssetsRef | None, *, baseline: bool = False
     ) -> RunConfig:
         options, tasks = self._options, self._tasks
         return run_config.build_config(
             tasks.suite,
             team,
-            human=people,
+            humans=people,
             seed=options.seed,
             participants=options.participants,
             kind=tasks.kind,
@@ -210,13 +211,11 @@ class _Planner:
             step_limit_s=None if baseline else options.step_limit,
         )
 
-    def _job(
-        self, team: RobotTeam, people: ParticipantSource, config: RunConfig, path: Path, title: str
-    ) -> ScheduledRun:
+    def _job(self, team: RobotTeam, people: HumanTeam, config: RunConfig, path: Path, title: str) -> ScheduledRun:
         return ScheduledRun(
             config=config,
             team=team,
-            population=people,
+            people=people,
             tasks=self._tasks,
             sources=make_sources(
                 team,
@@ -289,10 +288,10 @@ def _teams(options: RunOptions, tasks: TaskSelection, guests: GuestConfig) -> li
     return [robot_team.form_team(robots, [agent] * len(robots), detector, camera) for agent in agents]
 
 
-def _folder(options: RunOptions, config: RunConfig, teams: int, populations: int) -> Path:
-    """The folder of a run: one folder per population and in it one per team, where there are several."""
+def _folder(options: RunOptions, config: RunConfig, teams: int, peoples: int) -> Path:
+    """The folder of a run: one folder for the same people and in it one per team, where there are several."""
     base = options.out or (RUNS / options.name if options.name else None)
     if base is None:
         return RUNS / config.folder_name
-    folder = base if populations == 1 else base / config.humans.name
+    folder = base if peoples == 1 else base / config.humans.name
     return folder if teams == 1 else folder / config.team_name

@@ -1,4 +1,4 @@
-"""Running the trials of a session in one process: makes worlds, humans and agents from their names."""
+"""Running the trials of a session in one process: makes worlds, people and agents from their names."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ CODE_ROOT = "trial"
 
 if TYPE_CHECKING:
     from hthor.episode import EpisodeLog, TrialWorld
+    from hthor.eval.config.human_team import HumanTeam
     from hthor.eval.config.sessions import Session
     from hthor.guest import GuestPool
     from hthor.humans.model import HumanModel
-    from hthor.humans.population.resolve import ParticipantSource
     from hthor.looks.pack import Pack
     from hthor.world import World
 
@@ -51,7 +51,7 @@ class Sources(Struct, frozen=True, kw_only=True):
         kind_path: the file of a user's own task kind.
         assets: the name of the furniture pack that pictures show, empty for our own furniture.
         houses: the folder of the suite's own houses.
-        humans: the word that finds the human population again; empty where the name in the trial finds it.
+        humans: the word that finds the people again; empty where the names in the trial find them.
         guests: how submitted agents are isolated, and which arguments and files they get.
     """
 
@@ -76,18 +76,18 @@ class TrialRunner:
     def __init__(self, sources: Sources | None = None, pool: GuestPool | None = None) -> None:
         self._sources, self._pool = sources or Sources(), pool
         self._worlds: dict[object, World] = {}
-        self._population: ParticipantSource | None = None
+        self._people: HumanTeam | None = None
         self._opened: dict[str, tuple[File, ...]] = {}  # files that agents opened beyond their manifests, by seat
         gc_freeze.unfreeze_after(self)
         if self._sources.kind_path:
             plugins.load("task kind", self._sources.kind_path)
 
     def enter(self, session: Session) -> Participants:
-        """A new human and new agents for a session."""
+        """New people and new agents for a session."""
         first = session.trials[0]
         make_agent = functools.partial(self._make_agent, step_limit_s=first.step_limit_s or None)
-        human = self._population_of(first).make_model(first.seed, first.humans[0].participant)
-        return Participants(human, first.robots, make_agent)
+        humans = self._people_of(first).make_models(first.seed, first.humans)
+        return Participants(humans, first.robots, make_agent)
 
     def world(self, trial: TrialSpec) -> World:
         """The world of a trial: an earlier trial's world if house, objects, robots and sensors are the same."""
@@ -162,17 +162,17 @@ class TrialRunner:
                     self._opened[seat] = tuple(sorted({*self._opened.get(seat, ()), *files}))
         return opened
 
-    def _population_of(self, trial: TrialSpec) -> ParticipantSource:
-        """The population of a trial's human; kept, as all trials of a run have the same."""
-        from hthor.humans.population import resolve
+    def _people_of(self, trial: TrialSpec) -> HumanTeam:
+        """The populations of a trial's people; kept, as all trials of a run have the same."""
+        from hthor.eval.config import human_team
 
         if not self._sources.humans:
-            return resolve.resolve_humans(trial.humans[0].model)
-        if self._population is None:
-            self._population = resolve.resolve_humans(self._sources.humans)
-        if self._population.sha256 != trial.humans[0].sha256:
+            return human_team.find_team(human_team.COMMA.join(human.model for human in trial.humans))
+        if self._people is None:
+            self._people = human_team.find_team(self._sources.humans)
+        if [member.sha256 for member in self._people.members] != [human.sha256 for human in trial.humans]:
             raise HthorError(_changed_message(self._sources.humans))
-        return self._population
+        return self._people
 
     def _robot(self, seat: RobotSeat) -> RobotSpec:
         path = self._sources.robot_paths.get(seat.seat, "")
@@ -215,16 +215,21 @@ def _changed_message(path: str) -> str:
 
 
 class Participants:
-    """The human and the agents of one session. A context manager: submitted agents are processes, which it ends.
+    """The people and the agents of one session. A context manager: submitted agents are processes, which it ends.
 
     Args:
-        human: remembers earlier trials of the session.
+        humans: the human models by seat; they remember earlier trials of the session.
         seats: the robots.
         make_agent: makes the agent of a seat.
     """
 
-    def __init__(self, human: HumanModel, seats: Sequence[RobotSeat], make_agent: Callable[[RobotSeat], Mind]) -> None:
-        self.human = human
+    def __init__(
+        self,
+        humans: Mapping[str, HumanModel],
+        seats: Sequence[RobotSeat],
+        make_agent: Callable[[RobotSeat], Mind],
+    ) -> None:
+        self.humans = dict(humans)
         self._seats = tuple(seats)
         self._make_agent = make_agent
         self.agents: dict[str, Mind] = {}  # of the last trial, by seat
@@ -275,7 +280,7 @@ def _run_trial(world: TrialWorld, participants: Participants, trial: TrialSpec) 
     from hthor.episode import play
 
     try:
-        return play(trial, world, {"human": participants.human}, participants.ready_agents())
+        return play(trial, world, participants.humans, participants.ready_agents())
     except (Exception, SystemExit) as error:
         if (own := plugins.user_error(error)) is None:
             raise

@@ -11,7 +11,7 @@ import msgspec
 import numpy as np
 
 from hthor import rules
-from hthor.eval.config.sessions import participants_needed
+from hthor.eval.config.sessions import sessions_needed
 from hthor.eval.metrics.definitions import success
 from hthor.eval.metrics.metric import DIGITS
 from hthor.eval.statistics.intervals import Estimate
@@ -47,10 +47,10 @@ def check_sizes(entry: Entry, held: Outcomes) -> Problems:
     ):
         if value != trials:
             yield field, f"is {value}, but 'trials' holds {trials}"
-    if entry.run.participants != participants_needed(trials):
+    if entry.run.participants != sessions_needed(trials):
         yield (
             "run.participants",
-            f"is {entry.run.participants}; {trials} tasks done once take {participants_needed(trials)}",
+            f"is {entry.run.participants}; {trials} tasks done once take {sessions_needed(trials)}",
         )
     for field, value, there in (
         ("counts.successes", counts.successes, int(held.met.sum())),
@@ -150,7 +150,7 @@ def check_metrics(entry: Entry, held: Outcomes) -> Problems:
             yield field, f"the mean {one.mean} is not inside the interval {one.ci95[0]} to {one.ci95[1]}"
         if one.n > entry.trials.count:
             yield f"{field}.n", f"is {one.n}, more than the {entry.trials.count} trials"
-    if entry.run.participants != participants_needed(entry.trials.count):
+    if entry.run.participants != sessions_needed(entry.trials.count):
         return  # the participant of each trial is not known
     participants = entry_metrics.trial_participants(entry.trials.count, entry.run.participants)
     for metric, fresh in entry_metrics.entry_scores(held, participants, alone=entry.alone).items():

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from hthor import plugins, tasks
 from hthor.eval.config.run_config import PROCEDURAL, RunConfig
-from hthor.eval.config.sessions import participants_needed
+from hthor.eval.config.sessions import sessions_needed
 from hthor.tasks.suites import library
 from hthor.types.detector_specs import OWN
 
@@ -19,7 +19,9 @@ def overridden_settings(config: RunConfig, team: tuple[str, ...] = (), played: i
         played: how many different tasks were played, if that is known.
     """
     found: dict[str, str] = {}
-    if config.participants != participants_needed(suite_size(config) or played or config.trials):
+    if config.humans.people:
+        found["humans"] = config.humans.source
+    if config.sessions != sessions_needed(suite_size(config) or played or config.trials):
         found["participants"] = str(config.participants)
     if config.limit:
         found["limit"] = str(config.limit)
@@ -52,7 +54,7 @@ def refusal(folder: Path, config: RunConfig, found: Mapping[str, str]) -> str:
     listed = f"{', '.join(options[:-1])} and {options[-1]}" if len(options) > 1 else options[0]
     why = "entries are compared trial by trial, so they all have the benchmark's settings"
     if "participants" in found and (size := suite_size(config)):
-        every = f"each of the {size} tasks of '{config.suite.name}' done once, by {participants_needed(size)} people"
+        every = f"each of the {size} tasks of '{config.suite.name}' done once, by {sessions_needed(size)} people"
         why += f", with {every}; this run has {config.trials} trials"
     return (
         f"{folder} was played with {listed}, and cannot stand on the leaderboard: {why}. Play it again without "

@@ -13,13 +13,12 @@ from pathlib import Path
 import numpy as np
 
 from hthor import jsonio, tasks
-from hthor.eval.config import sessions, task_selection
+from hthor.eval.config import human_team, sessions, task_selection
 from hthor.eval.metrics import registry, trial_metrics
 from hthor.eval.metrics.metric import DIGITS
 from hthor.eval.runner.trial_runner import make_runner
 from hthor.eval.statistics import intervals
 from hthor.eval.task_check import solvability
-from hthor.humans.population import resolve
 from hthor.leaderboard.entries import entry_metrics, files, trial_outcomes
 from hthor.leaderboard.entries.entry import Entry
 from hthor.leaderboard.entries.files import BoardError
@@ -44,9 +43,9 @@ def verify_fresh_tasks(entry: Entry, board: Path, request: Request) -> Fresh:
     with tempfile.TemporaryDirectory() as folder:
         _draw(entry, board, request, Path(folder))
         chosen = task_selection.select_tasks(folder, "")
-        team, humans = replay.robot_team_of(entry, request), resolve.resolve_humans(entry.run.humans.source)
+        team, humans = replay.robot_team_of(entry, request), human_team.find_team(entry.run.humans.source)
         clock = {name: value for name, value in replay.session_options(entry).items() if name != "participants"}
-        whole = sessions.make_sessions(chosen.suite, agent=team, human=humans, **clock)
+        whole = sessions.make_sessions(chosen.suite, agent=team, humans=humans, **clock)
         sources = replay.make_sources_of(folder, team, humans, request)
         played = replay.run_sessions(entry, whole, functools.partial(make_runner, sources), request.jobs)
     records = sorted((one for one, _ in played), key=lambda one: (one.spec.session, one.spec.index))

@@ -12,7 +12,8 @@ import msgspec
 from msgspec import Struct
 
 from hthor import code_identity
-from hthor.eval.config import robot_team, run_config, task_selection
+from hthor.eval.config import human_team, robot_team, run_config, task_selection
+from hthor.eval.config.human_team import HumanTeam
 from hthor.eval.config.robot_team import RobotTeam
 from hthor.eval.config.run_config import RunConfig
 from hthor.eval.config.sessions import Session
@@ -24,8 +25,6 @@ from hthor.eval.runner.messages import RunnerFactory, SessionAbandoned, TrialDon
 from hthor.eval.runner.run_job import RunJob, make_sources
 from hthor.eval.runner.trial_runner import Sources
 from hthor.guest import AgentInputs, GuestConfig
-from hthor.humans.population import resolve
-from hthor.humans.population.resolve import ParticipantSource
 from hthor.leaderboard.enter import OURS
 from hthor.leaderboard.entries.entry import REALTIME, Entry
 from hthor.leaderboard.entries.files import BoardError
@@ -64,11 +63,11 @@ def replay_trials(entry: Entry, places: Sequence[int], request: Request) -> dict
         played, because a part of a sample proves nothing.
     """
     chosen = task_selection.select_tasks(request.suite or entry.run.suite.name, "")
-    team, humans = robot_team_of(entry, request), resolve.resolve_humans(entry.run.humans.source)
+    team, humans = robot_team_of(entry, request), human_team.find_team(entry.run.humans.source)
     job = RunJob(
         config=_same_config(entry, chosen, team, humans),
         team=team,
-        population=humans,
+        people=humans,
         tasks=chosen,
         sources=make_sources_of(request.suite, team, humans, request),
     )
@@ -119,9 +118,9 @@ def robot_team_of(entry: Entry, request: Request) -> RobotTeam:
     return robot_team.form_team(bodies, minds, first.detector or "own", first.camera or "own", guests)
 
 
-def _same_config(entry: Entry, chosen: TaskSelection, team: RobotTeam, humans: ParticipantSource) -> RunConfig:
+def _same_config(entry: Entry, chosen: TaskSelection, team: RobotTeam, humans: HumanTeam) -> RunConfig:
     """The run config on this machine, if it equals the entry's; library versions count as part of the platform."""
-    config = run_config.build_config(chosen.suite, team, human=humans, **session_options(entry))
+    config = run_config.build_config(chosen.suite, team, humans=humans, **session_options(entry))
     there, here = (msgspec.structs.replace(one, versions={}) for one in (entry.run, config))
     if there != here:
         differences = "; ".join(run_config.differences(there, here))
@@ -152,7 +151,7 @@ def _cut(whole: Sequence[Session], places: Sequence[int]) -> tuple[list[Session]
     return wanted, seats
 
 
-def make_sources_of(suite: str, team: RobotTeam, humans: ParticipantSource, request: Request) -> Sources:
+def make_sources_of(suite: str, team: RobotTeam, humans: HumanTeam, request: Request) -> Sources:
     """The sources of everything that the entry's run needs; ``suite`` is empty for one of hthor's own suites."""
     code_identity.keep_compiled()
     own = bool(suite) and Path(suite).exists() and bool(library.house_files(suite))

@@ -17,9 +17,7 @@ from hthor.eval.config import sessions
 @given(st.integers(1, 130), st.integers(-(2**40), 2**40))
 def test_by_default_every_task_is_done_once(count: int, seed: int):
     tasks = [fakes.task(number) for number in range(count)]
-    hands = [
-        sessions.assign_tasks(tasks, seed, participant) for participant in range(sessions.participants_needed(count))
-    ]
+    hands = [sessions.assign_tasks(tasks, seed, participant) for participant in range(sessions.sessions_needed(count))]
     assert sorted(number for hand in hands for number in hand) == list(range(count))
     assert max(map(len, hands)) <= rules.SESSION_TASKS
     assert max(map(len, hands)) - min(map(len, hands)) <= 1
@@ -61,7 +59,7 @@ def test_the_plan_knows_how_many_trials_there_are(people: int):
     from hthor.eval.config import run_config
 
     suite, who = fakes.suite(57), fakes.crew("helper")
-    plan = run_config.build_config(suite, who, human="proxy", seed=3, participants=people)
+    plan = run_config.build_config(suite, who, humans="proxy", seed=3, participants=people)
     dealt = sessions.make_sessions(suite, agent=who, seed=3, participants=people)
     assert plan.trials == sum(len(one.trials) for one in dealt)
     assert plan.participants == len(dealt) == people

@@ -9,7 +9,7 @@ import msgspec
 import numpy as np
 import pytest
 import world_house as tiny
-from eval_fakes import persons, suite
+from eval_fakes import people, suite
 from hypothesis import given
 from hypothesis import strategies as st
 from world_house import TABLE, on, task
@@ -148,7 +148,7 @@ def test_more_cameras_than_robots_are_refused() -> None:
 
 def plan(camera: str) -> run_config.RunConfig:
     crew = robot_team.form_team(["scout"], ["frontier"], camera=camera)
-    return run_config.build_config(suite(30), crew, human=persons(), seed=0, participants=None)
+    return run_config.build_config(suite(30), crew, humans=people(), seed=0, participants=None)
 
 
 def test_a_run_knows_its_camera(tmp_path: Path) -> None:

@@ -166,7 +166,7 @@ def test_a_run_says_which_detector_it_used() -> None:
     suite = fakes.suite(10)
     text = detector_specs.canonical_name("false_alarm=0.05,miss=0.2")
     crews = [fakes.crew("helper", detector=detector) for detector in ("own", text)]
-    plain, noisy = (run_config.build_config(suite, crew, human="proxy", seed=0, participants=None) for crew in crews)
+    plain, noisy = (run_config.build_config(suite, crew, humans="proxy", seed=0, participants=None) for crew in crews)
     assert [plan.robots[0].detector for plan in (plain, noisy)] == ["own", "miss=0.2,false_alarm=0.05"]
     assert plain.folder_name != noisy.folder_name
     dealt = sessions.make_sessions(suite, agent=crews[1])
@@ -175,4 +175,4 @@ def test_a_run_says_which_detector_it_used() -> None:
     assert keys.isdisjoint(trial_record.key(trial) for trial in dealt[0].trials)
     assert aggregate.make_result(noisy, [], []).robots[0].detector == text
     alone = fakes.crew("silent", absent=True)
-    assert run_config.build_config(suite, alone, human="proxy", seed=0, participants=None).robots[0].detector == ""
+    assert run_config.build_config(suite, alone, humans="proxy", seed=0, participants=None).robots[0].detector == ""
