@@ -381,7 +381,7 @@ def test_words_for_several_peoples(files: Path):
     ]
     named = human_populations.find_people([f"kinds@{files}/pop.npz"])
     assert [one.name for one in named] == ["pop", *(f"{kind}@pop" for kind in KINDS)]
-    assert {one.population.sha256 for one in named} == {small().sha256}
+    assert {one.members[0].population.sha256 for one in named} == {small().sha256}
     assert [
         one.name for one in human_populations.find_people(["proxy", resolve.default_population(), "slow", "slow"])
     ] == [
