@@ -1,0 +1,219 @@
+"""Laws of an episode that is driven from outside, in a world without an engine."""
+
+from __future__ import annotations
+
+import random
+import threading
+import time
+from typing import Any
+
+import msgspec
+import pytest
+from episode_fakes import TASK, trial
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from walking_stage import SEATS, WalkingStage, minds
+
+from hthor.episode import Charged, Concurrent, DecisionClock, Episode, EpisodeLog, play
+from hthor.errors import HthorError
+from hthor.types import HUMAN, Action, Drive, Event, Observation, Reply, Send, TrialSpec, Wait
+
+roots = st.integers(0, 10**6)
+
+
+def spec(seconds: float = 12.0) -> TrialSpec:
+    """A trial of the fake world that lasts this long unless the goal is met."""
+    return msgspec.structs.replace(trial(), task=msgspec.structs.replace(TASK, time_limit=seconds))
+
+
+def played(root: int, clock: DecisionClock | None = None) -> EpisodeLog:
+    return play(spec(), WalkingStage(), *minds(root), clock)  # type: ignore[arg-type]
+
+
+def begun() -> Episode:
+    episode = Episode(spec(), WalkingStage())  # type: ignore[arg-type]
+    episode.reset()
+    return episode
+
+
+def drive(episode: Episode, actors: dict[str, Any], order: random.Random | None = None, ticks: int = 10**6) -> None:
+    """Drive an episode by these actors; ``order`` shuffles every order of calls within a tick."""
+    while not episode.done and ticks:
+        ticks -= 1
+        seats = list(episode.waiting)
+        if order:
+            order.shuffle(seats)
+        seen = {seat: episode.observe(seat) for seat in seats}
+        if order:
+            order.shuffle(seats)
+        for seat in seats:
+            episode.submit(seat, actors[seat].act(seen[seat]))
+        episode.advance()
+
+
+def ended(episode: Episode) -> EpisodeLog:
+    people = [seat for seat in episode.seats if seat.startswith(HUMAN)]
+    return episode.log(dict.fromkeys(people, 5 if episode.met else 3))
+
+
+def actors(root: int) -> dict[str, Any]:
+    people, robots = minds(root)
+    return {**people, **robots}
+
+
+@pytest.mark.slow
+@settings(max_examples=25)
+@given(roots, st.randoms(use_true_random=False))
+def test_the_order_of_calls_within_a_tick_never_matters(root: int, order: random.Random) -> None:
+    episode = begun()
+    drive(episode, actors(root), order)
+    assert ended(episode) == played(root)
+
+
+@pytest.mark.slow
+@settings(max_examples=25)
+@given(roots, st.integers(0, 119))
+def test_a_copy_has_the_same_future(root: int, ticks: int) -> None:
+    episode = begun()
+    drive(episode, actors(root), ticks=ticks)
+    for seat in episode.waiting[:2]:  # in the middle of a tick
+        episode.submit(seat, actors(root)[seat].act(episode.observe(seat)))
+    state, copy = episode.save_state(), begun()
+    copy.load_state(state)
+    assert copy.log() == episode.log()
+    drive(episode, actors(root))
+    drive(copy, actors(root))
+    assert ended(copy) == ended(episode) == played(root)
+
+
+@pytest.mark.slow
+@settings(max_examples=25)
+@given(roots, st.sets(st.integers(0, 100), max_size=5))
+def test_pausing_changes_nothing(root: int, pauses: set[int]) -> None:
+    episode, who = begun(), actors(root)
+    while not episode.done:
+        if episode.tick in pauses:
+            episode.pause("a question")
+            with pytest.raises(HthorError, match="paused"):
+                episode.advance()
+            episode.resume()
+        drive(episode, who, ticks=1)
+    log = ended(episode)
+    quiet = tuple(event for event in log.events if event.kind not in ("paused", "resumed"))
+    assert msgspec.structs.replace(log, events=quiet) == played(root)
+    assert len(log.events) - len(quiet) == 2 * len([tick for tick in pauses if tick < log.ticks])
+
+
+@pytest.mark.slow
+@settings(max_examples=25)
+@given(roots)
+def test_decisions_that_cost_nothing_are_those_of_lock_step(root: int) -> None:
+    assert played(root, Charged(lambda: 0.0)) == played(root)
+    instant = Concurrent(pace=lambda _: instant.settle())
+    assert played(root, instant) == played(root)
+
+
+def test_nobody_observes_a_later_tick_than_the_one_shown() -> None:
+    people, robots = minds(3)
+    for mind in robots.values():
+        script = mind.script
+
+        def slowly(now: Observation, script: Any = script) -> Action:
+            time.sleep(0.002)
+            return script(now)
+
+        mind.script = slowly
+    play(spec(), WalkingStage(), people, robots, Concurrent(pace=lambda _: time.sleep(0.0005)))  # type: ignore[arg-type]
+    shown = [pair for mind in robots.values() for pair in mind.shown]
+    assert len(shown) > 10
+    assert all(tick == seen for tick, seen in shown)
+
+
+def test_a_late_answer_is_logged_with_its_delay_and_the_world_goes_on_meanwhile() -> None:
+    people, robots = minds(3)
+    gate = threading.Event()
+
+    def stuck(now: Observation) -> Action:
+        gate.wait(10.0)
+        return Action(say=Send(text="late", object="apple"))
+
+    robots["robot"].script = stuck
+    log = play(
+        spec(),
+        WalkingStage(),
+        people,
+        robots,
+        Concurrent(pace=lambda tick: gate.set() or time.sleep(0.05) if tick == 7 else None),
+    )
+    thoughts = [event for event in log.events if event.kind == "thought" and event.seat == "robot"]
+    assert (thoughts[0].tick, thoughts[0].data["ticks"]) == (7, 7)
+    assert next(event.tick for event in log.events if event.kind == "sent" and event.seat == "robot") == 7
+
+
+def test_an_agent_that_fails_in_its_thread_leaves_the_trial() -> None:
+    people, robots = minds(3)
+
+    def fail(now: Observation) -> Action:
+        raise ValueError("lost")
+
+    robots["robot"].script = fail
+    log = play(spec(), WalkingStage(), people, robots, Concurrent(pace=lambda _: time.sleep(0.001)))  # type: ignore[arg-type]
+    assert [(fault.seat, "lost" in fault.detail) for fault in log.faults] == [("robot", True)]
+    assert log.ticks == 120 or log.met
+
+
+def test_an_observer_sees_every_event_once_and_in_order() -> None:
+    episode, seen = Episode(spec(), WalkingStage()), list[Event]()  # type: ignore[arg-type]
+    episode.attach(lambda _, events: seen.extend(events))
+    episode.reset()
+    drive(episode, actors(5))
+    assert seen == episode.events
+
+
+def test_a_voided_trial_ends_there_with_its_reason() -> None:
+    episode = begun()
+    drive(episode, actors(5), ticks=7)
+    episode.void("the headset slipped")
+    assert episode.done
+    with pytest.raises(HthorError, match="over"):
+        episode.advance()
+    log = episode.log()
+    assert (log.events[-1].kind, log.events[-1].data["reason"], log.ticks) == ("voided", "the headset slipped", 7)
+    assert log.ratings == {}
+
+
+def test_a_seat_may_speak_while_its_body_is_busy_and_drive_at_any_time() -> None:
+    episode = begun()
+    episode.submit(HUMAN, Action(motion=Wait(seconds=2.0)))
+    episode.submit("robot", Action(say=Send(text="here")))
+    episode.advance()
+    episode.observe(HUMAN)
+    episode.submit(HUMAN, Action(motion=Drive(forward=1.0), say=Reply(message=0, accept=True)))
+    events = episode.advance()
+    assert [event.kind for event in events if event.seat == HUMAN] == ["shown", "accepted"]
+    assert episode.world.drives == {HUMAN: Drive(forward=1.0)}  # type: ignore[attr-defined]
+
+
+def test_what_is_said_in_a_tick_is_not_lost_by_a_second_action() -> None:
+    episode = begun()
+    episode.submit("robot", Action(say=Send(text="one")))
+    episode.submit("robot", Action(motion=Drive(forward=0.2)))
+    assert "sent" in [event.kind for event in episode.advance()]
+
+
+def test_what_is_no_action_or_no_seat_is_refused() -> None:
+    episode = begun()
+    with pytest.raises(TypeError, match="Action"):
+        episode.submit(HUMAN, "forward")  # type: ignore[arg-type]
+    with pytest.raises(HthorError, match="human, human2, robot, robot2"):
+        episode.submit("robot7", Action())
+    assert episode.seats == SEATS
+
+
+def test_a_body_that_drives_rests_only_while_it_stands() -> None:
+    episode = begun()
+    for tick in range(20):
+        if tick in (0, 10):
+            episode.submit(HUMAN, Action(motion=Drive(forward=0.0 if tick else 1.0)))
+        episode.advance()
+    assert episode.log().idle[HUMAN] == 10
