@@ -57,7 +57,9 @@ class DecisionClock(Protocol):
 
 def make_clock(trial: TrialSpec) -> DecisionClock:
     """The decision clock that a trial names."""
-    return Charged() if trial.realtime else LockStep()
+    if trial.clock == "charged":
+        return Charged()
+    return Concurrent() if trial.clock == "concurrent" else LockStep()
 
 
 def decide(seat: str, mind: Mind, observation: Observation) -> Answer:

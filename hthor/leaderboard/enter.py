@@ -20,7 +20,7 @@ from hthor.eval.results import aggregate, baseline
 from hthor.guest import Manifest
 from hthor.leaderboard import board_check
 from hthor.leaderboard.entries import entry_metrics, files, invariants, overrides, trial_outcomes, verification
-from hthor.leaderboard.entries.entry import LOCKSTEP, REALTIME, Agent, Counts, Entry, Harness, Hashes, Metrics
+from hthor.leaderboard.entries.entry import Agent, Counts, Entry, Harness, Hashes, Metrics
 from hthor.leaderboard.entries.files import BoardError
 from hthor.leaderboard.ranking import admission
 from hthor.leaderboard.submission.submission import Submission
@@ -91,7 +91,7 @@ def make_entry(folder: Path, submission: Submission | None = None) -> Entry:
         run=config.untitled,
         hashes=Hashes(run=config.sha256, trials=result.hashes.trials, merkle=columns.merkle),
         harness=current_harness(),
-        mode=REALTIME if getattr(result, "mode", "") == REALTIME else LOCKSTEP,
+        mode=result.mode,
         platforms=run.platforms,
         isolation=held,
         counts=Counts(

@@ -54,7 +54,7 @@ class Mind(Protocol):
         """Called whenever the body is free for a new motion, and whenever the seat's inbox or receipt has changed.
 
         A tick lasts `rules.TICK_S` [s]. All seats that are called in a tick observe the same moment; only then do their
-        actions take effect. In lock-step the world waits for the answer. In real time (``TrialSpec.realtime``) the
+        actions take effect. In lock-step the world waits for the answer. With another clock (``TrialSpec.clock``) the
         action takes effect after as many ticks as the answer took, and until then the seat is not called again.
 
         Args:

@@ -1,6 +1,6 @@
 """Bodies, tasks and trials as data."""
 
-from typing import Literal
+from typing import Final, Literal
 
 import msgspec
 from msgspec import Struct
@@ -9,7 +9,10 @@ from hthor.types.house import Pose, Vec2, Vec3
 
 Relation = Literal["find", "on", "in", "at"]
 """What a job demands of an object: to be found anywhere, to lie on or in a thing, or to be at a place."""
+LOCKSTEP: Final = "lockstep"
 RELATIONS: tuple[Relation, ...] = ("find", "on", "in", "at")
+Clock = Literal["lockstep", "charged", "concurrent"]
+"""Decision clocks: the world waits for agents; it charges their time to the trial; or it goes on while they decide."""
 
 
 class BodySpec(Struct, frozen=True, kw_only=True):
@@ -189,7 +192,7 @@ class TrialSpec(Struct, frozen=True, kw_only=True):
         assets_sha256: hash of the looks in robots' pictures and of the code that draws them, empty if no agent is known
             to take pictures.
         kind_sha256: hash of the task kind's file if it is a user's own, empty for a kind that ships with hthor.
-        realtime: set only if the trial's clock ran while robots were thinking.
+        clock: when the answers of robots' agents take effect, see `hthor.episode.clocks`; set only if not in lock-step.
         step_limit_s: [s] set only if submitted agents had an unusual deadline for each action.
     """
 
@@ -204,6 +207,6 @@ class TrialSpec(Struct, frozen=True, kw_only=True):
     code_sha256: str
     assets_sha256: str = ""
     kind_sha256: str = ""
-    realtime: bool | msgspec.UnsetType = msgspec.UNSET
+    clock: Clock | msgspec.UnsetType = msgspec.UNSET
     step_limit_s: float | msgspec.UnsetType = msgspec.UNSET
     attempt: int | msgspec.UnsetType = msgspec.UNSET

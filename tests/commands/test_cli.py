@@ -300,18 +300,18 @@ def test_real_time_is_another_run_and_says_so(hthor, tmp_path: Path, monkeypatch
     monkeypatch.setattr(robot_team, "load_agent_info", fakes.character)
     monkeypatch.chdir(tmp_path)
     modes = {}
-    for words in ((), ("--realtime",)):
+    for words in ((), ("--clock", "charged")):
         said = hthor("eval", "--agent", "helper", "--suite", "fake", "--no-control", "--json", *words)
         result = json.loads(said.out)["runs"][0]["result"]
         modes[result["mode"]] = result["hashes"]["run"], result["hashes"]["trials"]
         assert ("in real time" in said.err) == bool(words)
-    assert modes.keys() == {"lockstep", "realtime"}
-    assert len({*modes["lockstep"], *modes["realtime"]}) == 4
-    late, soon = sorted((tmp_path / "runs").iterdir(), key=lambda folder: "-realtime-" not in folder.name)
-    assert "-realtime-" in late.name
+    assert modes.keys() == {"lockstep", "charged"}
+    assert len({*modes["lockstep"], *modes["charged"]}) == 4
+    late, soon = sorted((tmp_path / "runs").iterdir(), key=lambda folder: "-charged-" not in folder.name)
+    assert "-charged-" in late.name
     assert hthor("score", str(late)).code == 0
     (soon / "trials.jsonl").write_bytes((late / "trials.jsonl").read_bytes())
-    assert "spec.realtime is not the one in run.json" in hthor("score", str(soon)).err
+    assert "spec.clock is not the one in run.json" in hthor("score", str(soon)).err
 
 
 @pytest.mark.slow

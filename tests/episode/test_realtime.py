@@ -42,7 +42,7 @@ class Thinker(Mind):
 
 
 def run(stage: Stage, robot: Thinker, *, realtime: bool = True) -> EpisodeLog:
-    spec = msgspec.structs.replace(trial(), realtime=realtime or msgspec.UNSET)
+    spec = msgspec.structs.replace(trial(), clock="charged" if realtime else msgspec.UNSET)
     return play(spec, stage, {"human": Mind()}, {"robot": robot}, Charged(robot.clock) if realtime else None)  # type: ignore[arg-type]
 
 
@@ -108,7 +108,7 @@ def test_what_it_takes_to_draw_for_a_mind_is_not_its_own_time() -> None:
 
 def test_it_is_another_trial_for_the_same_occasion() -> None:
     spec = fakes.run_of()[1][0].trials[0]
-    late = msgspec.structs.replace(spec, realtime=True)
+    late = msgspec.structs.replace(spec, clock="charged")
     assert trial_record.key(spec) != trial_record.key(late)
     assert pairing.pairing_key(spec) == pairing.pairing_key(late)
-    assert b"realtime" not in msgspec.json.encode(spec), "lock-step reads as it always did"
+    assert b"clock" not in msgspec.json.encode(spec), "lock-step reads as it always did"

@@ -277,7 +277,7 @@ def test_ranks_follow_from_entries_alone(whole: Path):
 
 def test_only_what_can_be_compared_is_ranked_together(whole: Path):
     entries = [files.read_entry(path) for path in files.entry_paths(whole)]
-    other = msgspec.structs.replace(entries[0], mode="realtime")
+    other = msgspec.structs.replace(entries[0], mode="charged")
     older = msgspec.structs.replace(entries[0], run=msgspec.structs.replace(entries[0].run, code_sha256="56" * 32))
     assert len(listing.make_board([*entries, other, older]).sections) == 3
 

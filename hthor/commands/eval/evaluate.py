@@ -179,14 +179,14 @@ def evaluate(
             "the uplift over it.",
         ),
     ] = True,
-    realtime: Annotated[
-        bool,
+    clock: Annotated[
+        Literal["lockstep", "charged", "concurrent"],
         typer.Option(
-            "--realtime",
-            help="Charge thinking time: an action starts as late as the agent decided on it, and the person goes on "
-            "meanwhile. Such trials are not reproducible byte for byte.",
+            help="When agents' decisions take effect. lockstep: at once, the world waits for them. charged: as much "
+            "later as the agent took, and the person goes on meanwhile. concurrent: the trial runs in real time, and "
+            "an action starts when it is there. Only lockstep is reproducible byte for byte.",
         ),
-    ] = False,
+    ] = "lockstep",
     isolation: Annotated[
         str,
         typer.Option(
@@ -247,7 +247,7 @@ def evaluate(
         engine=engine,
         address=address,
         control=control,
-        realtime=realtime,
+        clock=clock,
         name=name,
         limit=limit,
         houses=tuple(house or ()),

@@ -136,7 +136,7 @@ def check_speed(notes: ProbeResult) -> Finding:
         told += f"; {found['memory_mb']:.0f} MB"
     if found["share"] <= 1.0:
         return Finding(check="fast enough", status="ok", told=told)
-    advice = "It thinks longer than the trial lasts: 'hthor eval --realtime' would charge that."
+    advice = "It thinks longer than the trial lasts: 'hthor eval --clock charged' would charge that."
     return Finding(check="fast enough", status="warning", told=told, advice=advice)
 
 

@@ -32,7 +32,7 @@ def resume_command(folder: Path, config: RunConfig, out: Path | None = None) -> 
     words += [] if detector == OWN else ["--detector", detector]
     words += _camera_options(config)
     words += ["--name", config.title] if config.title else []
-    words += ["--realtime"] if config.realtime else []
+    words += ["--clock", config.clock] if config.clock else []
     words += [word for name in config.houses or () for word in ("--house", name)]
     words += ["--difficulty", config.difficulty] if config.difficulty else []
     words += ["--limit", str(config.limit)] if config.limit else []
@@ -71,9 +71,9 @@ def baseline_command(config: RunConfig) -> str:
     absent = RobotSeat(
         seat="", robot="", agent=AgentRef(name=NO_ROBOT_AGENT, source=f"{BUILT_IN_AGENTS}{NO_ROBOT_AGENT}", sha256="")
     )
-    return resume_command(
-        Path(), msgspec.structs.replace(config, robots=(absent,), realtime=msgspec.UNSET)
-    ).removesuffix(" --out .")
+    return resume_command(Path(), msgspec.structs.replace(config, robots=(absent,), clock=msgspec.UNSET)).removesuffix(
+        " --out ."
+    )
 
 
 def _robot_options(robots: Sequence[RobotSeat]) -> list[str]:

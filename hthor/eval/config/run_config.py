@@ -20,9 +20,9 @@ from hthor.guest.agent.manifest import Manifest
 from hthor.humans.population.resolve import PROXY
 from hthor.tasks import Suite
 from hthor.types import RobotSeat
+from hthor.types.specs import LOCKSTEP, Clock
 
 SCHEMA = "hthor.run/4"
-LOCKSTEP, REALTIME = "lockstep", "realtime"
 _NAME_MAX = 100
 _HOUSES_NAMED = 4
 """A run's folder names its houses when they are fewer than this."""
@@ -70,7 +70,7 @@ class RunConfig(Struct, frozen=True, kw_only=True):
             which older runs do not have.
         participants: how many people take part in all sessions together.
         trials: how many trials the whole run has.
-        realtime: whether agents' thinking takes time of the trials.
+        clock: when agents' answers take effect, where it is not in lock-step.
         limit: how many tasks were chosen from the suite, if not all.
         houses: the houses, and ``difficulty`` the difficulty, that the suite was narrowed to.
         step_limit_s: the submitted agents' deadline for each action [s], where it is not the default.
@@ -92,7 +92,7 @@ class RunConfig(Struct, frozen=True, kw_only=True):
     code_sha256: str
     versions: dict[str, str]
     assets: AssetsRef
-    realtime: bool | msgspec.UnsetType = msgspec.UNSET
+    clock: Clock | msgspec.UnsetType = msgspec.UNSET
     limit: int | msgspec.UnsetType = msgspec.UNSET
     houses: tuple[str, ...] | msgspec.UnsetType = msgspec.UNSET
     difficulty: str | msgspec.UnsetType = msgspec.UNSET
@@ -130,9 +130,9 @@ class RunConfig(Struct, frozen=True, kw_only=True):
         return self.participants // len(self.humans.members)
 
     @property
-    def mode(self) -> str:
-        """ "lockstep", where a trial waits for its agents, or "realtime", where it does not."""
-        return REALTIME if self.realtime else LOCKSTEP
+    def mode(self) -> Clock:
+        """The decision clock: "lockstep", "charged" or "concurrent"."""
+        return self.clock or LOCKSTEP
 
     @property
     def name(self) -> str:
@@ -166,7 +166,7 @@ class RunConfig(Struct, frozen=True, kw_only=True):
         if self.limit:
             tasks = f"{tasks}-{self.limit}"
         parts = [self.team_name, tasks, *([] if self.humans.name == PROXY else [self.humans.name])]
-        return "-".join([*parts, *([REALTIME] if self.realtime else []), self.whole.sha256[:10]])
+        return "-".join([*parts, *([self.clock] if self.clock else []), self.whole.sha256[:10]])
 
 
 def team_name(robots: Sequence[RobotSeat]) -> str:
@@ -186,7 +186,7 @@ def build_config(
     participants: int | None,
     kind: KindRef | None = None,
     assets: AssetsRef | None = None,
-    realtime: bool = False,
+    clock: Clock = LOCKSTEP,
     limit: int | None = None,
     houses: Sequence[str] = (),
     difficulty: str = "",
@@ -198,7 +198,7 @@ def build_config(
         humans: the people of each trial, or the word by which `hthor.eval.config.human_team` finds them.
         participants: how many people in all; None for the number that is needed to do every task once.
         assets: the furniture pack that pictures show, with its own hash; None for our own furniture.
-        realtime, step_limit_s: as in `RunConfig`; without a robot, or submitted agents, they make no difference.
+        clock, step_limit_s: as in `RunConfig`; without a robot, or submitted agents, they make no difference.
         limit, houses, difficulty: how ``suite`` was narrowed; empty or None where it was not.
     """
     people = human_team.find_team(humans) if isinstance(humans, str) else humans
@@ -221,7 +221,7 @@ def build_config(
             name=assets.name if assets else PROCEDURAL,
             sha256=robot_team.team_pictures_sha256(team, assets.sha256 if assets else ""),
         ),
-        realtime=(realtime and bool(team.seats)) or msgspec.UNSET,
+        clock=clock if team.seats and clock != LOCKSTEP else msgspec.UNSET,
         limit=limit or msgspec.UNSET,
         houses=tuple(houses) or msgspec.UNSET,
         difficulty=difficulty or msgspec.UNSET,

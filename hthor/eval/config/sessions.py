@@ -18,6 +18,7 @@ from hthor.humans.population.resolve import PROXY
 from hthor.tasks import Suite
 from hthor.types import TaskSpec, TrialSpec
 from hthor.types.detector_specs import OWN
+from hthor.types.specs import LOCKSTEP, Clock
 
 _T = TypeVar("_T")
 _SHARD_ENDING = re.compile(r"-shard-\d+-of-\d+$")
@@ -69,7 +70,7 @@ def make_sessions(
     detector: str = OWN,
     kind_sha256: str = "",
     assets_sha256: str | None = None,
-    realtime: bool = False,
+    clock: Clock = LOCKSTEP,
     step_limit_s: float | None = None,
 ) -> tuple[Session, ...]:
     """The sessions of a run.
@@ -103,7 +104,7 @@ def make_sessions(
             code_sha256=code_hash,
             assets_sha256=robot_team.team_pictures_sha256(team) if assets_sha256 is None else assets_sha256,
             kind_sha256=kind_sha256,
-            realtime=realtime or msgspec.UNSET,
+            clock=msgspec.UNSET if clock == LOCKSTEP else clock,
             step_limit_s=robot_team.step_limit_of(team, step_limit_s),
         )
 

@@ -113,7 +113,7 @@ class RunFolder:
             "robots": (spec.robots, config.seats),
             "kind_sha256": (spec.kind_sha256, config.kind.sha256 if config.kind else ""),
             "assets_sha256": (spec.assets_sha256 or config.assets.sha256, config.assets.sha256),  # empty: no pictures
-            "realtime": (bool(spec.realtime), bool(config.realtime)),
+            "clock": (spec.clock, config.clock),
             "step_limit_s": (spec.step_limit_s, config.step_limit_s),
         }
         for field, (here, there) in pairs.items():

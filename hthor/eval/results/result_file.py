@@ -10,7 +10,7 @@ from msgspec import Struct
 
 from hthor import documents, jsonio
 from hthor.errors import RunError
-from hthor.eval.config import robot_team, run_config
+from hthor.eval.config import robot_team
 from hthor.eval.config.human_populations import HumanModelRef
 from hthor.eval.config.run_config import AssetsRef, KindRef, SuiteRef
 from hthor.eval.metrics import registry
@@ -18,6 +18,7 @@ from hthor.eval.results.paired_difference import Difference
 from hthor.eval.statistics.intervals import NOTHING, Estimate
 from hthor.guest import Isolation, Manifest
 from hthor.types import RobotSeat
+from hthor.types.specs import LOCKSTEP, Clock
 
 SCHEMA = "hthor.result/5"
 UPLIFT_METRICS = ("sr", "twsr", "time_s")
@@ -114,7 +115,7 @@ class RunResult(Struct, frozen=True, kw_only=True):
     """The run's `result.json`.
 
     ``trust_by_trial`` is the rating after the first, second, ... trial of a session, empty without a robot. ``uplift``
-    is None if no complete run without a robot was ever found. ``mode`` is "realtime" if thinking took time in trials,
+    is None if no complete run without a robot was ever found. ``mode`` is the decision clock of its trials,
     so that no second run gives the same bytes, else "lockstep". ``agents`` lists the files of every agent that is not
     built in, including those that it opened only during trials.
     """
@@ -127,7 +128,7 @@ class RunResult(Struct, frozen=True, kw_only=True):
     suite: SuiteRef
     kind: KindRef | None = None
     seed: int
-    mode: str = run_config.LOCKSTEP
+    mode: Clock = LOCKSTEP
     participants: int
     metrics: Scores
     by_kind: dict[str, Scores]

@@ -19,6 +19,7 @@ from hthor.eval.runner.engines import Engine, Interrupted, stoppable
 from hthor.eval.runner.fault_report import FaultArchive
 from hthor.eval.runner.messages import RunnerFactory
 from hthor.eval.runner.progress import Watcher
+from hthor.types.specs import LOCKSTEP
 
 
 def run_evaluation(
@@ -99,7 +100,7 @@ def _run_missing(
     collected = None
     if left:
         platform.join(folder.path, (), (platform.this_platform(),))
-        collected = collector.collect(left, make, repeatable=not config.realtime)
+        collected = collector.collect(left, make, repeatable=config.mode == LOCKSTEP)
     if stop.is_set():
         raise Interrupted(f"interrupted after {len(log)} trials; resume with the same command.")
     missing = [key for key in expected if key not in log]

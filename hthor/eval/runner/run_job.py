@@ -60,7 +60,7 @@ class RunJob(Struct, frozen=True, kw_only=True):
             participants=config.participants,
             kind_sha256=config.kind.sha256 if config.kind else "",
             assets_sha256=config.assets.sha256,
-            realtime=bool(config.realtime),
+            clock=config.mode,
             step_limit_s=config.step_limit_s or None,
         )
         return config.shard.share(sessions) if config.shard else sessions

@@ -24,6 +24,7 @@ from hthor.guest.agent import inputs
 from hthor.humans.population.resolve import PROXY
 from hthor.tasks.suites import library
 from hthor.types import cameras, detector_specs
+from hthor.types.specs import LOCKSTEP, Clock
 
 RUNS = Path("runs")
 
@@ -52,7 +53,7 @@ class RunOptions(Struct, frozen=True, kw_only=True):
     engine: str = engines.LOCAL
     address: str = ""
     control: bool = False
-    realtime: bool = False
+    clock: Clock = LOCKSTEP
     name: str = ""
     limit: int | None = None
     houses: tuple[str, ...] = ()
@@ -204,7 +205,7 @@ class _Planner:
             participants=options.participants,
             kind=tasks.kind,
             assets=assets,
-            realtime=options.realtime and not baseline,
+            clock=LOCKSTEP if baseline else options.clock,
             limit=tasks.limit,
             houses=tasks.houses,
             difficulty=tasks.difficulty,

@@ -10,10 +10,9 @@ from hthor.eval.records.platform import Platform
 from hthor.eval.results.result_file import Uplift
 from hthor.eval.statistics.intervals import Estimate
 from hthor.guest import File, Isolation, Manifest
+from hthor.types.specs import LOCKSTEP, Clock
 
 SCHEMA: Final = "hthor.entry/6"
-LOCKSTEP: Final = "lockstep"
-REALTIME: Final = "realtime"
 _FOLLOW = ("metrics", "splits", "uplift")
 
 Sha256 = Annotated[str, Meta(pattern="^[0-9a-f]{64}$")]
@@ -139,7 +138,7 @@ class Entry(Struct, frozen=True, kw_only=True):
         files: all files that were submitted with the agent.
         agents: the files of its agents, including those that they opened while running; none for hthor's own agents.
         run: the run's configuration, as in its run.json.
-        mode: whether the world waited for the agent (lockstep) or its computing took simulated time (realtime).
+        mode: the decision clock: whether the world waited for the agent, charged its time, or went on meanwhile.
         overrides: settings other than the benchmark's; empty in a valid entry.
         platforms: where the run was played; empty if it did not record this. isolation: how the agent was isolated.
         Both are claims unless an official run made the entry.
@@ -157,7 +156,7 @@ class Entry(Struct, frozen=True, kw_only=True):
     run: RunConfig
     hashes: Hashes
     harness: Harness
-    mode: Literal["lockstep", "realtime"] = LOCKSTEP
+    mode: Clock = LOCKSTEP
     overrides: Annotated[dict[str, str], Meta(max_length=0)] = {}
     platforms: tuple[Platform, ...] = ()
     isolation: Isolation | None = None

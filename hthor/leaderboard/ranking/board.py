@@ -9,6 +9,7 @@ from hthor.eval.results.paired_difference import Difference
 from hthor.eval.statistics.intervals import Estimate
 from hthor.leaderboard.entries.entry import Agent, Count, Group, Harness, Sha256
 from hthor.leaderboard.entries.verification import Fresh, Replayed
+from hthor.types.specs import Clock
 
 SCHEMA: Final = "hthor.leaderboard/6"
 
@@ -107,7 +108,7 @@ class Section(Struct, frozen=True, kw_only=True):
     humans_sha256: Sha256
     calibrated: bool
     seed: int
-    mode: Literal["lockstep", "realtime"]
+    mode: Clock
     trials: int
     people: int
     rules: Sha256

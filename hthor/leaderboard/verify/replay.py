@@ -26,7 +26,7 @@ from hthor.eval.runner.run_job import RunJob, make_sources
 from hthor.eval.runner.trial_runner import Sources
 from hthor.guest import AgentInputs, GuestConfig
 from hthor.leaderboard.enter import OURS
-from hthor.leaderboard.entries.entry import REALTIME, Entry
+from hthor.leaderboard.entries.entry import Entry
 from hthor.leaderboard.entries.files import BoardError
 from hthor.tasks.suites import library
 
@@ -132,8 +132,7 @@ def _same_config(entry: Entry, chosen: TaskSelection, team: RobotTeam, humans: H
 
 def session_options(entry: Entry) -> dict[str, Any]:
     """The options that decide which person does which task, and whether computing takes simulated time."""
-    clock = {"realtime": True} if entry.mode == REALTIME else {}
-    return {"seed": entry.run.seed, "participants": entry.run.participants, **clock}
+    return {"seed": entry.run.seed, "participants": entry.run.participants, "clock": entry.mode}
 
 
 def _cut(whole: Sequence[Session], places: Sequence[int]) -> tuple[list[Session], dict[tuple[int, int], int]]:

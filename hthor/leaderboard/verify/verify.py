@@ -13,12 +13,13 @@ from hthor.eval.records import platform
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.leaderboard import board_check
 from hthor.leaderboard.entries import entry_metrics, files, invariants, trial_outcomes, verification
-from hthor.leaderboard.entries.entry import REALTIME, Entry
+from hthor.leaderboard.entries.entry import Entry
 from hthor.leaderboard.entries.files import BoardError, Problem
 from hthor.leaderboard.entries.verification import Replayed, Tier, Verification
 from hthor.leaderboard.verify import detection_power, fresh_tasks, replay, verdict
 from hthor.leaderboard.verify.replay import Request
 from hthor.leaderboard.verify.verdict import ReplayedTrials
+from hthor.types.specs import LOCKSTEP
 
 SAMPLE = 200
 """How many trials are drawn to be compared one by one; if the agent is not deterministic, all are drawn."""
@@ -108,7 +109,7 @@ def judge_replay(entry: Entry, drawn: Sequence[int], again: dict[int, tuple[Tria
 
 def entry_tier(entry: Entry) -> Tier:
     """How the entry can be compared with trials that are played on this machine."""
-    repeats = entry.alone or (entry.agent.deterministic and entry.mode != REALTIME)
+    repeats = entry.alone or (entry.agent.deterministic and entry.mode == LOCKSTEP)
     return verdict.choose_tier(repeats=repeats, same_platform=entry.platforms == (platform.this_platform(),))
 
 
@@ -144,4 +145,4 @@ def _grounds(by: Tier, entry: Entry, here: dict[str, str]) -> str:
         if len(entry.platforms) != 1:
             return "several platforms" if entry.platforms else "a platform that was not noted"
         return f"another platform ({'; '.join(platform.platform_differences(entry.platforms[0], here))})"
-    return "thinking takes time" if entry.mode == REALTIME else "the agent does not claim to repeat itself"
+    return "thinking takes time" if entry.mode != LOCKSTEP else "the agent does not claim to repeat itself"

@@ -11,9 +11,9 @@ from hthor.eval.records import run_isolation
 from hthor.guest import Isolation
 from hthor.report.analysis.load_runs import Run
 from hthor.types import RobotSeat
+from hthor.types.specs import LOCKSTEP
 
 _PLATFORM = "platform.json"
-_LOCKSTEP = "lockstep"
 
 
 class Platform(Struct, frozen=True, kw_only=True):
@@ -31,8 +31,7 @@ class Provenance(Struct, frozen=True, kw_only=True):
 
     ``name`` is its folder's name. ``beside`` is true if the report found the run by itself, as another run's baseline.
     ``isolation`` is None if all agents are built in. ``platforms`` is empty if the run did not record them. ``command``
-    plays the run again; ``alone`` plays the same people and tasks without a robot. ``mode`` is lockstep, or realtime if
-    the agents' computing time counted as time of the trials.
+    plays the run again; ``alone`` plays the same people and tasks without a robot. ``mode`` is the decision clock.
     """
 
     name: str
@@ -78,7 +77,7 @@ def run_provenance(run: Run) -> Provenance:
         suite=plan.suite,
         kind=plan.kind,
         seed=plan.seed,
-        mode=getattr(plan, "mode", _LOCKSTEP),
+        mode=getattr(plan, "mode", LOCKSTEP),
         participants=plan.participants,
         trials=len(run.records),
         whole=plan.trials,

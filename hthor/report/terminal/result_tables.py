@@ -6,13 +6,13 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 from hthor.eval.config.robot_team import NO_ROBOT, NO_ROBOT_AGENT
-from hthor.eval.config.run_config import REALTIME
 from hthor.eval.metrics import registry
 from hthor.eval.metrics.metric import NUMBER, SHARE, Unit
 from hthor.eval.results import result_file
 from hthor.eval.results.paired_difference import Difference
 from hthor.eval.results.result_file import RunResult, Scores
 from hthor.eval.statistics.intervals import Estimate
+from hthor.types.specs import LOCKSTEP
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -32,7 +32,7 @@ def result_table(result: RunResult, *, everything: bool = False) -> Table:
         everything: whether to show all metrics, not only the main ones.
     """
     title = f"{result.label}: {result.suite.name}, {result.counts.trials} trials, {result.humans.name} people"
-    title += ", in real time" if result.mode == REALTIME else ""
+    title += "" if result.mode == LOCKSTEP else f", {result.mode} clock"
     table = new_table(title, "mean", "95 % interval", "could have seen", "trials")
     later = enumerate(result.trust_by_trial if everything else (), 1)
     rated = ((f"trust after a participant's trial {number}", NUMBER, estimate) for number, estimate in later)
