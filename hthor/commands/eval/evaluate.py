@@ -35,8 +35,9 @@ def evaluate(
         typer.Option(
             help="The people ('hthor humans list'): a population, a kind of people or a human model, by name or as a "
             "file (pop.npz, my_kind.json, my_human.py). cautious@pop.npz is the kind 'cautious' drawn from pop.npz. "
-            "Repeat the option for several; 'kinds' means the population and every kind of people; 'bracket' means "
-            "the population and two bounds: people who accept every message and people who accept none.",
+            "A comma joins the people of one trial: proxy,proxy. Repeat the option to run several populations one "
+            "after the other; 'kinds' means the population and every kind of people; 'bracket' means the population "
+            "and two bounds: people who accept every message and people who accept none.",
             show_default="proxy, the calibrated population",
         ),
     ] = None,
@@ -90,7 +91,7 @@ def evaluate(
         int | None,
         typer.Option(
             min=1,
-            help="Number of participants; each does ten tasks.",
+            help="Number of participants; each does ten tasks. With two people in a trial, twice as many are needed.",
             show_default="as many as it takes to do every task once",
         ),
     ] = None,

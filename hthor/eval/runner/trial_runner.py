@@ -97,7 +97,8 @@ class TrialRunner:
         objects = tuple((placed.id, placed.kind) for placed in task.objects)
         detectors = tuple(seat.detector for seat in trial.robots)
         cameras = tuple(seat.camera or OWN for seat in trial.robots)
-        key = (task.house, task.house_sha256, robots, detectors, cameras, objects)
+        people = len(trial.humans)
+        key = (task.house, task.house_sha256, people, robots, detectors, cameras, objects)
         if key not in self._worlds:
             from hthor.houses import HouseLibrary
             from hthor.world import World
@@ -115,6 +116,7 @@ class TrialRunner:
                 profile="fast" if pack is None else "nice",
                 assets=pack or "",
                 cameras=cameras,
+                **({"people": people} if people > 1 else {}),
             )
             gc_freeze.freeze_existing()
         return self._worlds[key]

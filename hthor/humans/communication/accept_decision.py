@@ -18,7 +18,7 @@ from hthor.humans.motor.locomotion import Walker
 from hthor.humans.population.parameters import Parameters
 from hthor.humans.search.option_choice import OptionChoice
 from hthor.humans.search.option_description import Option
-from hthor.types import HUMAN, Event, Vec3
+from hthor.types import Event, Vec3
 
 NEUTRAL_TRUST = 0.5
 """[share] Mean trust that adds nothing to the logit of an offer. Our choice: the middle of the scale."""
@@ -53,7 +53,7 @@ def decide_answer(human: HumanContext, offer: Offer, relevant: bool = True) -> A
     if human.listener is not None:
         data: dict[str, Any] = {**{name: round(part, 4) for name, part in parts.items()}, "share": round(share, 4)}
         data |= {"message": offer.number, "relevant": relevant, "slipped": slipped, "answer": answer}
-        human.listener(Event(tick=human.now.tick, seat=HUMAN, kind="weighed", data=data))
+        human.listener(Event(tick=human.now.tick, seat=human.task.seat, kind="weighed", data=data))
     return answer
 
 

@@ -7,7 +7,7 @@ from hthor import seeds
 from hthor.humans.core.policy import Policy
 from hthor.humans.population.parameters import Parameters
 from hthor.navigation.path_follower import face
-from hthor.types import HUMAN, Briefing, Event, Motion, Observation, Rotate, Vec2, Vec3, Wait
+from hthor.types import Briefing, Event, Motion, Observation, Rotate, Vec2, Vec3, Wait
 
 Behaviour = Generator[Motion, None, bool]
 """An activity, one motion after the other; it returns whether it succeeded."""
@@ -46,7 +46,7 @@ class HumanContext:
 
     def record(self, kind: str, **data: Any) -> Event:
         """Append an event to the journal under the current tick, and return it, so that its outcome can be added."""
-        self.journal.append(Event(tick=self.now.tick, seat=HUMAN, kind=kind, data=data))
+        self.journal.append(Event(tick=self.now.tick, seat=self.task.seat, kind=kind, data=data))
         return self.journal[-1]
 
     @property

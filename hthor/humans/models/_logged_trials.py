@@ -31,8 +31,9 @@ _HINT = "Give a run folder or its trials.jsonl, as in --humans replay:runs/oracl
 
 
 class LoggedTrial(Struct, frozen=True, kw_only=True):
-    """One trial of a log; other fields of its line are ignored."""
+    """One trial of a log and the ``seat`` of the participant in it; other fields of its line are ignored."""
 
+    seat: str = HUMAN
     spec: TrialSpec
     ticks: int
     ratings: dict[str, int | None]
@@ -49,39 +50,48 @@ class LoggedTrial(Struct, frozen=True, kw_only=True):
 
     def begins_at(self, pose: Pose) -> bool:
         """Whether the participant stood at ``pose`` when this trial began."""
-        start = self.spec.task.human_start
-        return math.dist((start.x, start.y), (pose.x, pose.y)) < _START_M
+        x, y, _ = self.paths[self.seat][0]
+        return math.dist((x / _MILLI, y / _MILLI), (pose.x, pose.y)) < _START_M
 
     def hand_actions(self) -> Iterator[tuple[int, Motion]]:
         """The actions of the hands, each with the tick at which it took effect."""
         for event in self.events:
-            if event.seat == HUMAN and event.kind in _HAND_ACTIONS:
-                yield event.tick, _where(_HAND_ACTIONS[event.kind](event.data), event.tick, self.journal)
+            if event.seat == self.seat and event.kind in _HAND_ACTIONS:
+                yield event.tick, _where(_HAND_ACTIONS[event.kind](event.data), event.tick, self._own_journal)
 
     def answers(self) -> Iterator[tuple[int, bool]]:
         """The ticks of answers; True for an accepted message."""
         for event in self.events:
-            if event.seat == HUMAN and event.kind in ("accepted", "declined"):
+            if event.seat == self.seat and event.kind in ("accepted", "declined"):
                 yield event.tick, event.kind == "accepted"
+
+    @property
+    def rating(self) -> int | None:
+        """The participant's rating of the robots."""
+        return self.ratings[self.seat]
+
+    @property
+    def _own_journal(self) -> tuple[Event, ...]:
+        return tuple(event for event in self.journal if event.seat == self.seat)
 
     def poses(self) -> list[Pose]:
         """Pose of the head, every `rules.LOG_EVERY_TICKS` ticks."""
         pitch = self._pitch()
         return [
             Pose(x=x / _MILLI, y=y / _MILLI, yaw=yaw / _MILLI, pitch=pitch(k * rules.LOG_EVERY_TICKS))
-            for k, (x, y, yaw) in enumerate(self.paths[HUMAN])
+            for k, (x, y, yaw) in enumerate(self.paths[self.seat])
         ]
 
     def moving(self) -> Callable[[int], bool | None]:
         """Whether the stick was pushed at a tick; None if the log does not say."""
-        runs = next((event.data["runs"] for event in self.journal if event.kind == "stick"), None)
+        runs = next((event.data["runs"] for event in self._own_journal if event.kind == "stick"), None)
         if runs is None:
             return lambda _: None
         value = _steps(runs)
         return lambda tick: value(tick) > 0
 
     def _pitch(self) -> Callable[[int], float]:
-        runs = next((event.data["pitch"] for event in self.journal if event.kind == "head"), [0, 0])
+        runs = next((event.data["pitch"] for event in self._own_journal if event.kind == "head"), [0, 0])
         value = _steps(runs)
         return lambda tick: value(tick) / _MILLI
 
@@ -114,7 +124,9 @@ def _read(path: str) -> dict[int, list[LoggedTrial]]:
                 trial = decoder.decode(line)
         except documents.Unreadable as error:
             raise HthorError(f"{path}, line {number}: {error}. {_HINT}") from None
-        trials.setdefault(trial.spec.humans[0].participant, []).append(trial)
+        for human in trial.spec.humans:
+            own = msgspec.structs.replace(trial, seat=human.seat)
+            trials.setdefault(human.participant, []).append(own)
     if not trials:
         raise HthorError(f"{path} has no complete trial. {_HINT}")
     return {number: sorted(own, key=lambda trial: trial.spec.index) for number, own in trials.items()}

@@ -17,7 +17,7 @@ from hthor.humans.models._goal_arbitration import BEGIN, REST, SEARCH, Goal, Goa
 from hthor.humans.motor.locomotion import Walker
 from hthor.humans.perception.perception import GLIMPSE_TICKS, Eyes
 from hthor.humans.population.participant import Participant, with_practice
-from hthor.types import Action, Briefing, Event, Motion, Observation, Reply, Vec2, Wait
+from hthor.types import Action, Briefing, Event, Motion, Observation, Reply, Vec2, Wait, is_person
 
 _RESTARTS = 2
 """[count] Behaviours that may end without a motion in one decision. Our choice."""
@@ -90,7 +90,7 @@ class Model:
         traits = self.traits
         self._eyes.end()
         self.trials += 1
-        if not self._human.task.teammates:
+        if all(is_person(seat) for seat in self._human.task.teammates):
             return None
         self.trust = self.trust.after(self._dialogue.experience.signal(met, traits), traits)
         return self.trust.report(self._human.normal("report"), traits)

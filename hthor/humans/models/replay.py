@@ -7,8 +7,9 @@ rules apply, which no real person would follow:
 
 - A message that is shown at the tick of a logged answer gets that answer; if none is shown, the answer lapses. The
   content of messages changes nothing.
-- If a robot blocks the path, the replay stands and tries again every half second, and never goes around it. Afterwards
-  it catches up as fast as stick and body allow. Hand actions happen at their places, so they come later too.
+- If a robot or another person blocks the path, the replay stands and tries again every half second, and never goes
+  around them. Afterwards it catches up as fast as stick and body allow. Hand actions happen at their places, so they
+  come later too.
 - If anything else blocks the path (a door that was shut), that part of the path is skipped after three tries.
 - After the end of the log it stands still. The rating is the logged rating.
 """
@@ -25,7 +26,7 @@ from hthor.geometry.plane import turn, wrap
 from hthor.humans.models import _logged_trials
 from hthor.humans.models._logged_trials import LoggedTrial
 from hthor.humans.population.participant import Participant
-from hthor.types import HUMAN, Action, Briefing, Motion, Move, Observation, Pose, Reply, Rotate, Wait
+from hthor.types import Action, Briefing, Motion, Move, Observation, Pose, Reply, Rotate, Wait, is_person
 
 _EVERY = rules.LOG_EVERY_TICKS
 _THERE_M = 0.003
@@ -33,7 +34,7 @@ _THERE_M = 0.003
 _THERE_RAD = 0.003
 """[rad] Angle within which a logged direction is reached. Our choice: angles are logged to a milliradian."""
 _PAUSE_S = 0.5
-"""[s] Time between two tries while a robot blocks the path. Our choice."""
+"""[s] Time between two tries while another body blocks the path. Our choice."""
 _TRIES = 3
 """[count] Tries after which a blocked part of the path is skipped. Our choice."""
 _LAPSE_TICKS = 10
@@ -83,11 +84,15 @@ class Model:
     def rate(self, met: bool, tick: int) -> int | None:  # noqa: ARG002  the log has the answer
         """The logged rating."""
         self.trials += 1
-        return self._again.trial.ratings[HUMAN] if self._again is not None and self._brief.teammates else None
+        return self._again.trial.rating if self._again is not None and self._has_robots else None
 
     def state(self) -> dict[str, Any]:
         """The number of trials done."""
         return {"trials": self.trials}
+
+    @property
+    def _has_robots(self) -> bool:
+        return not all(is_person(seat) for seat in self._brief.teammates)
 
     def _find(self, observation: Observation) -> Reenactment:
         here = [one for one in self._fitting if one.begins_at(observation.pose)]
@@ -197,11 +202,11 @@ class Reenactment:
         return near and max(abs(wrap(goal.yaw - pose.yaw)), abs(goal.pitch - pose.pitch)) <= _THERE_RAD
 
     def _is_stuck(self, now: Observation) -> bool:
-        """Whether a robot blocks the path; other obstacles are skipped after some tries."""
+        """Whether another body blocks the path; other obstacles are skipped after some tries."""
         outcome = now.outcome
         if outcome is None or outcome.ok or outcome.motion != "move":
             return False
-        if outcome.by.startswith("robot"):
+        if outcome.by.startswith("robot") or is_person(outcome.by):
             return True
         self._tries += 1
         if self._tries >= _TRIES:

@@ -16,7 +16,7 @@ from hthor.humans.memory.object_memory import Forgetting, KnownObject, ObjectMem
 from hthor.humans.memory.spatial_memory import KnownPlace, SpatialMemory
 from hthor.humans.perception.detection_rate import Head, PlaceDetection, apparent_size, detection_rate, expected_size
 from hthor.humans.perception.exposure_log import ExposureLog, Glimpse
-from hthor.types import HUMAN, Detection, Event, Observation, Vec3
+from hthor.types import Detection, Event, Observation, Vec3
 
 GLIMPSE_TICKS = 3
 """[ticks] Time from one glimpse to the next. Our choice, after about three fixations a second."""
@@ -151,4 +151,4 @@ class Eyes:
         """Send an event to the listener."""
         if self.human.listener is not None:
             data = {"object": name} if seen is None else {"object": name, "position": list(seen.position)}
-            self.human.listener(Event(tick=self.at, seat=HUMAN, kind=what, data=data))
+            self.human.listener(Event(tick=self.at, seat=self.human.task.seat, kind=what, data=data))

@@ -10,7 +10,7 @@ from hthor.errors import HthorError
 from hthor.humans.core.policy import OptionDescription, Situation
 from hthor.humans.core.trial_context import HumanContext
 from hthor.humans.memory.spatial_memory import KnownDoorway, KnownPlace, SpatialMemory
-from hthor.types import HUMAN, Event, Vec2
+from hthor.types import Event, Vec2
 
 MAX_RECORDED = 12
 """[count] Options of one choice kept in the journal: the chosen one and a random sample. Our choice."""
@@ -125,7 +125,7 @@ def publish(
         for place in memory.places.values()
     ]
     data = {"aim": name, "ahead": round(ahead, 5), "places": places}
-    human.listener(Event(tick=tick, seat=HUMAN, kind="beliefs", data=data))
+    human.listener(Event(tick=tick, seat=human.task.seat, kind="beliefs", data=data))
     ranked = sorted(options, key=lambda option: (-option.value, option.name))
     data = {
         "aim": name,
@@ -134,7 +134,7 @@ def publish(
         "metres": [round(option.metres, 2) for option in ranked],
         "chosen": chosen.name,
     }
-    human.listener(Event(tick=tick, seat=HUMAN, kind="choice", data=data))
+    human.listener(Event(tick=tick, seat=human.task.seat, kind="choice", data=data))
 
 
 def _described(option: Option, knowledge: float, uniform: float) -> OptionDescription:
