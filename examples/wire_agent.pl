@@ -1,6 +1,6 @@
 #!/usr/bin/env perl
 # A robot's mind in Perl over the wire of docs/wire.md, without a library: hthor eval --agent "cmd:perl wire_agent.pl"
-# Goes ahead while the way is free, else turns.
+# Goes ahead while the way is free, else turns; answers "Where is the mug?" when it has seen one.
 use strict;
 use warnings;
 binmode STDIN;
@@ -9,7 +9,7 @@ $| = 1;
 
 sub pack_value {    # numbers that are to be numbers are given as references
     my ($value) = @_;
-    return pack('Cd>', 0xcb, $$value) if ref $value eq 'SCALAR';
+    return $$value =~ /^-?\d+$/ ? pack('Cq>', 0xd3, $$value) : pack('Cd>', 0xcb, $$value) if ref $value eq 'SCALAR';
     return pack('Cn', 0xde, scalar(keys %$value)) . join('', map { pack_value($_) . pack_value($value->{$_}) } sort keys %$value)
       if ref $value eq 'HASH';
     return pack('Cn', 0xdc, scalar @$value) . join('', map { pack_value($_) } @$value) if ref $value eq 'ARRAY';
@@ -53,12 +53,30 @@ sub hear {
     return unpack_value(\$body);
 }
 
-say_it({ type => 'ready', name => 'perl-agent' });
+sub ask { say_it({ type => 'ask', what => $_[0] }); return hear()->{value} }
+
+my %seen;    # by kind
+
+sub answer {    # to a question that names a thing by id or kind, or only in its words
+    for my $message (grep { $_->{question} } @{ $_[0] }) {
+        for my $thing (map { $seen{$_} } sort keys %seen) {
+            my ($object, $name) = ($message->{object}, $thing->{kind} =~ tr/_/ /r);
+            next unless $object ? $object eq $thing->{id} || $object eq $thing->{kind} : index(lc $message->{text}, $name) >= 0;
+            return { type => 'send', text => "I saw the $name there.", object => $thing->{id},
+                position => [map { \$_ } @{ $thing->{position} }], answers => \$message->{id} };
+        }
+    }
+    return;
+}
+
+say_it({ type => 'ready', wire => \2, name => 'perl-agent' });
 while ((my $message = hear())->{type} ne 'end') {
-    if ($message->{type} eq 'begin') { say_it({ type => 'done' }); next }
-    say_it({ type => 'ask', what => 'scan' });
-    my @ranges = unpack 'd<*', hear()->{value}{ranges}{d};
+    if ($message->{type} eq 'begin') { %seen = (); say_it({ type => 'done' }); next }
+    my @ranges = unpack 'd<*', ask('scan')->{ranges}{d};
     my $free = 1;
     $_ < 0.6 and $free = 0 for @ranges[@ranges / 3 .. 2 * @ranges / 3];
-    say_it({ type => 'acted', action => { motion => $free ? { type => 'move', forward => \0.3 } : { type => 'rotate', yaw => \0.7 } } });
+    $seen{ $_->{kind} } = $_ for @{ ask('detections') };
+    my $motion = $free ? { type => 'move', forward => \0.3 } : { type => 'rotate', yaw => \0.7 };
+    my $say = answer($message->{observation}{inbox});
+    say_it({ type => 'acted', action => { motion => $motion, ($say ? (say => $say) : ()) } });
 }

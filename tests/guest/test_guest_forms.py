@@ -24,6 +24,7 @@ from hthor.types import (
     Camera,
     Close,
     Detection,
+    Drive,
     Drop,
     Job,
     Message,
@@ -50,7 +51,7 @@ LEVELS = ("L1", "L2", "L3")
 
 RECORDS = (Briefing, BodySpec, Job, Observation, Outcome, Receipt, Message, ThingState, Detection, Scan, Camera, Pose)
 MESSAGES = (wire.Ready, wire.Begin, wire.Done, wire.Look, wire.Ask, wire.Given, wire.Acted, wire.Failed, wire.End)
-ACTIONS = (Action, Move, Rotate, Pick, Place, Drop, Open, Close, Wait, Send)
+ACTIONS = (Action, Move, Rotate, Pick, Place, Drop, Open, Close, Wait, Drive, Send)
 
 
 class Walled(Sensors):
@@ -169,6 +170,24 @@ def test_the_examples_of_the_wire_play(level: str, words: str, monkeypatch: pyte
             assert mind.act(look(1, Walled())).motion == Rotate(yaw=0.7)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("words", [f"{sys.executable} wire_agent.py", "perl wire_agent.pl"], ids=["python", "perl"])
+def test_the_examples_of_the_wire_answer_what_they_know(words: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(EXAMPLES)
+    by_kind = Message(id=3, sender="human2", tick=1, text="Where is it?", object="apple", to="robot", question=True)
+    in_words = structs.replace(by_kind, object="", text="Where is the APPLE, please?")
+    with Guest(f"cmd:{words}", config=GuestConfig(isolation="L1")) as mind:
+        mind.begin(BRIEFING)
+        for question in (by_kind, in_words):
+            action = mind.act(look(0, inbox=(question,)))
+            answer = Send(text="I saw the apple there.", object="apple", position=(1.0, 2.0, 0.8), answers=3)
+            assert (action.motion, action.say) == (Move(forward=0.3), answer)
+        mug = structs.replace(by_kind, object="mug", text="Where is the mug? Not the apple.")
+        no_question = structs.replace(by_kind, question=False)
+        said = mind.act(look(1, inbox=(mug, no_question), receipt=Receipt(message=0, status="sent", tick=0))).say
+        assert said is None
+
+
 @pytest.mark.parametrize("record", [*RECORDS, *MESSAGES, *ACTIONS])
 def test_the_page_of_the_wire_leaves_nothing_out(record: Any) -> None:
     page = (EXAMPLES.parent / "docs" / "wire.md").read_text()
@@ -189,7 +208,7 @@ def perl(tmp_path: Path) -> Callable[[str, str], str]:
         path.parent.mkdir(exist_ok=True)
         path.write_text(
             PERL
-            + f"my $looks = 0;\nsay_it({{ type => 'ready'{ready} }});\n"
+            + f"my $looks = 0;\nsay_it({{ type => 'ready', wire => \\2{ready} }});\n"
             + "while ((my $message = hear())->{type} ne 'end') {\n"
             + "  if ($message->{type} eq 'begin') { say_it({ type => 'done' }); next }\n"
             + f"  $looks += 1;\n  {act}\n"
@@ -265,10 +284,10 @@ def test_a_program_leaves_nothing_behind_where_it_may_fork(perl: Callable[..., s
 @pytest.mark.parametrize("persistent", [False, True])
 def test_a_program_has_a_process_a_trial_unless_it_says_otherwise(perl: Callable[..., str], persistent: bool) -> None:
     ended = "if ($message->{type} eq 'end') { next }"
-    text = perl("", ", persistent => \\1.0" * 0)
+    text = perl("")
     path = Path(text.split()[-1])
     if persistent:
-        source = path.read_text().replace("'ready' }", "'ready', persistent => 'YES' }")
+        source = path.read_text().replace("'ready', ", "'ready', persistent => 'YES', ")
         source = source.replace(
             "return pack('CN/a*', 0xdb, $value);", "return $value eq 'YES' ? \"\\xc3\" : pack('CN/a*', 0xdb, $value);"
         )

@@ -22,6 +22,7 @@ from hthor.eval.records import run_isolation
 from hthor.guest import Guest, GuestFault, IsolationError, Unreachable
 from hthor.guest.client import websocket_server
 from hthor.guest.protocol import wire
+from hthor.guest.protocol.versions import VERSION
 from hthor.types import Action, Move, Wait
 from tests.support.guest_agents import BRIEFING, HEAD, Sensors, agent, look
 
@@ -45,7 +46,7 @@ def lying(talk: Callable[[Any], None]) -> Iterator[str]:
 
     def handle(connection: Any) -> None:
         with contextlib.suppress(Exception):
-            connection.send(wire.encode(wire.Ready(name="liar")))
+            connection.send(wire.encode(wire.Ready(name="liar", wire=VERSION)))
             while True:
                 if b"begin" in connection.recv()[:20]:
                     connection.send(wire.encode(wire.Done()))
@@ -168,9 +169,8 @@ def test_a_server_that_never_listens_runs_out_of_time() -> None:
 @pytest.mark.slow
 def test_what_says_what_cannot_be_is_refused() -> None:
     for ready, told in (
-        (wire.Ready(privileges=("x_ray",)), "names? 'x_ray'. Valid: house_map"),
-        (wire.Ready(wire=7), "version 7 of the protocol"),
-        (wire.Ready(gpus=-1.0), "gpus must be"),
+        (wire.Ready(privileges=("x_ray",), wire=VERSION), "names? 'x_ray'. Valid: house_map"),
+        (wire.Ready(gpus=-1.0, wire=VERSION), "gpus must be"),
         (wire.Done(), "it said Done before"),
     ):
         made = server.serve(lambda connection, said=ready: connection.send(wire.encode(said)), "127.0.0.1", 0)
@@ -237,7 +237,7 @@ def test_a_flood_of_pings_comes_to_an_end(answers: bool) -> None:
 
     def flood(one: socket.socket) -> None:
         _handshake(one)
-        one.sendall(_message(wire.Ready(name="liar")))
+        one.sendall(_message(wire.Ready(name="liar", wire=VERSION)))
         one.recv(1 << 16)
         if answers:
             one.sendall(_message(wire.Done()))

@@ -43,7 +43,7 @@ def run_trial(
 
 def _act(pipe: HostConnection, agent: Any, look: wire.Look) -> wire.Acted | wire.Failed:
     observation, senses = look.observation, RemoteSenses(pipe, look.ahead)
-    inbox = tuple(_with_image(message, senses) for message in observation.inbox)
+    inbox = tuple(_with_image(message, senses) if message.image else message for message in observation.inbox)
     action = agent.act(msgspec.structs.replace(observation, senses=senses, inbox=inbox))
     senses.expire()
     if not isinstance(action, Action):

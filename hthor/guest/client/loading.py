@@ -15,7 +15,7 @@ from typing import Any
 
 from hthor.guest.agent import inputs
 from hthor.guest.agent.agent_paths import AgentPaths
-from hthor.guest.protocol import wire
+from hthor.guest.protocol import versions, wire
 
 _MODULE = "hthor_guest_agent"  # not the file's name, which could hide a module of the standard library
 
@@ -72,6 +72,7 @@ def load_agent(order: wire.Load) -> tuple[type[Any], wire.Ready]:
         doc=wire.sanitize_text(str(cls.__doc__ or module.__doc__ or "").strip())[: wire.TEXT_MAX],
         ahead=True,
         gpus=_gpus(cls, path),
+        wire=versions.VERSION,
     )
     try:
         inputs.convert_arguments(cls, order.args)

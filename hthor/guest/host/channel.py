@@ -49,6 +49,10 @@ class PeerGone(Exception):
     """The peer has closed the connection or ended."""
 
 
+class TrialStopped(Exception):
+    """The trial was ended by another thread while the agent still decided. Not a fault of the agent."""
+
+
 class Transport(Protocol):
     """Carries messages to a guest and back: a process's pipes, or a WebSocket."""
 
@@ -91,11 +95,12 @@ class MessageChannel:
         transport: None once the guest has ended.
         loaded: whether the agent is loaded; after that, a ``Failed`` message is a fault.
         opened: the files that the guest has reported as opened.
+        stopping: whether the host has ordered the supervisor to stop the trial.
     """
 
     def __init__(self) -> None:
         self.transport: Transport | None = None
-        self.loaded = False
+        self.loaded = self.stopping = False
         self.opened: set[str] = set()
         self._log = ""
 
@@ -152,8 +157,10 @@ class MessageChannel:
             raise self.fault(kind, message.detail, message.traceback)
         return message, max(0.0, end - time.monotonic())
 
-    def wrong(self, what: str, answer: object) -> GuestFault:
-        """End the guest, and return the fault for an unexpected message."""
+    def wrong(self, what: str, answer: object) -> GuestFault | TrialStopped:
+        """The error to raise for an unexpected message; a fault has ended the guest."""
+        if self.stopping and isinstance(answer, wire.Over):
+            return TrialStopped("the trial was ended while the agent still decided")
         if isinstance(answer, wire.Over):
             return self.fault("died", f"its process ended before it had answered {what}")
         return self.fault("garbage", f"{what} was answered by {type(answer).__name__}")

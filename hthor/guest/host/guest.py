@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import contextlib
+import threading
+from collections.abc import Iterator
 from pathlib import Path
 
 from hthor.guest.agent import agent_paths, reference
 from hthor.guest.confinement import AUTO, Isolation, paths
-from hthor.guest.host.channel import GuestFault, MessageChannel, explain_fault
+from hthor.guest.host.channel import GuestFault, MessageChannel, TrialStopped, explain_fault
 from hthor.guest.host.guest_pool import GuestPool
 from hthor.guest.host.info import GuestConfig, GuestInfo
 from hthor.guest.host.process import GuestProcess
@@ -44,7 +46,8 @@ def in_force(level: str = AUTO) -> Isolation:
 class Guest:
     """A submitted agent. Every trial gets a new agent object and, unless it is ``persistent``, a new process.
 
-    Not for use from several threads; on Linux the process ends with the thread that started it.
+    Any thread may call it. Calls wait for each other, but `finish`, `begin` and `close` do not wait for an ``act`` in
+    another thread: they end its trial at once, unless the agent is ``persistent``, which must complete its step.
 
     Args:
         path: the agent, as `reference.parse_reference` reads it: a file, a module, a command or an address.
@@ -77,7 +80,7 @@ class Guest:
         memory_mb: int = 4096,
         disk_mb: int = 256,
     ) -> None:
-        self._pinned, self._channel = False, MessageChannel()
+        self._pinned, self._channel, self._lock = False, MessageChannel(), threading.RLock()
         config = config or GuestConfig()
         self.inputs = config.inputs
         self.reference = reference.parse_reference(str(path), cls)
@@ -105,71 +108,59 @@ class Guest:
             AgentError: when its file is missing, does not compile, cannot be imported in time, or has no agent class.
             IsolationError: when the requested level does not start.
         """
-        if self._channel.transport is None or self._info is None:
-            self._info = None
-            with cpu_affinity.unpinned():
-                self._info = self._startup.start()
-        return self._info
+        with self._lock:
+            if self._channel.transport is None or self._info is None:
+                self._info = None
+                with cpu_affinity.unpinned():
+                    self._info = self._startup.start()
+            return self._info
 
     def begin(self, briefing: Briefing) -> None:
         """Start a trial with a new agent.
 
         Raises:
             GuestFault: when the agent fails, or its server is gone. AgentError: when it cannot be loaded.
+            TrialStopped: when another thread ends the trial.
         """
-        self.finish()
-        if self._ending:
-            self._await_end()
-        channel = self._channel
-        try:
-            self.load()
-        except Unreachable as error:
-            raise GuestFault("died", str(error)) from None
-        process = self._process
-        self._pinned = process is not None and process.pin()
-        window = process.frames if process else None
-        exchange = TrialExchange(
-            channel, step_s=self._step_s, bank_s=self._bank_s, ahead=self._startup.ahead, window=window
-        )
-        channel.send(wire.Begin(briefing=briefing), self._start_s)
-        try:
-            answer, left = channel.receive(self._start_s)
-        except GuestFault as fault:
-            raise self._explained(fault) from None
-        if isinstance(answer, wire.Ready) and self.reference.words:  # a program sends Ready whenever it is started
-            answer, _ = channel.receive(left, f"{self._start_s:g} s")
-        if not isinstance(answer, wire.Done):
-            raise channel.wrong("begin", answer)
-        self._exchange = exchange
+        with self._sole_use():
+            self._end_trial()
+            try:
+                self.load()
+            except Unreachable as error:
+                raise GuestFault("died", str(error)) from None
+            try:
+                self._exchange = self._begin(briefing)
+            except (GuestFault, TrialStopped) as error:
+                raise self._ended(error) from None
 
     def act(self, observation: Observation) -> Action:
         """The agent's action.
 
         Raises:
             GuestFault: when it raises, hangs, dies, or sends an invalid action; its process has then ended.
+            TrialStopped: when another thread ends the trial.
         """
-        if self._exchange is None or self._channel.transport is None:
-            raise GuestFault("died", "the agent has no trial: begin was not called, or it failed before")
-        try:
-            return self._exchange.act(observation)
-        except GuestFault as fault:
-            raise self._explained(fault) from None
+        with self._lock:
+            if self._exchange is None or self._channel.transport is None:
+                raise GuestFault("died", "the agent has no trial: begin was not called, or it failed before")
+            if self._pinned and not cpu_affinity.is_main_thread():
+                self._part()
+            try:
+                return self._exchange.act(observation)
+            except (GuestFault, TrialStopped) as error:
+                raise self._ended(error) from None
 
     def finish(self) -> None:
         """End the trial; its process ends in the background. Calling this is optional."""
-        self._unpin()
-        exchange, self._exchange = self._exchange, None
-        if exchange is not None and self._channel.transport is not None:
-            exchange.end()
-            self._ending = self._info is not None and not self._info.persistent
+        with self._sole_use():
+            self._start_end()
 
     def close(self) -> None:
         """End the process, or leave it idle in the pool; a later ``begin`` starts another."""
-        self.finish()
-        if self._ending:
-            self._await_end()
-        if self._info is None or not self._startup.leave_idle(self._info):
-            self._channel.close()
+        with self._sole_use():
+            self._end_trial()
+            if self._info is None or not self._startup.leave_idle(self._info):
+                self._channel.close()
 
     def take_opened(self) -> tuple[str, ...]:
         """The agent's own files that it has reported as opened since the last call, by their names in the manifest."""
@@ -199,23 +190,75 @@ class Guest:
                 self._unpin()
                 self._channel.close()
 
-    def _explained(self, fault: GuestFault) -> GuestFault:
-        """The fault, with an explanation if isolation caused it."""
-        policy = self._startup.policy
-        return explain_fault(fault, policy, self.reference.root) if policy else fault
+    def _begin(self, briefing: Briefing) -> TrialExchange:
+        channel, process = self._channel, self._process
+        self._pinned = process is not None and process.pin()
+        window = process.frames if process else None
+        exchange = TrialExchange(
+            channel, step_s=self._step_s, bank_s=self._bank_s, ahead=self._startup.ahead, window=window
+        )
+        channel.send(wire.Begin(briefing=briefing), self._start_s)
+        answer, left = channel.receive(self._start_s)
+        if isinstance(answer, wire.Ready) and self.reference.words:  # a program sends Ready whenever it is started
+            answer, _ = channel.receive(left, f"{self._start_s:g} s")
+        if not isinstance(answer, wire.Done):
+            raise channel.wrong("begin", answer)
+        return exchange
+
+    def _ended(self, error: GuestFault | TrialStopped) -> GuestFault | TrialStopped:
+        """The error to raise after a trial has ended too early; a fault that isolation caused gets an explanation."""
+        if isinstance(error, GuestFault):
+            policy = self._startup.policy
+            return explain_fault(error, policy, self.reference.root) if policy else error
+        self._exchange = None
+        if self._process is not None:
+            self._process.next_trial()
+        return error
+
+    @contextlib.contextmanager
+    def _sole_use(self) -> Iterator[None]:
+        """Keep other threads out. If one of them is in the middle of a trial, that trial ends first."""
+        if not self._lock.acquire(blocking=False):
+            if self._process is not None and self._info is not None and not self._info.persistent:
+                self._channel.stopping = True
+                self._process.stop_trial()
+            self._lock.acquire()
+        try:
+            self._channel.stopping = False
+            yield
+        finally:
+            self._lock.release()
 
     @property
     def _process(self) -> GuestProcess | None:
         return self._channel.transport if isinstance(self._channel.transport, GuestProcess) else None
 
     def _unpin(self) -> None:
-        """Let this thread run on any CPU again."""
+        """Let the main thread run on any CPU again."""
         if self._pinned:
             self._pinned = False
             cpu_affinity.unpin_thread()
 
-    def _await_end(self) -> None:
-        """Wait until the last trial's process has ended; if it does not, end it with its supervisor."""
+    def _part(self) -> None:
+        """The trial was begun in the main thread, but goes on in this thread: share no CPU."""
+        self._unpin()
+        cpu_affinity.free_thread()
+        if self._process is not None:
+            self._process.unpin()
+
+    def _start_end(self) -> None:
+        """Tell the guest that the trial is over."""
+        self._unpin()
+        exchange, self._exchange = self._exchange, None
+        if exchange is not None and self._channel.transport is not None:
+            exchange.end()
+            self._ending = self._info is not None and not self._info.persistent
+
+    def _end_trial(self) -> None:
+        """End the trial, and wait until its process has ended; if it does not, end it with its supervisor."""
+        self._start_end()
+        if not self._ending:
+            return
         self._ending = False
         with contextlib.suppress(GuestFault):
             answer, _ = self._channel.receive(self._step_s)

@@ -4,6 +4,7 @@ Starting a process takes longer than many trials. An idle process is reused only
 only if each trial gets its own process anyway, so that nothing is carried over.
 """
 
+import threading
 import weakref
 
 from msgspec import Struct
@@ -25,7 +26,7 @@ class IdleGuest(Struct, frozen=True, kw_only=True):
 
 
 class GuestPool:
-    """Idle guests of one owner, ``most`` at most; they end with the pool.
+    """Idle guests of one owner, ``most`` at most; they end with the pool. Several threads may use it.
 
     ``unavailable`` maps levels of isolation that did not start to the reason; they are not tried again.
     """
@@ -34,6 +35,7 @@ class GuestPool:
         self.unavailable: dict[str, str] = {}
         self._most = most
         self._idle: list[tuple[Key, IdleGuest]] = []
+        self._lock = threading.Lock()
         weakref.finalize(self, _end, self._idle)
 
     def put(self, key: Key, guest: IdleGuest) -> bool:
@@ -41,17 +43,19 @@ class GuestPool:
         if not self._most or guest.info.persistent or not guest.process.lives:
             return False
         guest.process.count_cpu()
-        self._idle.append((key, guest))
-        _end(self._idle, self._most)
+        with self._lock:
+            self._idle.append((key, guest))
+            _end(self._idle, self._most)
         return True
 
     def take(self, key: Key) -> IdleGuest | None:
         """An idle guest with exactly this key, if there is one."""
-        for place in [place for place in self._idle if place[0] == key]:
-            self._idle.remove(place)
-            if place[1].process.lives:
-                return place[1]
-            place[1].process.kill()
+        with self._lock:
+            for place in [place for place in self._idle if place[0] == key]:
+                self._idle.remove(place)
+                if place[1].process.lives:
+                    return place[1]
+                place[1].process.kill()
         return None
 
     def pids(self) -> list[int]:
@@ -60,8 +64,9 @@ class GuestPool:
 
     def close(self) -> None:
         """End all idle guests, and keep none from now on."""
-        self._most = 0
-        _end(self._idle)
+        with self._lock:
+            self._most = 0
+            _end(self._idle)
 
 
 def _end(idle: list[tuple[Key, IdleGuest]], most: int = 0) -> None:

@@ -11,7 +11,7 @@ from hthor.guest.agent.inputs import AgentInputs
 from hthor.guest.agent.manifest import File
 from hthor.guest.agent.reference import AgentReference
 from hthor.guest.confinement import AUTO, Isolation, check_level
-from hthor.guest.protocol import wire
+from hthor.guest.protocol import versions, wire
 from hthor.guest.protocol.wire import is_printable_name, sanitize_text
 
 
@@ -67,14 +67,12 @@ def make_info(reference: AgentReference, sha256: str, ready: wire.Ready, held: I
     Raises:
         AgentError: when its description of itself is invalid.
     """
+    if problem := versions.describe_mismatch(ready.wire, served=bool(reference.url)):
+        raise AgentError(f"{reference.text}: {problem}")
     unknown = [name for name in ready.privileges if name not in wire.PRIVILEGES]
     if unknown:
         valid = ", ".join(wire.PRIVILEGES)
         raise AgentError(f"{reference.text}: its privileges name '{sanitize_text(unknown[0][:80])}'. Valid: {valid}.")
-    if ready.wire != wire.VERSION:
-        raise AgentError(
-            f"{reference.text}: it uses version {ready.wire} of the protocol, but this hthor uses {wire.VERSION}."
-        )
     if not math.isfinite(ready.gpus) or ready.gpus < 0:
         raise AgentError(f"{reference.text}: gpus must be a number from 0 on, got {ready.gpus}.")
     for name in (ready.name, *ready.robots):

@@ -9,14 +9,15 @@ import socket
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 from collections.abc import Mapping
 
 from hthor.guest.agent.reference import AgentReference
 from hthor.guest.confinement import Policy, limits, namespaces, paths
 from hthor.guest.host.channel import DeadlinePassed, PeerGone
-from hthor.guest.process_tools import cleanup, cpu_affinity, resource_usage
-from hthor.guest.protocol import wire
+from hthor.guest.process_tools import cleanup, cpu_affinity, lasting_thread, resource_usage
+from hthor.guest.protocol import trial_orders, wire
 from hthor.guest.protocol.shared_frames import FrameWriter
 from hthor.guest.protocol.trial_channel import HostEnds
 from hthor.guest.protocol.wire import sanitize_text
@@ -44,6 +45,7 @@ class GuestProcess:
     def __init__(self, policy: Policy, folder: str) -> None:
         self.policy, self._folder = policy, folder
         self._log = b""
+        self._orders = threading.Lock()  # held while the supervisor's socket is written to or closed
         limits.make_undumpable()
         self._socket, tell = socket.socketpair()
         self._supervisor = self._socket.fileno()
@@ -57,15 +59,17 @@ class GuestProcess:
         if spaces:
             words = namespaces.bwrap_command(policy, words)
         try:
-            self._process = subprocess.Popen(
-                words,
-                stdin=subprocess.DEVNULL,
-                stdout=printed,
-                stderr=printed,
-                pass_fds=(tell.fileno(),),
-                cwd="/",
-                env=_environment(os.environ, policy),
-                start_new_session=True,
+            self._process = lasting_thread.run_in_lasting_thread(
+                lambda: subprocess.Popen(
+                    words,
+                    stdin=subprocess.DEVNULL,
+                    stdout=printed,
+                    stderr=printed,
+                    pass_fds=(tell.fileno(),),
+                    cwd="/",
+                    env=_environment(os.environ, policy),
+                    start_new_session=True,
+                )
             )
         except OSError:
             self._close()
@@ -99,13 +103,29 @@ class GuestProcess:
         return self._process.pid
 
     def pin(self) -> bool:
-        """Run the trial that begins on this thread's CPU; False if that is impossible. `unpin_thread` undoes it."""
+        """Run the trial that begins on the main thread's CPU; False if that is impossible, and in other threads.
+
+        `cpu_affinity.unpin_thread` and `unpin` undo it.
+        """
         if self.policy.level == "L1":  # there an agent may start processes of its own
             return False
         if (cpu := cpu_affinity.pin_thread()) < 0:
             return False
-        cpu_affinity.send_cpu(self._supervisor, cpu)
+        self._order(cpu)
         return True
+
+    def unpin(self) -> None:
+        """Let the trial's process run on every CPU again."""
+        self._order(trial_orders.ANYWHERE)
+
+    def stop_trial(self) -> None:
+        """End the process of the current trial, from any thread; the supervisor answers that the trial is over."""
+        self._order(trial_orders.STOP)
+
+    def _order(self, order: int) -> None:
+        with self._orders:
+            if self._socket.fileno() >= 0:  # else it is closed, and its number may be another file's
+                trial_orders.send_order(self._supervisor, order)
 
     def write(self, body: bytes, end: float) -> None:
         """As `Transport` says."""
@@ -214,7 +234,8 @@ class GuestProcess:
         self._close()
 
     def _close(self) -> None:
-        self._socket.close()
+        with self._orders:
+            self._socket.close()
         os.close(self._err)
         self._ends.close()
         remove_folder(self._folder)

@@ -47,7 +47,10 @@ class TrialExchange:
             GuestFault: when it sends no valid action.
         """
         channel, read_ahead = self._channel, self._read_ahead
-        slim = tuple(msgspec.structs.replace(message, image=None) for message in observation.inbox)
+        slim = tuple(
+            msgspec.structs.replace(message, image=None if message.image is None else True)
+            for message in observation.inbox
+        )
         bare = msgspec.structs.replace(observation, senses=None, inbox=slim)
         ahead = self._sensed(read_ahead.ahead, observation) if read_ahead else {}
         if self._window is not None:

@@ -1,7 +1,8 @@
-"""Keeps an evaluation and its guest on one CPU.
+"""Keeps an evaluation and its guest on one CPU while they take turns.
 
 One of the two always waits. On a separate CPU it would fall asleep between two steps, and waking it takes longer than
-everything else in a step. A guest with several threads is left alone, since they may run in parallel.
+everything else in a step. Only the main thread shares its CPU: an evaluation that asks its guests in other threads goes
+on meanwhile. A guest with several threads is left alone too, since they may run in parallel.
 """
 
 import contextlib
@@ -11,66 +12,69 @@ import sys
 import threading
 from collections.abc import Iterator
 
-_BYTES = 2
 
-
-class _Here(threading.local):
-    """State of one thread of an evaluation: for how many guests it is pinned, and the CPUs it could use before."""
+class _Main:
+    """State of the main thread: for how many guests it is pinned, and the CPUs it could use before."""
 
     guests = 0
     before: frozenset[int] = frozenset()
 
 
-_here = _Here()
+_lock = threading.Lock()
+
+
+def is_main_thread() -> bool:
+    """Whether the caller is the main thread."""
+    return threading.current_thread() is threading.main_thread()
 
 
 def pin_thread() -> int:
-    """Keep this thread on its current CPU until `unpin_thread` is called as often; returns the CPU, -1 on failure."""
-    if sys.platform != "linux":
+    """Keep the main thread on its current CPU until `unpin_thread` is called as often.
+
+    Returns:
+        the CPU; -1 if that is impossible, and in any other thread.
+    """
+    if sys.platform != "linux" or not is_main_thread():
         return -1
-    if not _here.guests:
-        try:
-            cpu = int(ctypes.CDLL(None).sched_getcpu())
-            _here.before = frozenset(os.sched_getaffinity(0))
-            os.sched_setaffinity(0, {cpu})
-        except (OSError, AttributeError):
-            return -1
-    _here.guests += 1
-    return min(os.sched_getaffinity(0))
+    with _lock:
+        if not _Main.guests:
+            try:
+                cpu = int(ctypes.CDLL(None).sched_getcpu())
+                _Main.before = frozenset(os.sched_getaffinity(0))
+                os.sched_setaffinity(0, {cpu})
+            except (OSError, AttributeError):
+                return -1
+        _Main.guests += 1
+        return min(os.sched_getaffinity(0))
 
 
 def unpin_thread() -> None:
-    """Undo one call of `pin_thread`."""
-    if _here.guests:
-        _here.guests -= 1
-        if not _here.guests:
-            _move(0, _here.before)
+    """Undo one call of `pin_thread`, from any thread."""
+    with _lock:
+        if _Main.guests:
+            _Main.guests -= 1
+            if not _Main.guests:
+                _move(os.getpid(), _Main.before)
+
+
+def free_thread() -> None:
+    """Let this thread run on every CPU, even if the main thread was pinned when it started this thread."""
+    if _Main.before:
+        _move(0, _Main.before)
 
 
 @contextlib.contextmanager
 def unpinned() -> Iterator[None]:
-    """Let processes that are started in this context run on every CPU that this thread may use when not pinned."""
-    if not _here.guests:
+    """Let processes that are started in this context run on every CPU that the main thread may use when not pinned."""
+    if not _Main.guests:
         yield
         return
     now = frozenset(os.sched_getaffinity(0))
-    _move(0, _here.before)
+    _move(0, _Main.before)
     try:
         yield
     finally:
         _move(0, now)
-
-
-def send_cpu(handle: int, cpu: int) -> None:
-    """Tell a guest's supervisor which CPU the evaluation is pinned to."""
-    with contextlib.suppress(OSError):  # it has ended, which is noticed elsewhere
-        os.write(handle, cpu.to_bytes(_BYTES, "little"))
-
-
-def receive_cpu(handle: int) -> int:
-    """The CPU that `send_cpu` sent; -1 when the socket is closed."""
-    said = os.read(handle, _BYTES)
-    return int.from_bytes(said, "little") if len(said) == _BYTES else -1
 
 
 class PinnedProcess:
@@ -83,10 +87,14 @@ class PinnedProcess:
 
     def release_if_threaded(self) -> None:
         """Let it run on every CPU again if it now has several threads."""
-        if self._near and len(threads := self._threads()) > 1:
-            self._near = False
-            for thread in threads:
-                _move(thread, self._before)
+        if self._near and len(self._threads()) > 1:
+            self.release()
+
+    def release(self) -> None:
+        """Let it run on every CPU again."""
+        self._near = False
+        for thread in self._threads():
+            _move(thread, self._before)
 
     def _threads(self) -> list[int]:
         with contextlib.suppress(OSError):

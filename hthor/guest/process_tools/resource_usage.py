@@ -6,6 +6,7 @@ therefore read just before the end.
 
 import contextlib
 import os
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -18,6 +19,8 @@ class _Total:
     """Processor time over the life of this process [s], like `os.times`."""
 
     uncollected = 0.0
+    lock = threading.RLock()
+    """Held while it changes: `os.times` counts the ended children of all threads together."""
 
 
 def uncollected_cpu_s() -> float:
@@ -37,16 +40,18 @@ class CpuMeter:
     def count(self) -> None:
         """Add the time that the guest has used since the last call."""
         now = cpu_s(self._pid)
-        _Total.uncollected += max(0.0, now - self._counted_s)
+        with _Total.lock:
+            _Total.uncollected += max(0.0, now - self._counted_s)
         self._counted_s = max(now, self._counted_s)
 
     @contextmanager
     def ending(self) -> Iterator[None]:
         """Context in which the guest is ended: counts the time that `os.times` will not count."""
-        self.count()
-        before = _collected_s()
-        yield
-        _Total.uncollected -= min(self._counted_s, _collected_s() - before)
+        with _Total.lock:
+            self.count()
+            before = _collected_s()
+            yield
+            _Total.uncollected -= min(self._counted_s, _collected_s() - before)
 
 
 def cpu_s(pid: int) -> float:

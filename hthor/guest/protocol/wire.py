@@ -15,6 +15,7 @@ from hthor.errors import KILLED
 from hthor.guest.agent.agent_paths import AgentPaths
 from hthor.guest.agent.manifest import File
 from hthor.guest.confinement import Policy
+from hthor.guest.protocol import versions
 from hthor.types import Action, Briefing, Observation
 
 MOST_BYTES = 64 << 10
@@ -27,8 +28,6 @@ TEXT_MAX = 8000
 """Longest description of an agent or of a failure, in characters."""
 PRIVILEGES = ("house_map", "ideal_detector", "object_poses")
 """Privileges that an agent may declare to get more information than its robot senses."""
-VERSION = 1
-"""Version of this protocol; guests with another version are refused."""
 FAULTS = ("raised", "timeout", "died", KILLED, "memory", "disk", "garbage", "wrong_type", "oversized", "not_finite")
 """Kinds of failure during a trial."""
 OWN_FAULTS = ("raised", "wrong_type", "garbage", "oversized")
@@ -75,6 +74,8 @@ class Begin(Struct, tag="begin", frozen=True, kw_only=True):
 class Look(Struct, tag="look", frozen=True, kw_only=True):
     """Host: act. The observation lacks its ``senses`` and its messages' images, which the guest can request.
 
+    A message's ``image`` is true if there is one.
+
     ``ahead`` holds the sensor data that the guest has read in both of its last two steps, if it accepts that.
     """
 
@@ -105,7 +106,7 @@ class Ready(Struct, tag="ready", frozen=True, kw_only=True):
 
     ``version`` distinguishes versions of a served agent; ``ahead`` says that it accepts sensor data before it asks;
     ``gpus`` is the share of a GPU it needs; ``files`` are its own files that it has opened, relative to its folder;
-    ``manifest`` lists the files of a served agent, as its server reports them.
+    ``manifest`` lists the files of a served agent, as its server reports them; ``wire`` is the version of the protocol.
     """
 
     name: str = ""
@@ -119,7 +120,7 @@ class Ready(Struct, tag="ready", frozen=True, kw_only=True):
     gpus: float = 0.0
     files: tuple[str, ...] = ()
     manifest: tuple[File, ...] = ()
-    wire: int = VERSION
+    wire: int = versions.UNSTATED
 
 
 class Done(Struct, tag="done", frozen=True, kw_only=True):
@@ -226,10 +227,11 @@ def find_action_fault(action: Action) -> tuple[str, str] | None:
         for name in part.__struct_fields__:
             value = getattr(part, name)
             field = f"{type(part).__name__}.{name}"
-            numbers = value if isinstance(value, tuple) else (value,)
-            if any(isinstance(number, float) and not math.isfinite(number) for number in numbers):
+            values = value if isinstance(value, tuple) else (value,)
+            numbers = [number for number in values if isinstance(number, (float, int))]
+            if not all(math.isfinite(number) for number in numbers):
                 return "not_finite", f"{field} must be finite, got {value}"
-            if any(isinstance(number, float) and abs(number) > NUMBER_MAX for number in numbers):
+            if any(abs(number) > NUMBER_MAX for number in numbers):
                 return "garbage", f"{field} must lie within {NUMBER_MAX:g} of zero, got {value}"
             if isinstance(value, str) and name != "text" and len(value) > NAME_MAX:
                 return "oversized", f"{field} has {len(value)} characters, at most {NAME_MAX} are taken"

@@ -10,7 +10,7 @@ from hthor.guest.client import trial_process
 from hthor.guest.confinement import Policy, limits
 from hthor.guest.confinement.landlock import Ruleset
 from hthor.guest.process_tools import cleanup, cpu_affinity
-from hthor.guest.protocol import trial_channel, wire
+from hthor.guest.protocol import trial_channel, trial_orders, wire
 from hthor.guest.protocol.trial_channel import GuestEnds
 
 _LOOK_MS = 50
@@ -81,40 +81,48 @@ def _forked(
 
 
 def watch_trial(pid: int, order: wire.Load, tell: int) -> wire.SupervisorToHost:
-    """Wait for a trial's process to end, or end it when it exceeds a limit; returns the message to the host.
+    """Wait for a trial's process to end, or end it at a limit or by order; returns the message to the host.
 
-    During the wait, the host may send the number of the CPU on which it waits through the socket ``tell``.
+    During the wait, the host may send orders through the socket ``tell``.
     """
     policy = order.policy
-    found = _excess(pid, policy, tell) if hasattr(os, "pidfd_open") else None
-    if found:
+    reason = _reason_to_end(pid, policy, tell) if hasattr(os, "pidfd_open") else None
+    if reason:
         os.kill(pid, signal.SIGKILL)
     _, status = os.waitpid(pid, 0)
     if policy.level == "L1":
         cleanup.end_descendants(os.getpid())
     code = os.waitstatus_to_exitcode(status)
-    if found:
-        return wire.Failed(kind=found[0], detail=found[1])
+    if reason:
+        return reason
     if code == trial_process.COMPLETED or (bool(order.words) and code == 0):
         return wire.Over()
     kind, words = cleanup.describe_exit(code)
     return wire.Failed(kind=kind, detail=f"the agent's process {'was ' * (code < 0)}{words}")
 
 
-def _excess(pid: int, policy: Policy, tell: int) -> tuple[str, str] | None:
-    """The limit that a process exceeds, as a fault's kind and detail; None when the process ends first."""
-    ended, joined, found = os.pidfd_open(pid), None, None
+def _reason_to_end(pid: int, policy: Policy, tell: int) -> wire.SupervisorToHost | None:
+    """What to tell the host when a process exceeds a limit or is to stop; None when the process ends first."""
+    ended, joined = os.pidfd_open(pid), None
+    reason: wire.SupervisorToHost | None = None
     poll = select.poll()
     for handle in (ended, tell):
         poll.register(handle, select.POLLIN)
-    while found is None and ended not in (ready := [handle for handle, _ in poll.poll(_LOOK_MS)]):
+    while reason is None and ended not in (ready := [handle for handle, _ in poll.poll(_LOOK_MS)]):
         if not ready:
-            found = limits.find_excess(pid, policy.scratch, policy.memory_mb, policy.disk_mb)
+            if found := limits.find_excess(pid, policy.scratch, policy.memory_mb, policy.disk_mb):
+                reason = wire.Failed(kind=found[0], detail=found[1])
             if joined:
                 joined.release_if_threaded()
-        elif (cpu := cpu_affinity.receive_cpu(tell)) >= 0:
-            joined = cpu_affinity.PinnedProcess(pid, cpu)
-        else:
+            continue
+        told = trial_orders.receive_order(tell)
+        if told == trial_orders.CLOSED:
             poll.unregister(tell)
+        elif told == trial_orders.STOP:
+            reason = wire.Over()
+        elif told != trial_orders.ANYWHERE:
+            joined = cpu_affinity.PinnedProcess(pid, told)
+        elif joined:
+            joined.release()
     os.close(ended)
-    return found
+    return reason
