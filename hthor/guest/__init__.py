@@ -19,7 +19,7 @@ from hthor.guest.agent.inputs import AgentInputs
 from hthor.guest.agent.manifest import File, Manifest
 from hthor.guest.agent.reference import AgentReference, is_served
 from hthor.guest.confinement import SERVED, Isolation, IsolationError, suffices
-from hthor.guest.host.channel import GuestFault
+from hthor.guest.host.channel import GuestFault, TrialStopped
 from hthor.guest.host.guest import Guest, in_force, load_info
 from hthor.guest.host.guest_pool import GuestPool
 from hthor.guest.host.info import GuestConfig, GuestInfo
@@ -40,6 +40,7 @@ __all__ = [
     "Isolation",
     "IsolationError",
     "Manifest",
+    "TrialStopped",
     "Unreachable",
     "in_force",
     "is_served",
