@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from hthor.agents.skills.knowledge import PAPER_KINDS
 from hthor.agents.skills.message_timing import APART_M, ASIDE_M, MessageTiming, find_detection, sighting_text
-from hthor.types import HUMAN, Action, Briefing, Detection, Motion, Observation, Send, Wait
+from hthor.types import Action, Briefing, Detection, Motion, Observation, Send, Wait, is_person
 
 if TYPE_CHECKING:
     from hthor.agents.skills.explorer import Explorer
@@ -64,7 +64,7 @@ class Agent:
 
     def _say(self, observation: Observation, seen: Detection | None) -> Send | None:
         """A message, when the target is in view, the person does not hold it, and a message is due."""
-        if seen is None or seen.held_by == HUMAN or not self.timing.due(observation.tick, observation.receipt):
+        if seen is None or is_person(seen.held_by) or not self.timing.due(observation.tick, observation.receipt):
             return None
         self.timing.note(observation.tick)
         return Send(text=sighting_text(seen, self.kinds), object=seen.id, position=seen.position)
@@ -76,7 +76,7 @@ class Agent:
         assert self.target is not None
         pose, (x, y, _) = observation.pose, self.target.position
         follower, body = self.explorer.follower, self.briefing.body
-        speaking = self.target.held_by != HUMAN and self.timing.due(observation.tick, observation.receipt)
+        speaking = not is_person(self.target.held_by) and self.timing.due(observation.tick, observation.receipt)
         if self.stands_aside and speaking:
             self.stands_aside = False
             follower.take(self.explorer.planner.path((pose.x, pose.y), (x, y), within=APART_M))

@@ -1,10 +1,10 @@
-"""Turns a path into motions of a body, and makes room for the person."""
+"""Turns a path into motions of a body, and makes room for people."""
 
 import math
 from collections.abc import Callable, Sequence
 
 from hthor.geometry.plane import turn, wrap
-from hthor.types import HUMAN, BodySpec, Detection, Motion, Move, Observation, Pose, Rotate, Vec2, Vec3, Wait
+from hthor.types import BodySpec, Detection, Motion, Move, Observation, Pose, Rotate, Vec2, Vec3, Wait, is_person
 
 TURN_RAD = math.radians(25.0)
 """[rad] Heading error above which a body turns before it moves."""
@@ -96,7 +96,7 @@ def face(pose: Pose, point: Vec3, eye_height: float, pitch_limit: float = math.p
 
 
 class Courtesy:
-    """Makes room when the person is in the way, for up to `PATIENCE_S` at a time, then lets the body go on.
+    """Makes room when a person is in the way, for up to `PATIENCE_S` at a time, then lets the body go on.
 
     Args:
         fits: ``fits(a, b)`` says whether the body can go straight from ``a`` to ``b`` [m].
@@ -116,7 +116,7 @@ class Courtesy:
             seconds: time since the trial began.
         """
         person = self._look(observation)
-        bumped = observation.outcome is not None and observation.outcome.by == HUMAN
+        bumped = observation.outcome is not None and is_person(observation.outcome.by)
         if seconds < self._until:
             if person is None and self._seen:
                 self._until = -1.0

@@ -1,4 +1,4 @@
-"""Carries a thing that is too heavy for one body, together with another robot or the person.
+"""Carries a thing that is too heavy for one body, together with another robot or a person.
 
 They hold it by the handles at its ends. Once they are strong enough together, the body that moves pulls the thing and
 the others along like a trailer. The thing is put down as soon as one body lets go.
@@ -15,7 +15,7 @@ from hthor.agents.skills.viewpoints import Routes
 from hthor.agents.skills.yielding import seat_bumped
 from hthor.geometry import plane
 from hthor.navigation.path_follower import Follower, face, shift
-from hthor.types import HUMAN, Briefing, Drop, Job, Motion, Observation, Pick, ThingState, Vec2, Vec3, Wait
+from hthor.types import HUMAN, Briefing, Drop, Job, Motion, Observation, Pick, ThingState, Vec2, Vec3, Wait, is_person
 
 _THERE_M = 0.45
 """The thing is put down this close to its place [m]."""
@@ -100,11 +100,10 @@ class Carrier:
         return self.manipulator.pursue(observation, pick) or Wait(seconds=0.3)
 
     def _counts_on_person(self, state: ThingState, job: Job) -> bool:
-        """Whether the person is needed because there are too few robots with arms."""
-        robots = [
-            seat for seat, body in self.allocation.bodies.items() if seat != HUMAN and can_do(body, state.kind, job)
-        ]
-        return HUMAN in self.allocation.bodies and len(robots) < job.hands
+        """Whether a person is needed because there are too few robots with arms."""
+        bodies = self.allocation.bodies.items()
+        robots = [seat for seat, body in bodies if not is_person(seat) and can_do(body, state.kind, job)]
+        return bool(self.allocation.people) and len(robots) < job.hands
 
     def _await(self, observation: Observation, state: ThingState) -> Motion:
         """Come near, then wait where it blocks nobody, facing the thing."""
@@ -125,15 +124,17 @@ class Carrier:
         return step or self._attend(observation, state)
 
     def _handle(self, state: ThingState) -> Vec3:
-        """The free handle, or of two the one that the person reaches last; the middle until its orientation is seen."""
+        """The free handle, of two the one that the nearest person reaches last; the middle until its heading is seen."""
         if self._yaw is None:
             return state.position
         ends = [plane.to_house((side * self._half, 0.0, 0.0), state.position, self._yaw) for side in (1.0, -1.0)]
         others = [self.allocation.place(seat) for seat in state.bearers if seat != self.briefing.seat]
         if others:
             return max(ends, key=lambda end: round(math.dist(end[:2], others[0]), 3))
-        way = self.routes.way(self.allocation.place(HUMAN), self.routes.loose(state.position[:2]))
-        last = way[-2] if len(way) > 1 else self.allocation.place(HUMAN)
+        places = [self.allocation.place(seat) for seat in self.allocation.people or (HUMAN,)]
+        person = min(places, key=lambda place: math.dist(place, state.position[:2]))
+        way = self.routes.way(person, self.routes.loose(state.position[:2]))
+        last = way[-2] if len(way) > 1 else person
         return max(ends, key=lambda end: round(math.dist(end[:2], last), 3))
 
     def _attend(self, observation: Observation, state: ThingState) -> Motion:
@@ -142,9 +143,9 @@ class Carrier:
         return turn if turn is not None and abs(turn.yaw) > 0.2 else Wait(seconds=0.5)
 
     def _led_by(self, state: ThingState) -> str:
-        """Who leads: the robot whose seat comes first, or else the person."""
-        robots = [seat for seat in state.bearers if seat != HUMAN]
-        return min(robots, key=seat_order, default=HUMAN)
+        """Who leads: the robot whose seat comes first, or else the person whose seat does."""
+        robots = [seat for seat in state.bearers if not is_person(seat)]
+        return min(robots or state.bearers, key=seat_order, default=HUMAN)
 
     def _lead(self, observation: Observation, state: ThingState, place: Vec3) -> Motion:
         """Pull the thing to its place and put it down there."""

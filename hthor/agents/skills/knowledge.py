@@ -1,11 +1,11 @@
 """A robot's knowledge about objects and furniture, and about jobs that are done."""
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 
 from hthor import catalog
 from hthor.geometry import plane
-from hthor.types import Job, Observation, Place, Room, Thing, ThingState, Vec3
+from hthor.types import HUMAN, Job, Observation, Place, Room, Thing, ThingState, Vec3
 
 PAPER_KINDS = ("", "mobile_manipulation", "object_goal_navigation")
 """The two kinds of the paper, in which robots say and do what the paper's robots did; "" is an unnamed kind."""
@@ -44,6 +44,11 @@ class Knowledge:
     def serves(self, thing: Thing, job: Job) -> bool:
         """Whether the object belongs on or in this thing."""
         return thing.id in job.destinations or thing.kind in job.destinations
+
+    def all_hold(self, people: Collection[str]) -> bool:
+        """Whether each of these people is known to have something in hand."""
+        holders = {state.held_by for state in self.states.values()}
+        return all(seat in holders for seat in people or (HUMAN,))
 
     def is_shut(self, id: str) -> bool:
         """Whether this is a thing whose content is behind a door, and the door is closed."""

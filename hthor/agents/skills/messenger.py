@@ -19,7 +19,20 @@ from hthor.agents.skills.message_timing import (
     sighting_text,
 )
 from hthor.geometry import plane
-from hthor.types import HUMAN, Briefing, Job, Motion, Observation, Receipt, Send, Thing, ThingState, Vec2, Vec3, Wait
+from hthor.types import (
+    Briefing,
+    Job,
+    Motion,
+    Observation,
+    Receipt,
+    Send,
+    Thing,
+    ThingState,
+    Vec2,
+    Vec3,
+    Wait,
+    is_person,
+)
 
 if TYPE_CHECKING:
     from hthor.agents.skills.routes import HouseRoutes
@@ -104,7 +117,7 @@ class Messenger:
     def topic(self, job: Job) -> tuple[str, Vec3]:
         """The topic to show now, "target" or "destination", and its position [m]."""
         target = self.knowledge.states[job.target]
-        if target.held_by == HUMAN:
+        if is_person(target.held_by):
             where = self._belongs(job, target)
             if where is not None:
                 return "destination", where[1]
@@ -168,7 +181,7 @@ class Messenger:
 
     def _found(self, observation: Observation, target: ThingState) -> Send | None:
         seen = find_detection(observation, target.id)
-        if seen is not None and seen.held_by != HUMAN:
+        if seen is not None and not is_person(seen.held_by):
             return Send(text=sighting_text(seen, self.kinds), object=seen.id, position=seen.position)
         support = self.knowledge.things.get(target.support)
         if support is None or not self._is_close(observation, support):

@@ -18,7 +18,7 @@ from hthor.agents.skills.task_allocation import TaskAllocation, can_do
 from hthor.agents.skills.viewpoints import outline_distance
 from hthor.agents.skills.yielding import Yielding
 from hthor.navigation.path_follower import Courtesy
-from hthor.types import HUMAN, Action, Briefing, Job, Motion, Observation, Place, Receipt, Send, ThingState, Vec3
+from hthor.types import Action, Briefing, Job, Motion, Observation, Place, Receipt, Send, ThingState, Vec3
 
 _MOST = 2
 _LATER_S = 15.0
@@ -130,7 +130,7 @@ class MultiObjectFrontier:
 
     def _say(self, observation: Observation) -> Send | None:
         """A message about an object in view that it does not carry itself, or about a door that it cannot open."""
-        if any(state.held_by == HUMAN for state in self.seen.states.values()):
+        if self.seen.all_hold(self.allocation.people):
             return None
         if self.mine is not None and self.mine.hands > 1:
             return self._ask_for_help(observation, self.mine)

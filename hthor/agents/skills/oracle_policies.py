@@ -14,7 +14,7 @@ from hthor.agents.skills.routes import HouseRoutes
 from hthor.agents.skills.task_allocation import TaskAllocation, can_do
 from hthor.agents.skills.yielding import Yielding
 from hthor.navigation.path_follower import Courtesy, Follower
-from hthor.types import HUMAN, Action, Briefing, Job, Motion, Observation, Send, Wait
+from hthor.types import HUMAN, Action, Briefing, Job, Motion, Observation, Send, Wait, is_person
 
 _LATER_S = 15.0
 """How long [s] an object is left alone that was put down but is not where it belongs."""
@@ -137,7 +137,7 @@ class SingleTaskOracle:
         share = allocation.share(jobs, knowledge)
         if me in share:
             return share[me]
-        others = [job for seat, job in share.items() if seat not in (me, HUMAN)]
+        others = [job for seat, job in share.items() if seat != me and not is_person(seat)]
         left = [job for job in jobs if job not in others and not allocation.leaves_to_person(job, knowledge)]
         return min(left, key=lambda job: allocation.cost(me, job, knowledge), default=None)
 
@@ -215,10 +215,10 @@ class TeamOracle(SingleTaskOracle):
         return self.follower.next(observation.pose) or Wait(seconds=0.5)
 
     def _choose_topic(self, observation: Observation) -> Job | None:
-        held = [job for job in self.jobs if self._is_held_by_person(job)]
-        if held:
-            self.messenger.take(held[0])
-            return held[0]
+        held = self._held_job(observation)
+        if held is not None:
+            self.messenger.take(held)
+            return held
         current = next((job for job in self._open_jobs() if job.target == self.messenger.target), None)
         if current is not None and self.messenger.waits(observation, current):
             return current
@@ -228,11 +228,19 @@ class TeamOracle(SingleTaskOracle):
             self.messenger.take(chosen)
         return chosen
 
+    def _held_job(self, observation: Observation) -> Job | None:
+        """The job whose object somebody brings somewhere: one to be told where, or any while nobody has free hands."""
+        held = [job for job in self.jobs if self._is_held_by_person(job)]
+        if not held:
+            return None
+        due = next((job for job in held if self.messenger.is_due(observation, job, "destination")), None)
+        return held[0] if due is None and self.knowledge.all_hold(self.allocation.people) else due
+
     def _for_person(self) -> list[Job]:
         """The open jobs except those that another robot is about to do; first those that suit the person best."""
         allocation, knowledge = self.allocation, self.knowledge
         jobs = [job for job in self._open_jobs() if job is not self.mine]
-        if any(state.held_by == HUMAN for state in knowledge.states.values()):
+        if knowledge.all_hold(allocation.people):
             return []
         reserved = allocation.reserved(self._open_jobs(), knowledge)
         theirs = [job for job in jobs if job.target == reserved and not self.messenger.is_exhausted(job)]
@@ -240,20 +248,20 @@ class TeamOracle(SingleTaskOracle):
             return theirs
         owners = {job.target: seat for seat, job in allocation.share(jobs, knowledge).items()}
         jobs = [job for job in jobs if not self._is_anothers(job, owners.get(job.target, HUMAN))]
-        return sorted(jobs, key=lambda job: owners.get(job.target) != HUMAN)
+        return sorted(jobs, key=lambda job: not is_person(owners.get(job.target, "")))
 
     def _is_anothers(self, job: Job, owner: str) -> bool:
         """Whether the job is another robot's share, and has not been that for too long."""
-        if owner in (HUMAN, self.briefing.seat):
+        if is_person(owner) or owner == self.briefing.seat:
             self._shared_since.pop(job.target, None)
             return False
         tick = self.allocation.tick
         return tick < self._shared_since.setdefault(job.target, tick) + self._patience
 
     def _is_only_robot(self) -> bool:
-        """Whether no other robot may just have sent the person a message, which a new one would cover."""
-        return all(seat in (HUMAN, self.briefing.seat) for seat in self.allocation.seats)
+        """Whether no other robot may just have sent a message, which a new one would cover."""
+        return all(is_person(seat) or seat == self.briefing.seat for seat in self.allocation.seats)
 
     def _is_held_by_person(self, job: Job) -> bool:
         state = self.knowledge.states.get(job.target)
-        return state is not None and state.held_by == HUMAN and bool(job.destinations)
+        return state is not None and is_person(state.held_by) and bool(job.destinations)

@@ -5,14 +5,14 @@ from collections.abc import Callable, Collection, Sequence
 
 from hthor import catalog
 from hthor.agents.skills.knowledge import Knowledge
-from hthor.types import HUMAN, BodySpec, Briefing, Job, Observation, Vec2, Vec3
+from hthor.types import BodySpec, Briefing, Job, Observation, Vec2, Vec3, is_person
 
 UNKNOWING_M = 4.0
 """Extra distance of a person to any object [m], since they have to find it first."""
 DOOR_M = 2.0
 """Extra distance for opening a door [m]."""
 AT_HAND_M = 2.0
-"""Objects this close to the person are left to them [m]."""
+"""Objects this close to a person are left to them [m]."""
 _REVIEW_S = 2.0
 
 WalkingDistance = Callable[[Vec2, Vec3], float]
@@ -23,6 +23,7 @@ class TaskAllocation:
     """Who does which job best, by where everybody is; bodies never seen are assumed at the robot's own start.
 
     Attributes:
+        seats: everybody, in order. people: those of people.
         now: positions [m] known at this moment, by seat. places: also the last known positions of the others.
     """
 
@@ -30,6 +31,7 @@ class TaskAllocation:
         self.me, self.bodies, self._apart = briefing.seat, dict(briefing.crew), apart
         self.bodies.setdefault(briefing.seat, briefing.body)
         self.seats = sorted(self.bodies, key=seat_order)
+        self.people = tuple(seat for seat in self.seats if is_person(seat))
         self.places: dict[str, Vec2] = {}
         self.now: dict[str, Vec2] = {}
         self._start: Vec2 | None = None
@@ -79,14 +81,15 @@ class TaskAllocation:
         return given
 
     def reserved(self, jobs: Sequence[Job], knowledge: Knowledge) -> str:
-        """The object that is left to the person where a robot without an arm can tell them about it; "" for none.
+        """The object that is left to people where a robot without an arm can tell them about it; "" for none.
 
-        It is the object with the shortest way to its destination; an object behind a door counts as nearer, since the
-        person can open doors. All robots that know where everything is get the same answer.
+        It is the object with the shortest way to its destination; an object behind a door counts as nearer, since
+        people can open doors. All robots that know where everything is get the same answer.
         """
-        tellers = [seat for seat in self.seats if seat != HUMAN and "pick" not in self.bodies[seat].capabilities]
+        robots = [seat for seat in self.seats if not is_person(seat)]
+        tellers = [seat for seat in robots if "pick" not in self.bodies[seat].capabilities]
         todo = [job for job in jobs if job.hands == 1 and job.relation != "find"]
-        if not tellers or len(todo) < 2 or HUMAN not in self.bodies:
+        if not tellers or len(todo) < 2 or not self.people:
             return ""
         return min(todo, key=lambda job: (round(self._carry(job, knowledge), 2), job.target)).target
 
@@ -104,7 +107,7 @@ class TaskAllocation:
         if not can_do(self.bodies[seat], state.kind, job, shut):
             return math.inf
         way = self._apart(self.place(seat), state.position)
-        return way + UNKNOWING_M if seat == HUMAN else way + (DOOR_M if shut else 0.0) - self._later(job, knowledge)
+        return way + UNKNOWING_M if is_person(seat) else way + (DOOR_M if shut else 0.0) - self._later(job, knowledge)
 
     def _later(self, job: Job, knowledge: Knowledge) -> float:
         """Distance [m] to an object from the nearest end of another job; if that is far, fetch it first."""
@@ -127,11 +130,13 @@ class TaskAllocation:
         return self.places.get(seat) or self._start or (0.0, 0.0)
 
     def leaves_to_person(self, job: Job, knowledge: Knowledge) -> bool:
-        """Whether the person is seen next to the object, with a free hand."""
-        state = knowledge.states[job.target]
-        if any(other.held_by == HUMAN for other in knowledge.states.values()) or HUMAN not in self.now:
-            return False
-        return math.dist(self.now[HUMAN], state.position[:2]) < AT_HAND_M
+        """Whether a person is seen next to the object, with a free hand."""
+        spot, busy = knowledge.states[job.target].position[:2], {other.held_by for other in knowledge.states.values()}
+        return any(
+            math.dist(place, spot) < AT_HAND_M
+            for seat, place in self.now.items()
+            if is_person(seat) and seat not in busy
+        )
 
 
 def can_do(body: BodySpec, kind: str, job: Job, shut: bool = False) -> bool:
@@ -141,6 +146,6 @@ def can_do(body: BodySpec, kind: str, job: Job, shut: bool = False) -> bool:
     return job.hands > 1 or catalog.kind(kind).mass <= body.strength
 
 
-def seat_order(seat: str) -> tuple[int, str]:
-    """Seats in order: the person, "robot", "robot2", ... "robot10"."""
-    return (0 if seat == HUMAN else len(seat), seat)
+def seat_order(seat: str) -> tuple[bool, int, str]:
+    """Seats in order: "human", "human2", ... "robot", "robot2", ... "robot10"."""
+    return (not is_person(seat), len(seat), seat)

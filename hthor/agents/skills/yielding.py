@@ -7,12 +7,12 @@ from hthor.agents.skills.task_allocation import seat_order
 from hthor.agents.skills.viewpoints import Routes, keeps_clear
 from hthor.geometry.plane import turn
 from hthor.navigation.path_follower import Follower, shift
-from hthor.types import HUMAN, Briefing, Motion, Move, Observation, Vec2, Wait
+from hthor.types import Briefing, Motion, Move, Observation, Vec2, Wait, is_person
 
 _YIELD_S, _REST_S = 3.0, 2.0
 """How long to make way for another [s], and then not to make way again [s]."""
 _OFTEN_S, _BUMPS, _REFUGE_S, _APART_M = 8.0, 2, 4.0, 1.2
-"""Two collisions with the person within 8 s send the robot 1.2 m away, for 4 s."""
+"""Two collisions with people within 8 s send the robot 1.2 m away, for 4 s."""
 _STEP_M = 0.4
 _ELBOW_M = 0.45
 _BESIDE_M = 0.15
@@ -24,7 +24,7 @@ _DIRECTIONS = 16
 class Yielding:
     """Behaviour after running into a robot: one of the two makes room, the other goes round it.
 
-    A robot with an arm goes first; of equal robots, the one whose seat comes first. For the person see
+    A robot with an arm goes first; of equal robots, the one whose seat comes first. For people see
     `hthor.navigation.path_follower`.
     """
 
@@ -48,7 +48,7 @@ class Yielding:
         """A step out of the way, or None to carry on."""
         seconds = observation.tick * self.tick_s
         by = seat_bumped(observation)
-        if by and by != HUMAN and self._precedence(by) < self._precedence(self.seat) and seconds >= self._rest:
+        if by and not is_person(by) and self._precedence(by) < self._precedence(self.seat) and seconds >= self._rest:
             self._until, self._rest = seconds + _YIELD_S, seconds + _YIELD_S + _REST_S
         if seconds >= self._until:
             return None
@@ -60,14 +60,14 @@ class Yielding:
         return Wait(seconds=0.3) if aside is None else shift(observation.pose, aside, _STEP_M)
 
     def refuge(self, observation: Observation) -> Motion | None:
-        """After running into the person repeatedly: leave the passage and wait; None to carry on."""
-        seconds = observation.tick * self.tick_s
-        if seconds < self._waited and seat_bumped(observation):
+        """After running into people repeatedly: leave the passage and wait; None to carry on."""
+        seconds, by = observation.tick * self.tick_s, seat_bumped(observation)
+        if seconds < self._waited and by:
             self._follower.take(None)  # no way out: stand still until the person is past
-        elif seat_bumped(observation) == HUMAN:
+        elif is_person(by):
             self._bumps = [when for when in self._bumps if seconds - when < _OFTEN_S] + [seconds]
         if len(self._bumps) >= _BUMPS and seconds >= self._waited:
-            person = self.place(observation, HUMAN) or _here(observation)
+            person = self.place(observation, by) or _here(observation)
             self._follower.take(self.routes.retreat(_here(observation), person, _APART_M))
             self._waited, self._bumps = seconds + _REFUGE_S, []
         if seconds >= self._waited:
@@ -81,7 +81,7 @@ class Yielding:
         """
         here = _here(observation)
         for seat in sorted(places, key=seat_order):
-            if seat not in (self.seat, HUMAN) and math.dist(here, places[seat]) < self._room(seat):
+            if seat != self.seat and not is_person(seat) and math.dist(here, places[seat]) < self._room(seat):
                 aside = self._aside(here, places[seat])
                 if aside is not None:
                     return shift(observation.pose, aside, _STEP_M)
@@ -98,7 +98,7 @@ class Yielding:
         share = self._touching(seat) / length
         return (observation.pose.x + share * self._along[0], observation.pose.y + share * self._along[1])
 
-    def _precedence(self, seat: str) -> tuple[bool, tuple[int, str]]:
+    def _precedence(self, seat: str) -> tuple[bool, tuple[bool, int, str]]:
         body = self.bodies.get(seat)
         return (body is None or "pick" not in body.capabilities, seat_order(seat))
 
@@ -153,7 +153,7 @@ def seat_bumped(observation: Observation) -> str:
     outcome = observation.outcome
     if outcome is None or outcome.ok or outcome.motion != "move":
         return ""
-    return outcome.by if outcome.by == HUMAN or outcome.by.startswith("robot") else ""
+    return outcome.by if outcome.by.startswith(("human", "robot")) else ""
 
 
 def _here(observation: Observation) -> Vec2:
