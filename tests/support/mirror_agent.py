@@ -19,7 +19,7 @@ DRIVE = Drive(forward=0.4, left=-0.1, yaw=2.5, pitch=0.2)
 
 
 class Agent:
-    """Drives, and says what it got, as JSON."""
+    """Drives, and says what it got, as JSON: as an answer when it was asked, else as a question."""
 
     privileges = ("object_poses", "house_map", "ideal_detector")
 
@@ -28,11 +28,11 @@ class Agent:
 
     def act(self, observation: Observation) -> Action:
         seen = {"briefing": self.briefing, "observation": plain(observation), "senses": readings(observation)}
-        asked = next((message for message in observation.inbox if message.question), None)
-        return Action(
-            motion=DRIVE,
-            say=Send(text=json.dumps(seen), answers=asked.id if asked else None, to=asked.sender if asked else ""),
-        )
+        say = Send(text=json.dumps(seen), question=True)
+        for message in observation.inbox:
+            if message.question:
+                say = Send(text=json.dumps(seen), answers=message.id, to=message.sender)
+        return Action(motion=DRIVE, say=say)
 
 
 def short(value: Any) -> Any:
