@@ -4,7 +4,7 @@ import inspect
 import math
 from collections.abc import Callable, Sequence
 
-from msgspec import Struct
+from msgspec import UNSET, Struct, UnsetType
 
 from hthor.episode import EpisodeLog
 from hthor.types import TrialSpec
@@ -25,6 +25,11 @@ class Trial(Struct, frozen=True):
 
     spec: TrialSpec
     log: EpisodeLog
+
+    @property
+    def people(self) -> tuple[str, ...]:
+        """The seats of the people who took part."""
+        return tuple(human.seat for human in self.spec.humans)
 
 
 Formula = Callable[[Trial], Value | dict[str, float]]
@@ -58,6 +63,7 @@ class Metric(Struct, frozen=True):
         section: the part of a report that has it, "messages" or "bodies"; every metric that is not main has one.
         part_of: the metric of which this metric counts a part; tables show this one indented below it.
         by_seat: whether a trial has several values, by name of a seat or of a pair of seats.
+        several: whether only trials of several people have it; other records leave it out.
         needs_robot: whether it has no value in a trial without a robot.
         optional: whether tables leave it out where no trial has a value.
         limits: the least and the greatest value, by default those of its unit.
@@ -77,6 +83,7 @@ class Metric(Struct, frozen=True):
     section: str = ""
     part_of: str = ""
     by_seat: bool = False
+    several: bool = False
     needs_robot: bool = False
     optional: bool = False
     limits: Range | None = None
@@ -122,8 +129,10 @@ class Metric(Struct, frozen=True):
         """1, or -1 for a metric whose lower values are better."""
         return -1.0 if self.better == LOWER else 1.0
 
-    def measure(self, trial: Trial) -> Value | dict[str, float]:
-        """The value in one trial, rounded to `DIGITS`; None or an empty dict where the metric has no value."""
+    def measure(self, trial: Trial) -> Value | dict[str, float] | UnsetType:
+        """The value in one trial, rounded to `DIGITS`; None, an empty dict or unset where the metric has no value."""
+        if self.several and len(trial.people) == 1:
+            return UNSET
         if self.needs_robot and not trial.spec.robots:
             return {} if self.by_seat else None
         value = self.formula(trial)

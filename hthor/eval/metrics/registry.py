@@ -28,13 +28,18 @@ _BY_NAME = {metric.name: metric for metric in METRICS}
 
 
 def define_record(
-    name: str, base: type[Struct], module: str, *, single: object, default: object, by_seat: object
+    name: str, base: type[Struct], module: str, *, single: object, default: object, by_seat: type[Any]
 ) -> type[Any]:
     """A record with a field for each metric, of the type ``single`` with its default, or of the type ``by_seat``."""
-    fields: list[Any] = [
-        (one.name, by_seat, msgspec.field(default_factory=dict)) if one.by_seat else (one.name, single, default)
-        for one in METRICS
-    ]
+
+    def field(metric: Metric) -> tuple[str, object, object]:
+        if metric.several:
+            return metric.name, by_seat | msgspec.UnsetType, msgspec.UNSET
+        if metric.by_seat:
+            return metric.name, by_seat, msgspec.field(default_factory=dict)
+        return metric.name, single, default
+
+    fields: list[Any] = [field(metric) for metric in METRICS]
     return msgspec.defstruct(name, fields, bases=(base,), module=module, frozen=True, kw_only=True)
 
 

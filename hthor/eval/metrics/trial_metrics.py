@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 import numpy as np
-from msgspec import Struct
+from msgspec import Struct, UnsetType
 from numpy.typing import NDArray
 
 from hthor.episode import EpisodeLog
@@ -34,8 +34,8 @@ class MetricValues(Struct, frozen=True, kw_only=True):
 
     def by_seat(self, metric: str) -> dict[str, float]:
         """The values of a metric by seat or pair of seats."""
-        values: dict[str, float] = getattr(self, metric)
-        return values
+        values: dict[str, float] | UnsetType = getattr(self, metric)
+        return values or {}
 
 
 if TYPE_CHECKING:

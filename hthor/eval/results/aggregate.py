@@ -18,6 +18,7 @@ from hthor.eval.results.result_file import Counts, Effort, Hashes, RunResult, Sc
 from hthor.eval.statistics import intervals
 from hthor.eval.statistics.intervals import Estimate
 from hthor.guest import Isolation
+from hthor.types import Event, is_person
 
 
 def make_result(
@@ -60,7 +61,7 @@ def make_result(
             trials=len(records),
             tasks=len({record.spec.task.id for record in records}),
             successes=sum(record.met for record in records),
-            messages=sum(event.kind == "sent" for record in records for event in record.events),
+            messages=sum(_is_robots_message(event) for record in records for event in record.events),
             faults=sum(bool(record.faults) for record in records),
             faults_by_seat={
                 robot.seat: sum(any(fault.seat == robot.seat for fault in record.faults) for record in records)
@@ -86,7 +87,9 @@ def make_result(
 def estimate_metrics(records: Sequence[TrialRecord]) -> Scores:
     """Means and intervals of every metric; trials for which a metric has no value do not count for it."""
     single = {metric.name: estimate_metric(records, metric) for metric in registry.SINGLE}
-    return Scores(**single, **{metric.name: _by_seat(records, metric) for metric in registry.BY_SEAT})
+    by_seat = {metric.name: _by_seat(records, metric) for metric in registry.BY_SEAT}
+    kept = {name: found for name, found in by_seat.items() if found or not registry.get(name).several}
+    return Scores(**single, **kept)
 
 
 def trust_by_trial(records: Sequence[TrialRecord]) -> tuple[Estimate, ...]:
@@ -103,6 +106,10 @@ def _by_seat(records: Sequence[TrialRecord], metric: Metric) -> dict[str, Estima
     """An estimate for each seat that the metric has values for, in order of first appearance."""
     seats = dict.fromkeys(seat for record in records for seat in record.metrics.by_seat(metric.name))
     return {seat: estimate_metric(records, metric, seat) for seat in seats}
+
+
+def _is_robots_message(event: Event) -> bool:
+    return event.kind == "sent" and not is_person(event.seat)
 
 
 def estimate_metric(records: Sequence[TrialRecord], metric: Metric, seat: str = "") -> Estimate:

@@ -35,8 +35,8 @@ class Estimates(Struct, frozen=True, kw_only=True):
 
     def by_seat(self, metric: str) -> dict[str, Estimate]:
         """The estimates of a metric by seat, or by pair of seats such as "human by robot"."""
-        estimates: dict[str, Estimate] = getattr(self, metric)
-        return estimates
+        estimates: dict[str, Estimate] | msgspec.UnsetType = getattr(self, metric)
+        return estimates or {}
 
 
 if TYPE_CHECKING:

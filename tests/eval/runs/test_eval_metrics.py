@@ -10,12 +10,26 @@ from hypothesis import strategies as st
 
 from hthor.comms import claims
 from hthor.episode import EpisodeLog
-from hthor.eval.metrics import trial_metrics
+from hthor.eval.metrics import registry, trial_metrics
 from hthor.eval.metrics.definitions import contribution, interference
 from hthor.eval.metrics.metric import Trial
 from hthor.eval.records.trial_record import make_record
 from hthor.eval.results import aggregate
-from hthor.types import HUMAN, Event, Goal, HouseSpec, Job, Placement, Pose, Room, Send, Snapshot, Thing, ThingState
+from hthor.types import (
+    HUMAN,
+    Event,
+    Goal,
+    HouseSpec,
+    HumanSeat,
+    Job,
+    Placement,
+    Pose,
+    Room,
+    Send,
+    Snapshot,
+    Thing,
+    ThingState,
+)
 
 TRIAL = fakes.run_of(10, name="tall+small")[1][0].trials[0]
 ALONE = fakes.run_of(10, absent=True)[1][0].trials[0]
@@ -334,3 +348,136 @@ def test_usefulness_is_of_the_confirmed_what_was_true_and_new():
     assert (nothing.useful, nothing.usefulness) == (0, None)
     alone = trial_metrics.measure(ALONE, log())
     assert (alone.useful, alone.usefulness) == (None, None)
+
+
+# ------------------------------------------------------------------------------------------------------ several people
+
+
+SECOND = "human2"
+TWO = msgspec.structs.replace(
+    TRIAL,
+    humans=(TRIAL.humans[0], HumanSeat(seat=SECOND, model="proxy", sha256="0", participant=1)),
+)
+MIRROR = {HUMAN: SECOND, SECOND: HUMAN}
+
+
+def shared(*events: tuple, journal: tuple[Event, ...] = (), **more) -> EpisodeLog:
+    """A log of two people and two robots."""
+    still = [(0, 0, 0)] * 451
+    seats = (HUMAN, SECOND, "robot", "robot2")
+    known = {"paths": dict.fromkeys(seats, still), "ratings": {HUMAN: 4, SECOND: 7}, "idle": {HUMAN: 40, SECOND: 90}}
+    return log(*events, journal=journal, **{**known, **more})
+
+
+def mirrored(made: EpisodeLog) -> EpisodeLog:
+    """The log as it would be if the two people had each other's seats."""
+
+    def event(one: Event) -> Event:
+        data = {name: MIRROR.get(value, value) if isinstance(value, str) else value for name, value in one.data.items()}
+        return msgspec.structs.replace(one, seat=MIRROR.get(one.seat, one.seat), data=data)
+
+    changed = {
+        name: {MIRROR.get(seat, seat): value for seat, value in getattr(made, name).items()}
+        for name in ("paths", "ratings", "idle")
+    }
+    events, journal = (tuple(map(event, some)) for some in (made.events, made.journal))
+    return msgspec.structs.replace(made, events=events, journal=journal, **changed)
+
+
+CONVERSATION = (
+    sent(10, "robot", 0, object="apple", off=0.2),  # to both; accepted by one, who knew it, and by the other
+    (11, HUMAN, "shown", {"message": 0}),
+    (11, SECOND, "shown", {"message": 0}),
+    (20, HUMAN, "declined", {"message": 0}),
+    (25, SECOND, "accepted", {"message": 0}),
+    sent(30, "robot2", 1, to=SECOND, object="apple", off=3.0),  # to one; covered by a question
+    (31, SECOND, "shown", {"message": 1}),
+    (40, "robot", "covered", {"message": 1, "by": 2, "reader": SECOND}),
+    sent(40, "robot", 2, to=SECOND, question=True),
+    (41, SECOND, "shown", {"message": 2}),
+    (45, SECOND, "answered", {"message": 2, "yes": True}),
+    sent(50, HUMAN, 3, question=True),  # a person asks; the robot's answer is no suggestion, but a claim
+    sent(55, "robot", 4, to=HUMAN, answers=3, object="apple", off=0.1),
+    (56, HUMAN, "shown", {"message": 4}),
+    (57, HUMAN, "accepted", {"message": 4}),
+    sent(60, "robot2", 5, object="mug", off=0.3),  # to both; nobody answers
+    (61, HUMAN, "shown", {"message": 5}),
+)
+HINDERED = (
+    (100, HUMAN, "in_way", {"by": "robot"}),
+    (300, HUMAN, "in_way", {"by": SECOND}),
+    (300, SECOND, "in_way", {"by": HUMAN}),
+    (500, SECOND, "in_way", {"by": "robot2"}),
+    (580, SECOND, "in_way", {"by": "robot"}),
+)
+NEW = (Event(tick=20, seat=HUMAN, kind="offer", data={"message": 0, "useful": True}),)
+
+
+def test_a_message_to_several_people_counts_once_with_its_best_end():
+    found = trial_metrics.measure(TWO, shared(*CONVERSATION, journal=NEW))
+    assert (found.sent, found.accepted, found.declined, found.covered, found.unanswered) == (3, 1, 0, 1, 1)
+    assert (found.adoption, found.adoption_by) == (0.5, {HUMAN: 0.0, SECOND: 1.0})
+    assert (found.false_claims, found.precision) == (1, 0.75)
+    assert (found.useful, found.usefulness) == (0, 0.0), "it was new to the one who declined it"
+    assert found.first_useful_s == 1.0
+    assert found.interruptions_per_min == pytest.approx(5 / 2 / 1.5), "an answer is none, a question is one"
+
+
+def test_what_people_lose_to_robots_is_the_mean_and_what_to_one_another_is_told_apart():
+    found = trial_metrics.measure(TWO, shared(*HINDERED))
+    assert found.hindered_s == (5.0 + 5.0 + 5.0) / 2
+    assert (found.hindered_by["human by human2"], found.hindered_by["human2 by human"]) == (5.0, 5.0)
+    assert (found.hindered_by["human2 by robot2"], found.hindered_by["robot by human2"]) == (5.0, 0.0)
+    assert found.in_way == 5
+    assert (found.idle_s, found.idle_by) == (6.5, {HUMAN: 4.0, SECOND: 9.0})
+    assert (found.trust, found.trust_by) == (5.5, {HUMAN: 4.0, SECOND: 7.0})
+
+
+def test_a_find_is_credited_to_the_person_who_saw_it():
+    made = shared((50, SECOND, "success", {}), met=True, ticks=50)
+    assert trial_metrics.measure(TWO, made).work == {HUMAN: 0.0, SECOND: 1.0, "robot": 0.0, "robot2": 0.0}
+
+
+@pytest.mark.parametrize("events", [CONVERSATION, HINDERED, (*CONVERSATION, *HINDERED)])
+def test_the_order_of_seats_makes_no_difference(events: tuple[tuple, ...]):
+    made = shared(*events, journal=NEW)
+    here, there = (trial_metrics.measure(TWO, one) for one in (made, mirrored(made)))
+    for metric in registry.SINGLE:
+        assert here[metric.name] == there[metric.name], metric.name
+    for metric in registry.BY_SEAT:
+        swapped = {
+            " by ".join(MIRROR.get(seat, seat) for seat in name.split(" by ")): value
+            for name, value in there.by_seat(metric.name).items()
+        }
+        assert here.by_seat(metric.name) == swapped, metric.name
+
+
+def test_somebody_who_is_absent_changes_only_what_is_shared_by_all():
+    """Absent: stands there all the time, accepts nothing, meets nobody, rates nothing."""
+    rows = (
+        sent(10, "robot", 0, object="apple", off=0.2),
+        (20, HUMAN, "accepted", {"message": 0}),
+        sent(30, "robot2", 1, object="apple", off=3.0),
+        (32, HUMAN, "declined", {"message": 1}),
+        sent(40, "robot", 2),
+        (60, HUMAN, "in_way", {"by": "robot"}),
+        (70, "robot", "in_way", {"by": HUMAN}),
+    )
+    alone = trial_metrics.measure(TRIAL, log(*rows, idle={HUMAN: 40}, met=True, journal=NEW))
+    beside = trial_metrics.measure(
+        TWO, shared(*rows, idle={HUMAN: 40, SECOND: 900}, ratings={HUMAN: 4, SECOND: None}, met=True, journal=NEW)
+    )
+    shares = {"adoption": 0.5, "idle_s": 47.0, "hindered_s": alone.hindered_s / 2}
+    for metric in registry.SINGLE:
+        wanted = shares.get(metric.name, alone[metric.name])
+        assert beside[metric.name] == wanted, metric.name
+    assert {pair: beside.hindered_by[pair] for pair in alone.hindered_by} == alone.hindered_by
+    assert beside.work == {**alone.work, SECOND: 0.0}
+
+
+def test_one_person_has_no_values_by_person():
+    line = msgspec.json.decode(msgspec.json.encode(trial_metrics.measure(TRIAL, log(idle={HUMAN: 9}))))
+    assert not {"adoption_by", "idle_by", "trust_by"} & set(line)
+    assert (line["adoption"], line["trust"], line["idle_s"]) == (0, 4, 0.9)
+    trials = [make_record(trial, fakes.episode(trial)) for trial in fakes.run_of(10)[1][0].trials]
+    assert "trust_by" not in msgspec.to_builtins(aggregate.estimate_metrics(trials))

@@ -1,110 +1,143 @@
-"""Metrics of the robots' messages: their outcomes, and how good they were as a channel."""
+"""Metrics of the robots' messages: their outcomes, and how good they were as a channel.
+
+A suggestion is a message of a robot that is neither a question nor the answer to one. It counts once, however many
+people it is for, with the best of its ends: accepted by anybody, else declined, else covered, else unanswered.
+"""
 
 import functools
+import statistics
 
 from hthor import rules
 from hthor.comms import claims
 from hthor.episode import EpisodeLog
 from hthor.eval.metrics.metric import HIGHER, LOWER, SECONDS, SHARE, Metric, Trial
-from hthor.types import HUMAN, Event
+from hthor.types import Event, is_person
 
-_OUTCOMES = ("accepted", "declined", "covered")
+_ENDS = ("accepted", "declined", "covered")
+"""The ends of a suggestion, the best first."""
 
 
-def adoption(trial: Trial) -> int:
-    """1 when the human accepted at least one robot message, else 0 (P)."""
-    return int(bool(_accepted(trial.log) & _robot_messages(trial.log)))
+def adoption(trial: Trial) -> float:
+    """1 when the human accepted at least one robot message, else 0 (P); with several people, the share who did."""
+    shares = adoption_by_person(trial)
+    return statistics.mean(map(int, shares.values()))
+
+
+def adoption_by_person(trial: Trial) -> dict[str, float]:
+    """1 for each person who accepted at least one robot message, else 0; only with several people."""
+    suggestions, answers = _suggestions(trial.log), _answers(trial.log, "accepted")
+    accepting = {seat for seat, message in answers if message in suggestions}
+    return {seat: float(seat in accepting) for seat in trial.people}
 
 
 def sent(trial: Trial) -> int:
-    """Messages of all robots."""
-    return len(_sent(trial.log))
+    """Messages of all robots; questions and answers do not count."""
+    return len(_suggestions(trial.log))
 
 
 def accepted(trial: Trial) -> int:
-    """Messages that the human accepted."""
-    return _outcome(trial.log, "accepted")
+    """Messages that the human accepted; with several people, that any of them accepted."""
+    return len(_ended(trial.log, "accepted"))
 
 
 def declined(trial: Trial) -> int:
-    """Messages that the human declined."""
-    return _outcome(trial.log, "declined")
+    """Messages that the human declined; with several people, that some declined and nobody accepted."""
+    return len(_ended(trial.log, "declined"))
 
 
 def covered(trial: Trial) -> int:
-    """Messages that a newer one covered before the human had answered."""
-    return _outcome(trial.log, "covered")
+    """Messages that a newer one covered before anybody had answered."""
+    return len(_ended(trial.log, "covered"))
 
 
 def unanswered(trial: Trial) -> int:
     """Messages that were open when the trial ended."""
-    return len(_sent(trial.log)) - sum(_outcome(trial.log, kind) for kind in _OUTCOMES)
+    return len(_suggestions(trial.log)) - sum(len(_ended(trial.log, kind)) for kind in _ENDS)
 
 
 def false_claims(trial: Trial) -> int:
     """Messages that were wrong when they were sent."""
-    return sum(claims.is_false(event.data) for event in _sent(trial.log))
+    return sum(claims.is_false(event.data) for event in _statements(trial.log))
 
 
 def precision(trial: Trial) -> float | None:
     """Share of the robots' claims that were true when they were made (at most 1 m off); only trials with a claim.
 
-    What a robot says about where it, another robot or the human is, is not counted as a claim.
+    What a robot says about where it, another robot or a person is, is not counted as a claim.
     """
     made = _claims(trial.log)
     return sum(not claims.is_false(event.data) for event in made) / len(made) if made else None
 
 
 def first_useful(trial: Trial) -> float | None:
-    """Seconds until a robot sent the first true claim that the human accepted; only trials with such a claim."""
-    accepted = _true_claims(trial.log) & _accepted(trial.log)
-    ticks = [event.tick for event in _sent(trial.log) if event.data.get("message") in accepted]
+    """Seconds until a robot sent the first true claim that a person accepted; only trials with such a claim."""
+    accepted = _true_claims(trial.log) & _ended(trial.log, "accepted")
+    ticks = [event.tick for event in _statements(trial.log) if event.data.get("message") in accepted]
     return min(ticks) * rules.TICK_S if ticks else None
 
 
 def interruptions(trial: Trial) -> float | None:
-    """Robots' messages that were shown to the human, per minute."""
-    robots = _robot_messages(trial.log)
-    shown = sum(event.kind == "shown" and event.data.get("message") in robots for event in trial.log.events)
-    return shown / (trial.log.ticks * rules.TICK_S / 60.0) if trial.log.ticks else None
+    """Robots' messages that were shown to the human, per minute; with several people, the mean of theirs.
+
+    An answer to a person's question does not count.
+    """
+    messages = {event.data.get("message") for event in _sent(trial.log) if event.data.get("answers") is None}
+    shown = sum(message in messages for _, message in _shown(trial.log))
+    minutes = trial.log.ticks * rules.TICK_S / 60.0
+    return shown / len(trial.people) / minutes if trial.log.ticks else None
 
 
 def useful(trial: Trial) -> int:
-    """Accepted messages that were true when they were sent and new to the human and could still help."""
+    """Accepted messages that were true when they were sent and new to who accepted them and could still help."""
     new = {
-        event.data.get("message") for event in trial.log.journal if event.kind == "offer" and event.data.get("useful")
+        (event.seat, event.data.get("message"))
+        for event in trial.log.journal
+        if event.kind == "offer" and event.data.get("useful")
     }
-    return len(_true_claims(trial.log) & _accepted(trial.log) & new)
+    taken = {message for seat, message in _answers(trial.log, "accepted") if (seat, message) in new}
+    return len(taken & _true_claims(trial.log) & set(_suggestions(trial.log)))
 
 
 def usefulness(trial: Trial) -> float | None:
     """Share of the accepted messages that were `useful`; only trials with an accepted message."""
-    accepted = len(_accepted(trial.log) & _robot_messages(trial.log))
+    accepted = len(_ended(trial.log, "accepted"))
     return useful(trial) / accepted if accepted else None
 
 
 def _sent(log: EpisodeLog) -> list[Event]:
     """The events that robots sent messages."""
-    return [event for event in log.events if event.kind == "sent" and event.seat != HUMAN]
+    return [event for event in log.events if event.kind == "sent" and not is_person(event.seat)]
 
 
-def _robot_messages(log: EpisodeLog) -> set[object]:
-    """The numbers of the robots' messages."""
-    return {event.data.get("message") for event in _sent(log)}
+def _statements(log: EpisodeLog) -> list[Event]:
+    """The messages in which robots said something: all but questions."""
+    return [event for event in _sent(log) if not event.data.get("question")]
 
 
-def _accepted(log: EpisodeLog) -> set[object]:
-    return {event.data.get("message") for event in log.events if event.kind == "accepted"}
+def _suggestions(log: EpisodeLog) -> dict[object, Event]:
+    """The robots' suggestions, by number."""
+    return {event.data.get("message"): event for event in _statements(log) if event.data.get("answers") is None}
 
 
-def _outcome(log: EpisodeLog, kind: str) -> int:
-    """How many of the robots' messages ended with an event of this kind."""
-    return len({event.data.get("message") for event in log.events if event.kind == kind} & _robot_messages(log))
+def _answers(log: EpisodeLog, kind: str) -> set[tuple[str, object]]:
+    """Who ended which message by an event of this kind; a message is covered by its sender or another."""
+    return {(event.seat, event.data.get("message")) for event in log.events if event.kind == kind}
+
+
+def _shown(log: EpisodeLog) -> list[tuple[str, object]]:
+    """Who was shown which message."""
+    return [(event.seat, event.data.get("message")) for event in log.events if event.kind == "shown"]
+
+
+def _ended(log: EpisodeLog, kind: str) -> set[object]:
+    """The suggestions that ended with an event of this kind, and for nobody with a better one."""
+    better = {message for end in _ENDS[: _ENDS.index(kind)] for _, message in _answers(log, end)}
+    return ({message for _, message in _answers(log, kind)} - better) & set(_suggestions(log))
 
 
 def _claims(log: EpisodeLog) -> list[Event]:
     """The messages that claim where a thing is; claims about bodies do not count."""
-    return [event for event in _sent(log) if "off" in event.data and event.data.get("object") not in log.paths]
+    return [event for event in _statements(log) if "off" in event.data and event.data.get("object") not in log.paths]
 
 
 def _true_claims(log: EpisodeLog) -> set[object]:
@@ -115,6 +148,9 @@ _message = functools.partial(Metric, section="messages", needs_robot=True)
 
 METRICS = (
     _message("adoption", "adoption", adoption, unit=SHARE, better=HIGHER, rank=40, main=True),
+    _message(
+        "adoption_by", "adoption", adoption_by_person, unit=SHARE, better=HIGHER, rank=920, by_seat=True, several=True
+    ),
     _message("sent", "messages sent, a trial", sent, decimals=2, rank=210),
     _message("accepted", "accepted", accepted, decimals=2, rank=220, part_of="sent"),
     _message("declined", "declined", declined, decimals=2, rank=230, part_of="sent"),

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from hthor.episode import EpisodeLog
 from hthor.eval.metrics.metric import SHARE, Metric, Trial
-from hthor.types import HUMAN, Event, TrialSpec
+from hthor.types import Event, TrialSpec
 
 _FINISH = ("placed", "dropped", "lifted", "lowered", "opened", "closed")
 _TAKE = ("picked", "lifted")
@@ -29,13 +29,13 @@ def shares(spec: TrialSpec, log: EpisodeLog) -> Credit | None:
     - the pick before it of the same object;
     - the openings before it of the furniture that the object was taken out of or put into.
 
-    An action that several seats did together counts in equal parts for them. A find is credited to the human, who has
-    to see the target, and to the seat that opened its furniture. A fall of the progress takes back the latest credit.
+    An action that several seats did together counts in equal parts for them. A find is credited to the person who saw
+    the target, and to the seat that opened its furniture. A fall of the progress takes back the latest credit.
     """
     ledger: list[tuple[float, Credit]] = []
-    for tick, rise in _steps(log):
+    for tick, rise, seer in _steps(spec, log):
         if rise > 0.0:
-            ledger.append((rise, _credit(spec, log, tick)))
+            ledger.append((rise, _credit(spec, log, tick, seer)))
         else:
             _take_back(ledger, -rise)
     total = dict.fromkeys(log.paths, 0.0)
@@ -46,18 +46,19 @@ def shares(spec: TrialSpec, log: EpisodeLog) -> Credit | None:
     return {seat: value / whole for seat, value in total.items()} if whole > _EPS else None
 
 
-def _steps(log: EpisodeLog) -> Iterator[tuple[int, float]]:
-    """Ticks at which the progress changed, and by how much; progress at the start is credited to nobody."""
+def _steps(spec: TrialSpec, log: EpisodeLog) -> Iterator[tuple[int, float, str]]:
+    """Ticks at which the progress changed, by how much, and the person who saw it; it starts to count after tick 0."""
     if log.progress is None:
         if log.met:
-            yield log.ticks, 1.0
+            ends = (event.seat for event in reversed(log.events) if event.kind == "success")
+            yield log.ticks, 1.0, next(ends, spec.humans[0].seat)
         return
     value = 0.0
     for event in log.events:
         if event.kind == "progress":
             rise, value = float(event.data["value"]) - value, float(event.data["value"])
             if event.tick > 0:
-                yield event.tick, rise
+                yield event.tick, rise, event.seat
 
 
 def _take_back(ledger: list[tuple[float, Credit]], fall: float) -> None:
@@ -68,11 +69,11 @@ def _take_back(ledger: list[tuple[float, Credit]], fall: float) -> None:
         fall -= rise
 
 
-def _credit(spec: TrialSpec, log: EpisodeLog, tick: int) -> Credit:
+def _credit(spec: TrialSpec, log: EpisodeLog, tick: int, seer: str) -> Credit:
     """The seats' credit for the progress made at ``tick``; empty when nobody had acted before."""
     past = [event for event in log.events if event.tick <= tick]
     if all(job.relation == "find" for job in spec.task.goal.todo):
-        parts = [(HUMAN,), *_openers(past, [_start(spec, job.target) for job in spec.task.goal.todo])]
+        parts = [(seer,), *_openers(past, [_start(spec, job.target) for job in spec.task.goal.todo])]
     else:
         parts = _chain(spec, past)
     credit: Credit = {}

@@ -2,12 +2,13 @@
 
 import functools
 import math
-from collections.abc import Iterable, Iterator
+import statistics
+from collections.abc import Callable, Iterable, Iterator
 
 from hthor import rules
 from hthor.episode import EpisodeLog
 from hthor.eval.metrics.metric import LOWER, SECONDS, Metric, Trial
-from hthor.types import HUMAN
+from hthor.types import is_person
 
 FREED_M = 0.3
 """A body this far from where it was hindered is free again [m]."""
@@ -24,22 +25,29 @@ def encounters(trial: Trial) -> int:
 
 
 def human_hindered(trial: Trial) -> float:
-    """Seconds that the human lost to all robots together, as bodies were in its way."""
-    return _seconds(_spans(trial.log, HUMAN))
+    """Seconds that the human lost to all robots together, as bodies were in its way.
+
+    With several people, the mean of theirs; the time that they lost to one another is only in `hindered_by`.
+    """
+    return statistics.fmean(_seconds(_spans(trial.log, seat, _is_robot)) for seat in trial.people)
 
 
 def hindered_by_pair(trial: Trial) -> dict[str, float]:
     """Seconds that each seat lost to each other seat, by names such as "human by robot2"."""
     seats = list(trial.log.paths)
     pairs = [(seat, other) for seat in seats for other in seats if seat != other]
-    return {f"{seat} by {other}": _seconds(_spans(trial.log, seat, other)) for seat, other in pairs}
+    return {f"{seat} by {other}": _seconds(_spans(trial.log, seat, other.__eq__)) for seat, other in pairs}
 
 
-def _spans(log: EpisodeLog, seat: str, by: str = "") -> Iterator[Span]:
-    """The spans from each time that the seat was hindered until it was free again."""
+def _spans(log: EpisodeLog, seat: str, counts: Callable[[str], bool]) -> Iterator[Span]:
+    """The spans from each time that the seat was hindered, by a seat that ``counts``, until it was free again."""
     for event in log.events:
-        if event.kind == "in_way" and event.seat == seat and by in ("", event.data.get("by")):
+        if event.kind == "in_way" and event.seat == seat and counts(event.data["by"]):
             yield event.tick, _freed(log, seat, event.tick)
+
+
+def _is_robot(seat: str) -> bool:
+    return not is_person(seat)
 
 
 def _freed(log: EpisodeLog, seat: str, tick: int) -> int:
