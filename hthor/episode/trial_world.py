@@ -10,14 +10,14 @@ from hthor.types.sensors import RgbImage
 class TrialWorld(Protocol):
     """A house with bodies in it, simulated tick by tick; `hthor.world.World` implements it.
 
-    A seat names a body: "human", "robot", "robot2" ... Time is counted in ticks of `rules.TICK_S` seconds from `reset`.
-    Positions are in metres and angles in radians, in the house's frame: x and y on the floor, z up, yaw
-    counter-clockwise from x. A seat that does not exist raises KeyError.
+    A seat names a body: people sit at "human", "human2" ..., robots at "robot", "robot2" ... Time is counted in ticks
+    of `rules.TICK_S` seconds from `reset`. Positions are in metres and angles in radians, in the house's frame: x and y
+    on the floor, z up, yaw counter-clockwise from x. A seat that does not exist raises KeyError.
     """
 
     @property
     def seats(self) -> Sequence[str]:
-        """All seats, the human's first."""
+        """All seats: the people's, then the robots'."""
 
     @property
     def bodies(self) -> Mapping[str, BodySpec]:
@@ -40,19 +40,43 @@ class TrialWorld(Protocol):
         """
 
     def idle(self, seat: str) -> bool:
-        """Whether the body carries out no motion, so that `start` may be called."""
+        """Whether `start` may be called: the body carries out no motion, or drives with its hands free."""
 
     def start(self, seat: str, motion: Motion) -> None:
-        """Begin a motion of an idle body. A motion that is impossible ends at once; `outcome` says why."""
+        """Begin a motion of an idle body. A motion that is impossible ends at once; `outcome` says why.
+
+        A `Drive` may begin at any time. It lasts until another `Drive`, a `Move`, `Rotate` or `Wait` replaces it.
+        """
 
     def outcome(self, seat: str) -> Outcome | None:
-        """How the body's last motion ended; None before the first motion and during a motion."""
+        """How the body's last motion ended; None before the first.
+
+        While a body drives, its outcome says what stops it, and when it is free again.
+        """
+
+    def substep(self) -> None:
+        """Move the bodies that drive by one of the tick's `rules.SUBTICKS` steps, before `advance` makes the others.
+
+        Calling it is optional: with the same set-points at the same steps, the states are the same. After the last step
+        of a tick it does nothing until `advance` was called.
+        """
 
     def advance(self) -> tuple[Event, ...]:
         """Advance by one tick, and return the events of this tick."""
 
+    def save_state(self) -> bytes:
+        """The whole state of the world: after `load_state`, the same motions have the same results, byte for byte."""
+
+    def load_state(self, state: bytes) -> None:
+        """Go back to a state that `save_state` returned, of this world or of another of the same house, bodies and
+        objects.
+
+        Raises:
+            HthorError: when the state is damaged or belongs to a different world; this world is then unchanged.
+        """
+
     def pose(self, seat: str) -> Pose:
-        """The position [m] and heading of the body, and the pitch of its camera [rad]."""
+        """The position [m] and heading of the body, and the direction of its head and camera [rad]."""
 
     def holding(self, seat: str) -> str:
         """The id of the object in the body's hands, empty for none."""
@@ -64,20 +88,11 @@ class TrialWorld(Protocol):
         """The body's sensors, to be read during this tick only."""
 
     def frozen_senses(self, seat: str) -> Senses:
-        """The body's sensors at this tick, which may also be read later, and from another thread."""
+        """The body's sensors, which always answer as of now, even when the world has moved on.
 
-    def save_state(self) -> bytes:
-        """The state of the world, with which `load_state` gives the same future."""
-
-    def load_state(self, state: bytes) -> None:
-        """Continue from a saved state of this world, or of another one of the same house, bodies and objects.
-
-        Raises:
-            HthorError: when it is the state of another world, or damaged.
+        They may be read in another thread while the world goes on. Making them costs more than `senses`, because what
+        cannot be computed later is computed now; pictures are drawn when they are read.
         """
-
-    def substep(self) -> None:
-        """Move bodies that drive by one of the `rules.SUBTICKS` steps of this tick; `advance` does those left."""
 
     def truth(self) -> tuple[ThingState, ...]:
         """The true states of all objects, for agents with the privilege "object_poses"."""

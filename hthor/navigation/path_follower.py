@@ -82,12 +82,14 @@ def shift(pose: Pose, point: Vec2, step: float = 0.5) -> Move:
 def face(pose: Pose, point: Vec3, eye_height: float, pitch_limit: float = math.pi / 2.0) -> Rotate | None:
     """The turn that centres ``point`` [m] in the picture; None when it is centred within 2 degrees.
 
+    The body turns by as much as the head, which keeps its angle to the body.
+
     Args:
         eye_height: height of the camera [m]. pitch_limit: largest pitch of the camera either way [rad].
     """
     dx, dy = point[0] - pose.x, point[1] - pose.y
     apart = math.hypot(dx, dy)
-    yaw = wrap(math.atan2(dy, dx) - pose.yaw) if apart > 1e-6 else 0.0
+    yaw = wrap(math.atan2(dy, dx) - pose.gaze) if apart > 1e-6 else 0.0
     aim = math.atan2(point[2] - eye_height, max(apart, 1e-6))
     pitch = max(-pitch_limit, min(pitch_limit, aim)) - pose.pitch
     if abs(yaw) < math.radians(2.0) and abs(pitch) < math.radians(2.0):

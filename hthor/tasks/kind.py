@@ -119,9 +119,12 @@ class TaskKind(ABC):
         return float(self.met(task, snapshot, house))
 
     def t_star(self, task: TaskSpec, house: HouseSpec) -> float:
-        """T* [s] of a task, rounded to a millisecond; inf when it cannot be done."""
-        times = self.least_times(house, task.objects, task.goal)([(task.human_start.x, task.human_start.y)])
-        return self.t_star_of(float(times[0]))
+        """T* [s] of a task, rounded to a millisecond; inf when it cannot be done.
+
+        Of several people whose starts the task states, the one who needs the least time counts.
+        """
+        starts = [(pose.x, pose.y) for pose in (task.human_start, *task.other_human_starts)]
+        return self.t_star_of(float(self.least_times(house, task.objects, task.goal)(starts).min()))
 
     def t_star_of(self, least: float) -> float:
         """T* [s] of a task that takes at least ``least`` [s], rounded to a millisecond; inf for inf."""

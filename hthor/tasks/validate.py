@@ -158,6 +158,7 @@ def _goal(task: TaskSpec, house: HouseSpec) -> Iterator[tuple[str, str]]:
 def _starts(task: TaskSpec, house: HouseSpec) -> Iterator[tuple[str, str]]:
     space = FreeSpace.of(house, RADIUS_M, HEIGHT_M)
     starts = [("human_start", task.human_start)]
+    starts += [(f"other_human_starts[{number}]", pose) for number, pose in enumerate(task.other_human_starts)]
     starts += [(f"robot_starts[{number}]", pose) for number, pose in enumerate(task.robot_starts)]
     for field, pose in starts:
         if not space.is_free(pose.x, pose.y):

@@ -25,7 +25,7 @@ class Snapshot(Struct, frozen=True, kw_only=True):
     Attributes:
         poses: seat -> pose of its body. holding: seat -> id of the object in its hand, empty for none.
         things: id -> state of every object and every thing that opens.
-        in_view: the person's seat -> ids of the objects in view within `rules.FIND_RANGE_M`.
+        in_view: every person's seat -> ids of the objects in view within `rules.FIND_RANGE_M`.
     """
 
     tick: int

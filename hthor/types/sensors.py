@@ -52,8 +52,8 @@ class Scan(Struct, frozen=True, kw_only=True):
     Walls, furniture and shut doors stop it; people, robots and movable objects are not in the scan.
 
     Attributes:
-        origin: the pose from which the scan was taken.
-        bearings: (N,) float64 [rad], relative to the heading, left positive.
+        origin: the pose from which the scan was taken; its ``yaw`` is that of the head.
+        bearings: (N,) float64 [rad], relative to that heading, left positive.
         ranges: (N,) float64 [m] from the body's axis; ``limit`` where the beam met nothing.
         limit: [m] the sensor's range.
         tops: (N,) float64 [m], heights of the things that the beams met, by which a table differs from a wall; infinite

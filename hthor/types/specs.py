@@ -121,8 +121,10 @@ class Goal(Struct, frozen=True, kw_only=True, omit_defaults=True):
 class TaskSpec(Struct, frozen=True, kw_only=True, omit_defaults=True):
     """One task, as frozen data; ``t_star`` [s] is the reference time, see `hthor.tasks.kind`.
 
-    ``difficulty`` is easy, medium or hard, and depends on the task alone; ``split`` is "seen" if its house is one of
-    the ten scenes, else "new". Both are empty in suites that do not state them.
+    The first person begins at ``human_start``, the others at ``other_human_starts``; those who have no place there begin
+    at the free places nearest to the first. ``difficulty`` is easy, medium or hard, and depends on the task
+    alone; ``split`` is "seen" if its house is one of the ten scenes, else "new". Both are empty in suites that do not
+    state them.
     """
 
     id: str
@@ -131,6 +133,7 @@ class TaskSpec(Struct, frozen=True, kw_only=True, omit_defaults=True):
     house_sha256: str
     human_start: Pose
     robot_starts: tuple[Pose, ...]
+    other_human_starts: tuple[Pose, ...] = ()
     objects: tuple[Placement, ...]
     goal: Goal
     instruction: str

@@ -5,19 +5,22 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from hthor.errors import StaleObservation
-from hthor.types import HUMAN, Pose, Snapshot, ThingState
+from hthor.types import Pose, Snapshot, ThingState, is_person
 from hthor.world.perception.visibility import Visibility
 from hthor.world.state.body_state import BodyState
 from hthor.world.state.doors import Doors
 from hthor.world.state.objects import Objects
 
+_Moment = tuple[tuple[Pose, ...], int, int]
+"""What the people's objects in view depend on: their poses, and the numbers of changes of objects and doors."""
+
 
 class GroundTruth:
-    """The states of all objects and all things that open, and the objects that the person has in view."""
+    """The states of all objects and all things that open, and the objects that each person has in view."""
 
     def __init__(self, objects: Objects, doors: Doors, visibility: Visibility, seats: Sequence[BodyState]) -> None:
         self._objects, self._doors, self._visibility, self._seats = objects, doors, visibility, seats
-        self._human = next(seat for seat in seats if seat.name == HUMAN)
+        self._people = {seat.name: seat for seat in seats if is_person(seat.name)}
         self._things: dict[str, ThingState] = {}
         self._version = (-1, -1)
         self._view: LazyInView | None = None
@@ -52,47 +55,51 @@ class GroundTruth:
         return {id: things[id] for id in sorted(things)} if gone or len(things) != known else things
 
     def _in_view(self, tick: int) -> LazyInView:
-        """The person's objects in view; the same record as long as nothing changes."""
-        moment = (self._human.pose, self._objects.changes, self._doors.changes)
+        """The people's objects in view; the same record as long as nothing changes."""
+        moment = self._moment()
         if self._view is None or self._view.moment != moment:
-            self._view = LazyInView(self, moment, tick)
+            self._view = LazyInView(self, tuple(self._people), moment, tick)
         return self._view
 
-    def look(self, moment: tuple[Pose, int, int], tick: int) -> tuple[str, ...]:
-        """Ids of the objects that the person has in view.
+    def _moment(self) -> _Moment:
+        poses = tuple([seat.pose for seat in self._people.values()])  # a list is faster than a generator
+        return (poses, self._objects.changes, self._doors.changes)
+
+    def look(self, seat: str, moment: _Moment, tick: int) -> tuple[str, ...]:
+        """Ids of the objects that a person has in view.
 
         Raises:
             StaleObservation: when the world is no longer at this ``moment``.
         """
-        if moment != (self._human.pose, self._objects.changes, self._doors.changes):
+        if moment != self._moment():
             raise StaleObservation(
                 f"in_view of the snapshot of tick {tick} was read after the world had moved on; "
                 "read it while the snapshot is new"
             )
-        return self._visibility.in_view(self._human)
+        return self._visibility.in_view(self._people[seat])
 
 
 class LazyInView(Mapping[str, tuple[str, ...]]):
     """The value of `hthor.types.Snapshot.in_view`, computed at its first reading because few tasks read it."""
 
-    __slots__ = ("_found", "_tick", "_truth", "moment")
+    __slots__ = ("_found", "_people", "_tick", "_truth", "moment")
 
-    def __init__(self, truth: GroundTruth, moment: tuple[Pose, int, int], tick: int) -> None:
-        self._truth, self._tick, self.moment = truth, tick, moment
-        self._found: tuple[str, ...] | None = None
+    def __init__(self, truth: GroundTruth, people: tuple[str, ...], moment: _Moment, tick: int) -> None:
+        self._truth, self._people, self._tick, self.moment = truth, people, tick, moment
+        self._found: dict[str, tuple[str, ...]] = {}
 
     def __getitem__(self, seat: str) -> tuple[str, ...]:
-        if seat != HUMAN:
-            raise KeyError(seat)
-        if self._found is None:
-            self._found = self._truth.look(self.moment, self._tick)
-        return self._found
+        if seat not in self._found:
+            if seat not in self._people:
+                raise KeyError(seat)
+            self._found[seat] = self._truth.look(seat, self.moment, self._tick)
+        return self._found[seat]
 
     def __iter__(self) -> Iterator[str]:
-        return iter((HUMAN,))
+        return iter(self._people)
 
     def __len__(self) -> int:
-        return 1
+        return len(self._people)
 
     def __repr__(self) -> str:
         return repr(dict(self))

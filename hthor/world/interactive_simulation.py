@@ -45,7 +45,7 @@ class InteractiveSimulation(SensingSimulation):
             return
         self._begin({})
         self._seed = seed
-        spawn.place_bodies(tuple(self._seats.values()), self.house.start, ())
+        spawn.place_bodies(tuple(self._seats.values()), (self.house.start,), ())
 
     def objects(self, kind: str = "", room: str = "") -> tuple[ThingState, ...]:
         """True states of the objects that can be picked up, by id; only of ``kind`` and in ``room`` (id) if given.

@@ -4,6 +4,8 @@ import math
 from collections.abc import Iterable
 from typing import Any
 
+from msgspec import UNSET
+
 from hthor.errors import HthorError
 from hthor.geometry import plane
 from hthor.types import Pose, Vec2, Vec3
@@ -72,10 +74,11 @@ def point3(name: str, value: object, unit: str = "metres") -> Vec3:
 
 
 def pose(value: Pose) -> Pose:
-    """The same pose with its heading in (-pi, pi]; raises as `number` does if a number is not finite."""
+    """The same pose with its headings in (-pi, pi]; raises as `number` does if a number is not finite."""
     x, y = number("x", value.x, "metres"), number("y", value.y, "metres")
     yaw, pitch = number("yaw", value.yaw, "radians"), number("pitch", value.pitch, "radians")
-    return Pose(x=x, y=y, yaw=plane.wrap(yaw), pitch=pitch)
+    head = UNSET if value.head is UNSET else plane.wrap(number("head", value.head, "radians"))
+    return Pose(x=x, y=y, yaw=plane.wrap(yaw), pitch=pitch, head=head)
 
 
 def _vector(name: str, value: object, size: int, unit: str) -> tuple[float, ...]:

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hthor.errors import HthorError, StaleObservation, UnknownName
+from hthor.errors import HthorError, UnknownName
 from hthor.looks import pack as packs
 from hthor.looks.pack import Pack
 from hthor.types import (
@@ -24,17 +24,18 @@ from hthor.types import (
 )
 from hthor.types import cameras as hthor_cameras
 from hthor.world import numbers
+from hthor.world.editable_simulation import EditableSimulation
 from hthor.world.model import inventory
 from hthor.world.perception import view_frustum
 from hthor.world.rendering.lazy_images import LazyImages, Size
-from hthor.world.simulation import Simulation
+from hthor.world.seat_senses import FrozenSenses, SeatSenses
 
 
-class SensingSimulation(Simulation):
-    """A `Simulation` with the sensors of every seat.
+class SensingSimulation(EditableSimulation):
+    """A simulation with the sensors of every seat.
 
     Args:
-        house, robots, objects, detectors: see `Simulation`.
+        house, robots, objects, detectors, people: see `hthor.world.simulation.Simulation`.
         profile: how pictures are drawn unless a call names another profile: "fast" needs only the processor, "nice" is
             for people and needs OpenGL.
         assets: a furniture pack, or its name; the profile "nice" shows its furniture where it has any, else our own.
@@ -51,15 +52,16 @@ class SensingSimulation(Simulation):
         profile: str = "fast",
         assets: Pack | str = "",
         cameras: Iterable[CameraSpec | str] = (),
+        people: int = 1,
     ) -> None:
         self._pack = (packs.load(assets) if assets else None) if isinstance(assets, str) else assets
-        super().__init__(house, robots, objects, detectors)
+        super().__init__(house, robots, objects, detectors, people)
         given = [hthor_cameras.parse(one) if isinstance(one, str) else one for one in cameras]
-        if len(given) > len(self.seats) - 1:
+        if len(given) > len(self.robots):
             raise HthorError(
-                f"there are {len(given)} cameras and {len(self.seats) - 1} robots; give one camera for each robot"
+                f"there are {len(given)} cameras and {len(self.robots)} robots; give one camera for each robot"
             )
-        self.cameras = dict(zip(self.seats[1:], given, strict=False))
+        self.cameras = dict(zip(self.robots, given, strict=False))
         self._pictures = LazyImages(
             self.house, self._env, self._geoms, self._seats, self._studio, profile, self.cameras
         )
@@ -69,6 +71,17 @@ class SensingSimulation(Simulation):
     def senses(self, seat: str) -> Senses:
         """The seat's sensors at this tick."""
         return SeatSenses(self, seat)
+
+    def frozen_senses(self, seat: str) -> Senses:
+        """The seat's sensors as they are now, to be read at any later time and in any thread.
+
+        Detections, sightings and the scan are made now; pictures are drawn from poses of now when they are read, one
+        after another if several threads read them.
+        """
+        found = self.detections(seat)
+        seen = {one.id: self.sighting(seat, one.id) for one in found if one.family == "object"}
+        scan, camera = self.scan(seat), self.camera(seat)
+        return FrozenSenses(found, scan, camera, seen, self._pictures.frozen(seat, self._seed))
 
     def detections(self, seat: str) -> tuple[Detection, ...]:
         """Detections of the seat's detector now, by id, with the detector's errors."""
@@ -152,74 +165,3 @@ class SensingSimulation(Simulation):
     def top_view_bounds(self) -> tuple[float, float, float, float]:
         """x0, y0, x1, y1 [m] of the top view: the rooms and a small margin."""
         return self._pictures.bounds
-
-
-class SeatSenses:
-    """A seat's detector, range scanner and camera at the tick at which this object was made."""
-
-    __slots__ = ("_detections", "_drawn", "_moment", "_scan", "_seat", "_view", "_world")
-
-    def __init__(self, world: SensingSimulation, seat: str) -> None:
-        self._world, self._seat, self._moment = world, seat, world.moment
-        self._detections: tuple[Detection, ...] | None = None
-        self._scan: Scan | None = None
-        self._view: View | None = None
-        self._drawn: dict[str, Any] = {}
-
-    def detections(self) -> tuple[Detection, ...]:
-        """Objects, furniture, doorways, people and robots in view, by id."""
-        self._check()
-        if self._detections is None:
-            self._detections = self._world.detections(self._seat)
-        return self._detections
-
-    def sighting(self, id: str) -> Sighting:
-        """How visible an object is; a share of 0 if it is not in view."""
-        self._check()
-        return self._world.sighting(self._seat, id)
-
-    def scan(self) -> Scan:
-        """Ranges to walls, furniture and shut doors, which stop this body; not to people, robots or objects."""
-        self._check()
-        if self._scan is None:
-            self._scan = self._world.scan(self._seat)
-        return self._scan
-
-    def rgb(self) -> NDArray[np.uint8]:
-        """The camera's picture, (H, W, 3) uint8."""
-        image: NDArray[np.uint8] = self._picture("rgb")
-        return image
-
-    def depth(self) -> NDArray[np.float32]:
-        """(H, W) float32 [m] along the optical axis."""
-        image: NDArray[np.float32] = self._picture("depth")
-        return image
-
-    def segmentation(self) -> NDArray[np.int32]:
-        """(H, W) int32, indices into ``World.names``, -1 for nothing."""
-        image: NDArray[np.int32] = self._picture("segmentation")
-        return image
-
-    def camera(self) -> Camera:
-        """The pose and the projection of the camera."""
-        self._check()
-        return self._world.camera(self._seat)
-
-    def _picture(self, mode: str) -> Any:
-        """A picture; in the profile "fast" all three are drawn at once, which costs little more than one."""
-        self._check()
-        if self._world.profile == "fast":
-            if self._view is None:
-                self._view = self._world.look(self._seat)
-            return getattr(self._view, mode)
-        if mode not in self._drawn:
-            self._drawn[mode] = self._world.picture(self._seat, mode)
-        return self._drawn[mode]
-
-    def _check(self) -> None:
-        if self._world.moment != self._moment:
-            tick = self._moment[1]
-            raise StaleObservation(
-                f"this observation of seat '{self._seat}' was made at tick {tick} and the world has moved on; "
-                "read pictures, scans and detections inside act, and keep what you need of them"
-            )

@@ -1,7 +1,6 @@
 """The simulation of a house with bodies and objects, one tick at a time."""
 
-import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import Any
 
 from hthor import houses
@@ -11,18 +10,22 @@ from hthor.houses.space.free_space import FreeSpace
 from hthor.types import (
     BodySpec,
     DetectorSpec,
+    Drive,
     Event,
     HouseSpec,
     Motion,
+    Move,
     Outcome,
     Placement,
     Pose,
     RobotSpec,
+    Rotate,
     Snapshot,
     TaskSpec,
     ThingState,
-    Vec2,
     Vec3,
+    Wait,
+    is_person,
 )
 from hthor.world import numbers
 from hthor.world.interaction import manipulation
@@ -30,12 +33,15 @@ from hthor.world.model import inventory
 from hthor.world.model.bodies import avatar, bodies
 from hthor.world.motion import spawn
 from hthor.world.perception import detector_noise
+from hthor.world.saved_state import StateKeeper
 from hthor.world.simulation_parts import SimulationParts
-from hthor.world.state.body_state import BodyState
+
+PEOPLE_MAX = 20
+"""The most people in one world."""
 
 
 class Simulation:
-    """A house, one person and any number of robots.
+    """A house with people and robots.
 
     The constructor compiles the model; `reset` only writes poses. After a reset, the same motions give bitwise the same
     states.
@@ -46,9 +52,11 @@ class Simulation:
         objects: (id, kind) pairs of the movable objects that tasks may place, besides the house's own.
         detectors: the robots' detectors, in the order of the robots: records, or texts that
             `hthor.types.detector_specs.parse` reads; the default "own" is the detector that the body declares.
+        people: how many people there are; their seats are "human", "human2", ...
 
     Attributes:
-        house: the floor plan. seats: names of all seats, the person's first. bodies: the body in each seat.
+        house: the floor plan. seats: names of all seats, the people's first. bodies: the body in each seat.
+        robots: names of the robots' seats.
         tick: ticks since the last reset. space: each seat's free-space grid.
     """
 
@@ -58,15 +66,17 @@ class Simulation:
         robots: Iterable[RobotSpec | str] = (),
         objects: Iterable[tuple[str, str]] = inventory.DEFAULT_OBJECTS,
         detectors: Iterable[DetectorSpec | str] = (),
+        people: int = 1,
     ) -> None:
         self.house = houses.load(house) if isinstance(house, str) else house
-        specs: list[BodySpec] = [avatar.HUMAN]
+        specs: list[BodySpec] = [avatar.HUMAN] * numbers.whole_number("people", people, 1, PEOPLE_MAX)
         robots = (robots,) if isinstance(robots, str) else robots
         specs += [bodies.load_robot(robot) if isinstance(robot, str) else robot for robot in robots]
-        self.seats = bodies.seat_names(len(specs) - 1)
+        self.seats = bodies.seat_names(people, len(specs) - people)
+        self.robots = tuple(seat for seat in self.seats if not is_person(seat))
         self.bodies = dict(zip(self.seats, specs, strict=True))
         self.space = {seat: FreeSpace.of(self.house, spec.radius, spec.height) for seat, spec in self.bodies.items()}
-        self.detectors = detector_noise.assign_detectors(self.seats[1:], self.bodies, detectors)
+        self.detectors = detector_noise.assign_detectors(self.robots, self.bodies, detectors)
         self._contents = inventory.split_things(self.house, objects)
         with collection_paused():
             parts = SimulationParts(self.house, self._contents, self.bodies, self.space, self.detectors)
@@ -76,8 +86,9 @@ class Simulation:
         self._door_handling, self._joint_carrying = parts.door_handling, parts.joint_carrying
         self._manipulation, self._dispatch, self._editor = parts.manipulation, parts.dispatch, parts.editor
         self._scanners, self._visibility, self._detectors = parts.scanners, parts.visibility, parts.detectors
+        self._driven, self._keeper = parts.driven, StateKeeper(self.house, parts, self.bodies, self.detectors)
         self.tick, self._episode = 0, 0
-        spawn.place_bodies(tuple(self._seats.values()), self.house.start, ())
+        spawn.place_bodies(tuple(self._seats.values()), (self.house.start,), ())
         self._begin({})
 
     @property
@@ -88,9 +99,10 @@ class Simulation:
     def reset(self, task: TaskSpec, seed: int = 0) -> None:
         """Begin a task: all objects in place and at rest, things closed, doorways open.
 
-        A body whose start is not free stands at the nearest free place. A robot without a start in the task stands at
-        the free place nearest to the first robot's start. ``seed`` decides all random draws of the episode, which are
-        the errors of noisy detectors and the numbers of segmentations.
+        A body whose start is not free stands at the nearest free place. A person without a start in the task stands at
+        the free place nearest to the first person's start, such a robot at that nearest to the first robot's start.
+        ``seed`` decides all random draws of the episode, which are the errors of noisy detectors and the numbers of
+        segmentations.
 
         Raises:
             TaskError: when the task belongs to another house or places an object that this world does not have.
@@ -98,7 +110,8 @@ class Simulation:
         spawn.check_task(task, self.house)
         self._begin({placement.id: placement for placement in task.objects}, task.id)
         self._seed = seed
-        spawn.place_bodies(tuple(self._seats.values()), task.human_start, task.robot_starts)
+        people = (task.human_start, *task.other_human_starts)
+        spawn.place_bodies(tuple(self._seats.values()), people, task.robot_starts)
 
     def _begin(self, placements: dict[str, Placement], task: str = "") -> None:
         movables = {movable.id: movable for movable in self._contents.movables}
@@ -119,17 +132,25 @@ class Simulation:
         self._joint_carrying.reset()
         self._doors.reset()
         self._doorways.update({})
+        self._driven.reset()
         self.tick = 0
         self._episode += 1
         self._events: list[Event] = []
 
     def idle(self, seat: str) -> bool:
-        """Whether the seat's body is free for a new motion."""
+        """Whether the seat's body is free for a new motion; a body that drives is, while its hands are free."""
         return self._seats[seat].activity is None
 
     def start(self, seat: str, action: Motion) -> None:
-        """Begin a motion. If a rule forbids it, `outcome` says why and the next `advance` returns a "refused" event."""
+        """Begin a motion. If a rule forbids it, `outcome` says why and the next `advance` returns a "refused" event.
+
+        A `Drive` is never refused, and replaces any motion but those of the hands. It is replaced by a `Move`, `Rotate`
+        or `Wait`; during a motion of the hands, the body stands.
+        """
         body = self._seats[seat]
+        if isinstance(action, Drive):
+            self._driven.start(body, action)
+            return
         reason = (
             f"{seat} is busy with another motion" if body.activity is not None else self._dispatch.refusal(body, action)
         )
@@ -139,14 +160,25 @@ class Simulation:
             data = {"motion": verb, "reason": reason}
             self._events.append(Event(tick=self.tick, seat=seat, kind="refused", data=data))
             return
+        if body.drive is not None and isinstance(action, (Move, Rotate, Wait)):
+            self._driven.stop(body)
         body.activity = self._dispatch.activity(body, action)
 
     def outcome(self, seat: str) -> Outcome | None:
         """How the seat's last motion ended; None before any motion has ended."""
         return self._seats[seat].outcome
 
+    def substep(self) -> None:
+        """Make one of the tick's `rules.SUBTICKS` steps of the bodies that drive; `advance` makes those that are left.
+
+        With the same set-points at the same steps, the states are the same, whoever makes the steps. After the last
+        step of a tick this does nothing until `advance` was called.
+        """
+        self._events += self._driven.step(self.tick + 1)
+
     def advance(self) -> tuple[Event, ...]:
-        """Let one tick pass: every busy body moves, in the order of the seats, then objects fall and doors swing.
+        """Let one tick pass: first all bodies that drive move, then every busy body, in the order of the seats, then
+        objects fall and doors swing.
 
         Returns:
             the tick's events: picked, placed, dropped, opened, closed, refused, blocked (by the house), in_way (by
@@ -158,6 +190,8 @@ class Simulation:
         """
         self.tick += 1
         events, self._events = self._events, []
+        if self._driven.active or self._driven.steps:
+            events += self._driven.finish(self.tick)
         for seat in self._seats.values():
             if seat.activity is None:
                 continue
@@ -188,96 +222,22 @@ class Simulation:
             "All objects are back where they were one tick before, at rest: go on, move that object, or reset."
         )
 
-    def out_of_hand(self, seat: str, id: str, place: Vec2 | None = None) -> str:
-        """Why a body could not pick an object up or reach a thing's door with an empty hand; empty when it could.
-
-        Args:
-            seat: the body's seat. id: the object or thing; the result is also "" if it can be neither picked up nor
-                opened, or if the body can do neither.
-            place: (x, y) [m] where the body would stand, facing the thing; None for its present pose.
-        """
-        body = self._seats[seat]
-        return self._manipulation.out_of_hand(body if place is None else self._imagined(body, id, place), id)
-
-    def _imagined(self, body: BodyState, id: str, place: Vec2) -> BodyState:
-        """A copy of a body that stands at a place and faces an object or a thing that opens."""
-        item, door = self._objects.get(id), self._doors.get(id)
-        x, y, _ = item.position if item is not None else door.thing.centre if door is not None else (*place, 0.0)
-        copy = BodyState(body.name, body.spec, body.space)
-        copy.pose = Pose(x=place[0], y=place[1], yaw=math.atan2(y - place[1], x - place[0]))
-        return copy
-
-    def teleport(self, seat: str, pose: Pose) -> None:
-        """Put a body somewhere at once; its motion under way ends.
-
-        Raises:
-            HthorError: when the body does not fit there, another is there, or a number is not finite or out of range.
-        """
-        body, pose = self._seats[seat], numbers.pose(pose)
-        spawn.check_fits(body, pose, self._seats.values())
-        body.pose, body.activity = pose, None
-        self._door_handling.release(seat)
-        self._joint_carrying.release(body)
-        if body.holding:
-            self._objects.follow(body.holding)
-
-    def put_object(
-        self,
-        id: str,
-        position: Sequence[float] | None = None,
-        *,
-        on: str = "",
-        yaw: float = 0.0,
-        velocity: Sequence[float] = (0.0, 0.0, 0.0),
-    ) -> None:
-        """Put one of this world's objects somewhere at once; from then on the engine moves it.
-
-        Args:
-            id: an object of the house or of ``objects``; it need not be in the episode yet.
-            position: [m] of its centre; with ``on``, it is put as near to this point as there is room.
-            on: id of a thing to put it on (or in, if the thing has no top), along the thing's edges when ``yaw`` is 0.
-            yaw: [rad] its heading; with ``on``, relative to the thing.
-            velocity: [m/s] its initial velocity.
-
-        Raises:
-            UnknownName: when there is no object with this id, or nothing can be put on the thing ``on``.
-            HthorError: when the object is in someone's hand, would be outdoors or inside something, has no room there,
-                or its velocity is too high.
-        """
-        self._editor.put(id, position, on, yaw, velocity)
-
-    def remove_object(self, id: str) -> None:
-        """Take an object out of the episode; `put_object` brings it back.
-
-        Raises:
-            UnknownName: when there is no object with this id. HthorError: when it is in a hand.
-        """
-        self._editor.remove(id)
-
-    def set_open(self, thing: str, wanted: bool = True) -> None:
-        """Open or close a fridge, a drawer or a door at once.
-
-        Raises:
-            UnknownName: when no thing with this id opens. HthorError: when something is in its way.
-        """
-        self._door_handling.put(thing, wanted)
-
     @property
     def still(self) -> bool:
         """Whether every door and every object that is not carried is at rest."""
         return self._env.still
 
     @property
-    def moment(self) -> tuple[int, int]:
-        """The numbers of the episode and the tick, to which an observation belongs."""
-        return (self._episode, self.tick)
+    def moment(self) -> tuple[int, int, int]:
+        """The numbers of the episode, the tick and its step, to which an observation belongs."""
+        return (self._episode, self.tick, self._driven.steps)
 
     def pose(self, seat: str) -> Pose:
         """The pose of the seat's body."""
         return self._seats[seat].pose
 
     def poses(self) -> dict[str, Pose]:
-        """The pose of every seat's body, the person's first."""
+        """The pose of every seat's body, the people's first."""
         return {name: seat.pose for name, seat in self._seats.items()}
 
     def holding(self, seat: str) -> str:
@@ -295,3 +255,19 @@ class Simulation:
     def snapshot(self) -> Snapshot:
         """The true state at this tick, for judging and logging."""
         return self._truth.snapshot(self.tick)
+
+    def save_state(self) -> bytes:
+        """The whole state of the world, for `load_state`; pictures and readings of sensors are not in it."""
+        return self._keeper.save(self.tick, self._seed, self._events)
+
+    def load_state(self, state: bytes) -> None:
+        """Go back to a state that `save_state` returned: the same motions then have the same results, byte for byte.
+
+        The state may also be of another world of the same house, bodies, objects and detectors.
+
+        Raises:
+            HthorError: when the bytes are damaged, or belong to a different world; nothing has changed then.
+        """
+        record = self._keeper.load(state)
+        self.tick, self._seed, self._events = record.tick, record.seed, list(record.events)
+        self._episode += 1

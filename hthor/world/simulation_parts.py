@@ -29,10 +29,19 @@ from hthor.world.model.composer_task import HouseTask
 from hthor.world.model.geom_index import GeomIndex
 from hthor.world.model.inventory import Contents
 from hthor.world.motion import locomotion
-from hthor.world.motion.locomotion import ObstacleFootprints
+from hthor.world.motion.driving import DrivenBodies
+from hthor.world.motion.locomotion import (
+    MoveMotion,
+    ObstacleFootprints,
+    RotateMotion,
+    WaitMotion,
+    duration_ticks,
+    length_and_direction,
+)
 from hthor.world.perception.detector_noise import NoisyDetector
 from hthor.world.perception.range_scanner import RangeScanner
 from hthor.world.perception.visibility import Visibility
+from hthor.world.records import ActivityState, Handling, Rotating, Turning, Waiting
 from hthor.world.state.body_state import Activity, BodyState, BodyStates, RoomTracker
 from hthor.world.state.doors import Doors, Doorways
 from hthor.world.state.objects import Objects
@@ -55,27 +64,44 @@ class ActionDispatch:
             return reason or (self._joint_carrying.stuck(seat) if seat.holding and isinstance(action, Move) else "")
         if isinstance(action, (Pick, Place, Drop, Open, Close)):
             return self._manipulation.refusal(seat, action)
-        return f"{type(action).__name__} is not a motion; valid: Move, Rotate, Pick, Place, Drop, Open, Close, Wait"
+        names = "Move, Rotate, Drive, Pick, Place, Drop, Open, Close, Wait"
+        return f"{type(action).__name__} is not a motion; valid: {names}"
 
     def activity(self, seat: BodyState, action: Motion) -> Activity:
         """A motion that has begun, to be carried on tick by tick."""
-        load = self._joint_carrying.of(seat) if seat.holding else None
-        if load is not None and isinstance(action, Move):
-            return CarryMotion(seat, action, load, self._culprit)
-        if load is not None and isinstance(action, Rotate):
-            return CarryRotation(seat, action)
-        if isinstance(action, Move):
-            return locomotion.MoveMotion(seat, action, self._others[seat.name], self._culprit)
-        if isinstance(action, Rotate):
-            return locomotion.RotateMotion(seat, action)
         if isinstance(action, Wait):
-            return locomotion.WaitMotion(action)
-        assert not isinstance(action, Drive), "refused before"
+            return WaitMotion(duration_ticks(action.seconds))
+        load = self._joint_carrying.of(seat) if seat.holding else None
+        if isinstance(action, Move):
+            left, along = length_and_direction(seat, action)
+            if load is not None:
+                return CarryMotion(seat, load, self.culprit, left, along)
+            return MoveMotion(seat, self._others[seat.name], self.culprit, left, along)
+        if isinstance(action, Rotate):
+            if load is not None:
+                return CarryRotation(seat, action.yaw, action.pitch)
+            return RotateMotion(seat, action, seat.pose)
+        assert not isinstance(action, Drive), "see DrivenBodies"
         return HandMotion(seat, action, self._manipulation)
 
-    def _culprit(self, seat: BodyState, step: Vec2) -> str:
+    def resume(self, seat: BodyState, state: ActivityState) -> Activity:
+        """A motion that goes on from a state."""
+        if isinstance(state, Waiting):
+            return WaitMotion(state.left)
+        if isinstance(state, Rotating):
+            return RotateMotion(seat, state.motion, state.begun, state.done)
+        if isinstance(state, Turning):
+            return CarryRotation(seat, state.yaw, state.pitch)
+        if isinstance(state, Handling):
+            return HandMotion(seat, state.motion, self._manipulation, state.done)
+        if state.load:
+            return CarryMotion(seat, self._joint_carrying.load(state.load), self.culprit, state.left, state.along)
+        others = self._others[seat.name]
+        return MoveMotion(seat, others, self.culprit, state.left, state.along, state.hindered)
+
+    def culprit(self, seat: BodyState, step: Vec2) -> str:
         """The obstacle that the body would have hit: the nearest thing's id, or "wall"."""
-        shut = [leaf.opening for leaf in self._doors if leaf.opening is not None and not leaf.open]
+        shut = self._doors.shut().values()
         return self._obstacles.nearest((seat.pose.x + step[0], seat.pose.y + step[1]), seat.spec.height, shut)
 
 
@@ -84,7 +110,7 @@ class SimulationParts:
 
     Args:
         house: the floor plan. contents: its things, split into moving and static ones.
-        bodies: the body in each seat, the person's first. space: each seat's free-space grid; the dict is updated when
+        bodies: the body in each seat, the people's first. space: each seat's free-space grid; the dict is updated when
             doorways are shut or opened.
         detectors: each robot's detector.
     """
@@ -115,6 +141,7 @@ class SimulationParts:
             house, geoms, objects, doors, surfaces, overlap, self.door_handling, self.joint_carrying
         )
         self.dispatch = ActionDispatch(house, self.manipulation, doors, seats)
+        self.driven = DrivenBodies(seats, self.joint_carrying, self.dispatch.culprit, objects.follow)
         self.editor = SceneEditor(house, self.task, self.env, geoms, objects, surfaces, overlap)
         self.scanners = {seat.name: RangeScanner(seat.spec, seat.space, house) for seat in seats}
         self.visibility = Visibility(geoms, objects, doors, contents.statics, house.openings, seats)

@@ -31,9 +31,9 @@ _TRIES = 100
 
 
 def rotation_towards(pose: Pose, body: BodySpec, point: Vec3) -> Rotate:
-    """The rotation after which a body at ``pose`` faces ``point`` [m], its camera tilted to it as far as possible."""
+    """The rotation after which the head of a body at ``pose`` faces ``point`` [m], tilted to it as far as possible."""
     dx, dy = point[0] - pose.x, point[1] - pose.y
-    yaw = plane.wrap(math.atan2(dy, dx) - pose.yaw)
+    yaw = plane.wrap(math.atan2(dy, dx) - pose.gaze)
     up = math.atan2(point[2] - body.eye, max(math.hypot(dx, dy), 1e-6))
     return Rotate(yaw=yaw, pitch=max(-body.pitch_limit, min(body.pitch_limit, up)) - pose.pitch)
 

@@ -61,7 +61,7 @@ def test_turning_is_exact_and_takes_its_time(world: World) -> None:
         (Rotate(yaw=7.0), "rotation is 7.00 rad; at most one full turn, 6.28 rad"),
         (Rotate(pitch=1.2), "camera pitch would be 1.20 rad; at most 1.05 rad up or down"),
         (Wait(seconds=math.nan), "seconds must be a finite number, got nan"),
-        ("hop", "str is not a motion; valid: Move, Rotate, Pick, Place, Drop, Open, Close, Wait"),
+        ("hop", "str is not a motion; valid: Move, Rotate, Drive, Pick, Place, Drop, Open, Close, Wait"),
     ],
 )
 def test_impossible_motions_are_refused_with_a_reason(world: World, motion, expected: str) -> None:

@@ -1,4 +1,4 @@
-"""Find an object: done when the person has it in view from close by.
+"""Find an object: done when a person has it in view from close by.
 
 The least time is the time of a person who knows all places:
 
@@ -16,7 +16,7 @@ Turning, recognising and reading cost nothing.
 
 from hthor import catalog, rules
 from hthor.tasks.kind import LeastTimes, TaskKind, target_of
-from hthor.types import HUMAN, Goal, HouseSpec, Placement, Snapshot, TaskSpec
+from hthor.types import Goal, HouseSpec, Placement, Snapshot, TaskSpec
 
 
 class ObjectGoalNavigation(TaskKind):
@@ -39,7 +39,7 @@ class ObjectGoalNavigation(TaskKind):
         return f"Find {catalog.kind(target_of(goal, objects).kind).indefinite}."
 
     def met(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec) -> bool:
-        return task.goal.target in snapshot.in_view.get(HUMAN, ())
+        return any(task.goal.target in seen for seen in snapshot.in_view.values())
 
     def solved(self, goal: Goal, objects: tuple[Placement, ...], house: HouseSpec) -> bool:
         return False

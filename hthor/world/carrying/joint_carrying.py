@@ -29,9 +29,10 @@ of 0.40 m radius has room.
 """
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
+import msgspec
 import numpy as np
 
 from hthor import catalog, rules
@@ -39,11 +40,14 @@ from hthor.geometry import plane
 from hthor.geometry.plane import wrap
 from hthor.geometry.ray_casting import Floats
 from hthor.houses.space import free_space
-from hthor.types import Event, HouseSpec, Move, Outcome, Pose, Rotate, Vec2, Vec3
+from hthor.types import Event, HouseSpec, Outcome, Vec2, Vec3
 from hthor.world.carrying.load import LIFT_M
 from hthor.world.carrying.trailer import TrailerLoad
-from hthor.world.motion.locomotion import EPS, SLIDE_SHARE_MIN, TickResult, length_and_direction
+from hthor.world.motion.driving import LOAD
+from hthor.world.motion.locomotion import Culprit, TickResult, clip, pitch_limit
 from hthor.world.motion.reach import out_of_reach
+from hthor.world.motion.steps import EPS, FREE, HOUSE, SLIDE_SHARE_MIN
+from hthor.world.records import LoadRecord, Moving, Turning
 from hthor.world.state.body_state import BodyState
 from hthor.world.state.doors import Doors, leaf_rectangle
 from hthor.world.state.movable_object import MovableObject
@@ -75,6 +79,23 @@ class JointCarrying:
         """Begin an episode: nobody holds anything."""
         self._loads.clear()
 
+    def records(self) -> tuple[LoadRecord, ...]:
+        """The things that are held by handles."""
+        return tuple(load.record() for load in self._loads.values())
+
+    def restore(self, records: Iterable[LoadRecord]) -> None:
+        """Go back to these things."""
+        self._loads.clear()
+        for record in records:
+            self._loads[record.item] = self.load(record.item)
+            self._loads[record.item].restore(record)
+
+    def load(self, id: str) -> TrailerLoad:
+        """The thing with this id as a load; a new one if nobody holds it."""
+        known, item = self._loads.get(id), self._objects.known(id)
+        assert item is not None, "only objects are carried"
+        return known or TrailerLoad(item, self._seats, self._obstacles)
+
     def of(self, seat: BodyState) -> TrailerLoad | None:
         """The thing that ``seat`` holds by a handle; None for none."""
         load = self._loads.get(seat.holding)
@@ -104,9 +125,20 @@ class JointCarrying:
         weight = f"{load.item.id} weighs {load.item.mass:.1f} kg; {load.holders} {load.lifted:.1f} kg by its handles"
         return f"{weight}: wait until somebody helps, or let go"
 
+    def pace(self, seat: BodyState) -> float | None:
+        """[m/s] The speed at which ``seat`` goes with the thing that it holds by a handle; None if it holds none so."""
+        load = self.of(seat)
+        return None if load is None else load.pace
+
+    def go(self, seat: BodyState, step: Vec2, length: float, tick: int) -> tuple[str, bool]:
+        """See `hthor.world.motion.driving.JointLoads`."""
+        load = self.of(seat)
+        assert load is not None, "asked before"
+        return go_with_load(seat, load, step, length, tick) if load.up else (LOAD, True)
+
     def hold(self, seat: BodyState, item: MovableObject) -> EventList:
         """Take hold of the nearest free handle; the thing rises if its bearers are strong enough."""
-        load = self._loads.setdefault(item.id, TrailerLoad(item, self._seats, self._obstacles))
+        load = self._loads[item.id] = self.load(item.id)
         load.ends[seat.name] = self._handle(seat, item)[0]
         seat.holding = item.id
         self._objects.grip(item.id, tuple(load.ends))
@@ -142,7 +174,7 @@ class JointCarrying:
         """Rectangles (N, 5) that are in the way of a carried thing now, see `hthor.world.carrying.trailer_kernel`."""
         if self._fixed is None:
             self._fixed = free_space.obstacle_rectangles(self._house, _CARRY_HEIGHT_M)
-        shut = [leaf_rectangle(leaf.opening) for leaf in self._doors if leaf.opening and not leaf.open]
+        shut = [leaf_rectangle(opening) for opening in self._doors.shut().values()]
         return np.concatenate((self._fixed, np.array(shut))) if shut else self._fixed
 
     def _lower(self, load: TrailerLoad) -> None:
@@ -160,7 +192,7 @@ class JointCarrying:
 
     def _handle(self, seat: BodyState, item: MovableObject) -> tuple[int, Vec3]:
         """The free handle nearest to a body: which end, and its position [m]."""
-        load = self._loads.get(item.id) or TrailerLoad(item, self._seats, self._obstacles)
+        load = self.load(item.id)
         here = (seat.pose.x, seat.pose.y)
         ends = [end for end in (1, -1) if end not in load.ends.values()]
         places = [(end, load.handle(end)) for end in ends]
@@ -171,51 +203,72 @@ class CarryMotion:
     """Moving with a load along a straight line, as far as the house, the other bodies and the load allow.
 
     Args:
-        culprit: returns the name of the obstacle at a place, for the outcome.
+        culprit: names the obstacle at a place, for the outcome. left: the way left [m]. along: its direction.
     """
 
-    def __init__(
-        self, seat: BodyState, motion: Move, load: TrailerLoad, culprit: Callable[[BodyState, Vec2], str]
-    ) -> None:
+    of_hands = False
+
+    def __init__(self, seat: BodyState, load: TrailerLoad, culprit: Culprit, left: float, along: Vec2) -> None:
         self._seat, self._load, self._culprit = seat, load, culprit
-        self._left, self._along = length_and_direction(seat, motion)
+        self._left, self._along = left, along
 
     def advance(self, tick: int) -> TickResult:
         seat, load = self._seat, self._load
         if seat.name not in load.ends:
             return Outcome(motion="move", ok=False, reason=f"{load.item.id} was put down"), ()
-        step = min(load.pace * rules.TICK_S, self._left)
-        self._left -= step
-        dx, dy = self._along[0] * step, self._along[1] * step
-        if step > 0.0 and not load.follows(seat, tick) and not self._go(dx, dy, step):
-            return self._stop(tick, (dx, dy))
+        length = min(load.pace * rules.TICK_S, self._left)
+        self._left -= length
+        step = self._along[0] * length, self._along[1] * length
+        met, stuck = go_with_load(seat, load, step, length, tick)
+        if stuck:
+            return self._stop(tick, met, step)
         return (None if self._left > EPS else Outcome(motion="move", ok=True)), ()
 
-    def _stop(self, tick: int, step: Vec2) -> TickResult:
-        other = self._load.body_in_the_way(self._seat)
-        by = other or self._culprit(self._seat, step)
-        outcome = Outcome(motion="move", ok=False, reason=f"{other} is in the way" if other else "blocked", by=by)
-        kind = "in_way" if other else "blocked"
+    def state(self) -> Moving:
+        return Moving(self._left, self._along, load=self._load.item.id)
+
+    def _stop(self, tick: int, met: str, step: Vec2) -> TickResult:
+        by = self._culprit(self._seat, step) if met == HOUSE else met
+        reason = "blocked" if met == HOUSE else f"{met} is in the way"
+        outcome = Outcome(motion="move", ok=False, reason=reason, by=by)
+        kind = "blocked" if met == HOUSE else "in_way"
         return outcome, (Event(tick=tick, seat=self._seat.name, kind=kind, data={"by": by}),)
 
-    def _go(self, dx: float, dy: float, step: float) -> bool:
-        """Go straight on, or else along one axis, unless the step is nearly perpendicular to it."""
-        ways = ((dx, dy), *(way for way in ((dx, 0.0), (0.0, dy)) if abs(way[0] + way[1]) > SLIDE_SHARE_MIN * step))
-        return any(self._load.lead(self._seat, *way) for way in ways)
+
+def go_with_load(seat: BodyState, load: TrailerLoad, step: Vec2, length: float, tick: int) -> tuple[str, bool]:
+    """Lead the load by ``step`` [m], ``length`` long, straight on or else along one axis, unless the step is nearly
+    perpendicular to it; with another leader in this tick, wait.
+
+    Returns:
+        what is in the way, and whether the body had to stay where it was.
+    """
+    if length <= 0.0 or load.follows(seat, tick):
+        return FREE, False
+    dx, dy = step
+    least = SLIDE_SHARE_MIN * length
+    ways = (step, *(way for way in ((dx, 0.0), (0.0, dy)) if abs(way[0] + way[1]) > least))
+    if any(load.lead(seat, *way) for way in ways):
+        return FREE, False
+    return load.body_in_the_way(seat) or HOUSE, True
 
 
 class CarryRotation:
-    """Turning the body and tilting the camera while other bearers may draw the body along."""
+    """Turning the body and tilting the camera by angles [rad] while other bearers may draw the body along."""
 
-    def __init__(self, seat: BodyState, motion: Rotate) -> None:
-        self._seat, self._yaw, self._pitch = seat, motion.yaw, motion.pitch
+    of_hands = False
+
+    def __init__(self, seat: BodyState, yaw: float, pitch: float) -> None:
+        self._seat, self._yaw, self._pitch = seat, yaw, pitch
         self._rate = seat.spec.turn_rate * rules.TICK_S
 
     def advance(self, tick: int) -> TickResult:  # noqa: ARG002
-        yaw, pitch = (max(-self._rate, min(self._rate, left)) for left in (self._yaw, self._pitch))
+        yaw, pitch = (clip(left, self._rate) for left in (self._yaw, self._pitch))
         self._yaw, self._pitch = self._yaw - yaw, self._pitch - pitch
-        pose, limit = self._seat.pose, self._seat.spec.pitch_limit
-        tilt = max(-limit, min(limit, pose.pitch + pitch))
-        self._seat.pose = Pose(x=pose.x, y=pose.y, yaw=wrap(pose.yaw + yaw), pitch=tilt)
+        pose = self._seat.pose
+        tilt = clip(pose.pitch + pitch, pitch_limit(self._seat.spec, pose))
+        self._seat.pose = msgspec.structs.replace(pose, yaw=wrap(pose.yaw + yaw), pitch=tilt)
         over = abs(self._yaw) < EPS and abs(self._pitch) < EPS
         return (Outcome(motion="rotate", ok=True) if over else None), ()
+
+    def state(self) -> Turning:
+        return Turning(self._yaw, self._pitch)

@@ -18,14 +18,16 @@ All lengths, angles and counts below are our choice.
 import math
 from collections.abc import Callable, Sequence
 
+import msgspec
 import numpy as np
 
 from hthor import rules
 from hthor.geometry.plane import turn
 from hthor.geometry.ray_casting import Floats
-from hthor.types import Pose, Vec2
+from hthor.types import Vec2
 from hthor.world.carrying import trailer_kernel
 from hthor.world.carrying.load import Load
+from hthor.world.records import LoadRecord
 from hthor.world.state.body_state import BodyState
 from hthor.world.state.movable_object import MovableObject
 
@@ -76,6 +78,29 @@ class TrailerLoad(Load):
         self._paths: dict[str, tuple[Vec2, ...]] = {}
         self._steer_angle, self._steer_left = 0.0, 0
         self._horizon = float(self.half[0]) + _STEP_MAX_M + max((seat.spec.reach for seat in seats), default=0.0)
+
+    def record(self) -> LoadRecord:
+        """The state of the thing and its bearers."""
+        x, y, yaw = (float(value) for value in self.state)
+        return LoadRecord(
+            item=self.item.id,
+            ends=self.ends,
+            up=self.up,
+            leader=self._leader,
+            tick=self._tick,
+            z=self.z,
+            state=(x, y, yaw),
+            paths=self._paths,
+            steer_angle=self._steer_angle,
+            steer_left=self._steer_left,
+        )
+
+    def restore(self, record: LoadRecord) -> None:
+        """Go back to a state."""
+        self.ends, self._paths = dict(record.ends), dict(record.paths)
+        self.up, self._leader, self._tick, self.z = record.up, record.leader, record.tick, record.z
+        self.state = np.array(record.state)
+        self._steer_angle, self._steer_left = record.steer_angle, record.steer_left
 
     def lead(self, leader: BodyState, dx: float, dy: float) -> bool:
         """Move ``leader`` by (dx, dy) [m], or by a share of it, and the thing and the other bearers with it.
@@ -244,7 +269,7 @@ class TrailerLoad(Load):
             else:
                 paths[seat.name] = path[::-1][trailer_kernel.aim_index(path[::-1], obstacles) : -1][::-1]
             if place != (pose.x, pose.y) or seat is leader:  # a new record tells the world that something has moved
-                seat.pose = Pose(x=float(place[0]), y=float(place[1]), yaw=pose.yaw, pitch=pose.pitch)
+                seat.pose = msgspec.structs.replace(pose, x=float(place[0]), y=float(place[1]))
         self.state, self._paths = state, paths
         return True
 

@@ -21,6 +21,7 @@ from hthor.world.model.geoms import quaternion
 from hthor.world.motion.locomotion import TickResult, duration_ticks
 from hthor.world.motion.reach import held_pose, out_of_reach, out_of_sight, too_heavy
 from hthor.world.perception import view_frustum
+from hthor.world.records import HandAction, Handling
 from hthor.world.state import support_surfaces
 from hthor.world.state.body_state import BodyState
 from hthor.world.state.doors import Doors
@@ -29,8 +30,6 @@ from hthor.world.state.objects import Objects
 from hthor.world.state.overlap_test import FLOOR, OverlapTest
 from hthor.world.state.support_surfaces import SupportSurfaces
 
-HandAction = Pick | Place | Drop | Open | Close
-
 _EVENT_KINDS = {"pick": "picked", "place": "placed", "drop": "dropped", "open": "opened", "close": "closed"}
 _SPOT_TRIES = 60
 """How many free spots of one surface are tried before the surface counts as out of sight."""
@@ -38,12 +37,15 @@ _NO_POSE: QPose = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
 
 
 class HandMotion:
-    """A motion of the hand, which lasts the body's ``handling`` time."""
+    """A motion of the hand, which lasts the body's ``handling`` time; ``done`` is how many ticks of it are over."""
 
-    def __init__(self, seat: BodyState, motion: HandAction, hands: Manipulation) -> None:
+    of_hands = True
+
+    def __init__(self, seat: BodyState, motion: HandAction, hands: Manipulation, done: int = 0) -> None:
         self._seat, self._motion, self._hands = seat, motion, hands
-        self._done, self._ticks = 0, duration_ticks(seat.spec.handling)
-        hands.begin(seat, motion)
+        self._done, self._ticks = done, duration_ticks(seat.spec.handling)
+        if not done:
+            hands.begin(seat, motion)
 
     def advance(self, tick: int) -> TickResult:
         """Carry the motion on by one tick; it takes effect at its last tick."""
@@ -59,6 +61,10 @@ class HandMotion:
         told = (("refused", {"motion": verb, "reason": reason}),) if reason else done
         events = tuple(Event(tick=tick, seat=name, kind=kind, data=data) for kind, data in told)
         return Outcome(motion=verb, ok=not reason, reason=reason), events
+
+    def state(self) -> Handling:
+        """All that it needs to go on later."""
+        return Handling(self._motion, self._done)
 
 
 class Manipulation:

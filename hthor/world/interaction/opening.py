@@ -96,7 +96,7 @@ class DoorHandling:
     def _rest(self, leaf: DoorState, opened: bool) -> None:
         self._move(leaf, 1.0 if opened else 0.0)
         leaf.open = opened
-        self._doorways.update({one.thing.id: one.opening for one in self._doors if one.opening and not one.open})
+        self._doorways.update(self._doors.shut())
         self._doors.changes += 1
 
     def _leaf(self, motion: Open | Close) -> DoorState:

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from hthor.world.model.engine import Environment, mujoco
+from hthor.world.records import EngineRecord
 
 QPose = tuple[float, float, float, float, float, float, float]
 """Position [m] and unit quaternion (w, x, y, z) of a free object."""
@@ -28,6 +29,18 @@ DAMP_TICKS, DAMP_TOLERANCE = 50, 0.5
 """After so many ticks without rest, the engine's sleep tolerance is raised to the second number to end trembling."""
 _PARTS_MAX = 64
 """The most parts that a step is split into."""
+# fmt: off
+_ARRAYS = (
+    "qpos", "qvel", "qacc", "qacc_smooth", "qacc_warmstart", "xfrc_applied", "energy", "tree_asleep", "tree_awake",
+    "body_awake", "body_awake_ind", "parent_awake_ind", "dof_awake_ind", "bvh_active", "xpos", "xquat", "xmat",
+    "xipos", "ximat", "xanchor", "xaxis", "geom_xpos", "geom_xmat", "subtree_com", "cinert", "cdof", "crb", "M",
+    "qLD", "qLDiagInv", "cvel", "cdof_dot", "subtree_linvel", "subtree_angmom", "cacc", "cfrc_ext", "cfrc_int",
+    "qDeriv", "qH", "qHDiagInv", "qLU", "qfrc_applied", "qfrc_bias", "qfrc_passive", "qfrc_constraint",
+    "qfrc_damper", "qfrc_gravcomp", "qfrc_smooth", "qfrc_spring", "qfrc_fluid",
+)
+# fmt: on
+"""What the engine keeps from step to step: its state, and what it does not compute again of things that sleep."""
+_COUNTS = ("time", "nbody_awake", "nparent_awake", "ntree_awake", "nv_awake")
 SPEED_MAX_M_S, SPIN_MAX_RAD_S = 20.0, 300.0
 """[m/s, rad/s] Limits on speed along and spin about any axis: above them things would pass through boards or spin ever
 faster.
@@ -114,6 +127,31 @@ class LazyComposerEnv(Environment):
         self._restless = 0 if self._still else self._restless + 1
         return True
 
+    def record(self) -> EngineRecord:
+        """The state of the engine, from which it goes on bitwise the same; what is carried is not in it."""
+        data = self.data
+        arrays = {name: getattr(data, name).tobytes() for name in _ARRAYS}
+        arrays["qpos0"] = self.model.qpos0.tobytes()
+        counts = {name: float(getattr(data, name)) for name in _COUNTS}
+        return EngineRecord(arrays, counts, self._still, self._restless)
+
+    def restore(self, record: EngineRecord) -> None:
+        """Go back to a state of this model; nothing is carried until `carry` is called."""
+        self._held.clear()
+        self._carried[:] = -(1 << 30)
+        self._still, self._restless = record.still, record.restless
+        _write(self.model.qpos0, record.arrays["qpos0"])
+        mujoco.mj_resetData(self.model, self.data)
+        for name in _ARRAYS:
+            _write(getattr(self.data, name), record.arrays[name])
+        for name in _COUNTS:
+            setattr(self.data, name, type(getattr(self.data, name))(record.counts[name]))
+
+    def fits(self, record: EngineRecord) -> bool:
+        """Whether a record has all that this model's state consists of."""
+        sizes = {name: getattr(self.data, name).nbytes for name in _ARRAYS} | {"qpos0": self.model.qpos0.nbytes}
+        return {name: len(raw) for name, raw in record.arrays.items()} == sizes and set(record.counts) == set(_COUNTS)
+
     def _advance(self) -> None:
         """Make one step of the engine, in as many parts as the fastest object needs."""
         haste = float((np.abs(self.data.qvel[self._free]) / self._limits).max(initial=0.0))
@@ -158,3 +196,8 @@ class LazyComposerEnv(Environment):
         mujoco.mj_resetData(self.model, self.data)
         self.data.qpos[:] = self._sound
         self.touch()
+
+
+def _write(array: Any, raw: bytes) -> None:
+    """Fill an array of the engine with bytes."""
+    array[:] = np.frombuffer(raw, array.dtype).reshape(array.shape)

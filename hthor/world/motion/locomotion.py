@@ -1,8 +1,7 @@
 """Moving, turning and waiting, tick by tick.
 
-A body moves relative to its heading at the start of the motion. Where the way ahead is blocked it slides along x or y;
-where both are blocked it stops. Other bodies are discs: no body may come closer to another than the sum of their radii,
-but a body that is too close already may always move away.
+A body moves relative to its heading at the start of the motion, in steps by the law of `hthor.world.motion.steps`. A
+head that was turned by a `Drive` keeps its angle to the body in all these motions: a rotation turns both by as much.
 """
 
 import math
@@ -13,23 +12,21 @@ from hthor.geometry import plane
 from hthor.geometry.plane import turn, wrap
 from hthor.houses.space import solids
 from hthor.houses.space.free_space import STEP_M
-from hthor.types import Event, HouseSpec, Move, Opening, Outcome, Pose, Rotate, Vec2, Wait
+from hthor.types import BodySpec, Event, HouseSpec, Move, Opening, Outcome, Pose, Rotate, Vec2, Wait
 from hthor.world import numbers
+from hthor.world.motion.steps import EPS, FREE, HOUSE, go_or_slide
+from hthor.world.records import Moving, Rotating, Waiting
 from hthor.world.state.body_state import BodyState
 from hthor.world.state.doors import leaf_rectangle
 
-EPS = 1e-9
-"""[m, rad, ticks] Tolerance for rounding."""
 WAIT_MAX_S = 3600.0
 """[s] The longest single wait."""
-SLIDE_SHARE_MIN = 0.05
-"""A body slides only if at least this share of the step lies along the axis; our choice."""
-_FREE, _BLOCKED = "", "*"
-"""What blocks a step: nothing or the house; any other value is the seat in the way."""
 
 _MOVED, _ROTATED, _WAITED = (Outcome(motion=motion, ok=True) for motion in ("move", "rotate", "wait"))
 
 TickResult = tuple[Outcome | None, tuple[Event, ...]]
+Culprit = Callable[[BodyState, Vec2], str]
+"""Returns the name of the obstacle that a body would hit in a step (dx, dy) [m]."""
 WALL = "wall"
 _JAMB_M = 0.05
 """[m] A wall may be nearer than a shut door by this much, and the door is still named as the obstacle."""
@@ -57,7 +54,7 @@ def refusal(seat: BodyState, motion: Move | Rotate | Wait) -> str:
         return reason
     if abs(motion.yaw) > 2 * math.pi + EPS:
         return f"rotation is {numbers.format_number(motion.yaw)} rad; at most one full turn, {2 * math.pi:.2f} rad"
-    pitch, limit = seat.pose.pitch + motion.pitch, seat.spec.pitch_limit
+    pitch, limit = seat.pose.pitch + motion.pitch, pitch_limit(seat.spec, seat.pose)
     if abs(pitch) > limit + EPS:
         return f"camera pitch would be {numbers.format_number(pitch)} rad; at most {limit:.2f} rad up or down"
     return ""
@@ -75,32 +72,46 @@ def _finite(**given: object) -> str:
 
 
 class WaitMotion:
-    """Standing still."""
+    """Standing still for so many ticks."""
 
-    def __init__(self, motion: Wait) -> None:
-        self._left = duration_ticks(motion.seconds)
+    of_hands = False
+
+    def __init__(self, ticks: int) -> None:
+        self._left = ticks
 
     def advance(self, tick: int) -> TickResult:  # noqa: ARG002
         self._left -= 1
         return (None if self._left else _WAITED), ()
 
+    def state(self) -> Waiting:
+        return Waiting(self._left)
+
 
 class RotateMotion:
-    """Turning the body and tilting the camera, both at the body's turn rate."""
+    """Turning the body, with its head, and tilting the camera, both at the body's turn rate.
 
-    def __init__(self, seat: BodyState, motion: Rotate) -> None:
-        self._seat, self._motion, self._from = seat, motion, seat.pose
-        self._done, self._rate = 0, seat.spec.turn_rate * rules.TICK_S
+    Args:
+        begun: the pose at the start. done: for how many ticks it has been going on.
+    """
+
+    of_hands = False
+
+    def __init__(self, seat: BodyState, motion: Rotate, begun: Pose, done: int = 0) -> None:
+        self._seat, self._motion, self._from = seat, motion, begun
+        self._done, self._rate = done, seat.spec.turn_rate * rules.TICK_S
         self._ticks = max(1, math.ceil(max(abs(motion.yaw), abs(motion.pitch)) / self._rate - EPS))
 
     def advance(self, tick: int) -> TickResult:  # noqa: ARG002
         self._done += 1
         start, most = self._from, self._done * self._rate
-        limit = self._seat.spec.pitch_limit
-        pitch = start.pitch + _clip(self._motion.pitch, most)
-        yaw = wrap(start.yaw + _clip(self._motion.yaw, most))
-        self._seat.pose = Pose(x=start.x, y=start.y, yaw=yaw, pitch=_clip(pitch, limit))
+        pitch = start.pitch + clip(self._motion.pitch, most)
+        yaw = wrap(start.yaw + clip(self._motion.yaw, most))
+        limit = pitch_limit(self._seat.spec, start)
+        self._seat.pose = Pose(x=start.x, y=start.y, yaw=yaw, pitch=clip(pitch, limit), head=start.head)
         return (None if self._done < self._ticks else _ROTATED), ()
+
+    def state(self) -> Rotating:
+        return Rotating(self._motion, self._from, self._done)
 
 
 class MoveMotion:
@@ -108,56 +119,51 @@ class MoveMotion:
 
     Args:
         others: all other bodies. culprit: returns the name of the obstacle at a place, for the outcome.
+        left: the way left [m]. along: its direction. hindered: whether a body has been in the way.
     """
 
+    of_hands = False
+
     def __init__(
-        self, seat: BodyState, motion: Move, others: Sequence[BodyState], culprit: Callable[[BodyState, Vec2], str]
+        self,
+        seat: BodyState,
+        others: Sequence[BodyState],
+        culprit: Culprit,
+        left: float,
+        along: Vec2,
+        hindered: bool = False,
     ) -> None:
         self._seat, self._others, self._culprit = seat, others, culprit
-        self._left, self._along = length_and_direction(seat, motion)
-        self._hindered = False
+        self._left, self._along, self._hindered = left, along, hindered
 
     def advance(self, tick: int) -> TickResult:
-        step = min(self._seat.spec.speed * rules.TICK_S, self._left)
-        self._left -= step
-        dx, dy = self._along[0] * step, self._along[1] * step
-        met = self._try(dx, dy)
+        length = min(self._seat.spec.speed * rules.TICK_S, self._left)
+        self._left -= length
+        step = self._along[0] * length, self._along[1] * length
+        met, stuck = go_or_slide(self._seat, self._others, step, length)
         if not met:
             return (None if self._left > EPS else _MOVED), ()
         events = self._in_way(tick, met)
-        if self._slide(dx, 0.0, step) and self._slide(0.0, dy, step):
-            return self._stop(tick, met, (dx, dy), events)
+        if stuck:
+            return self._stop(tick, met, step, events)
         return (None if self._left > EPS else _MOVED), events
 
-    def _try(self, dx: float, dy: float) -> str:
-        """Go by (dx, dy) [m] if that place is free; else returns what is in the way."""
-        pose = self._seat.pose
-        x, y = pose.x + dx, pose.y + dy
-        for other in self._others:
-            if _too_close(self._seat, other, x, y):
-                return other.name
-        if not self._seat.space.segment_free((pose.x, pose.y), (x, y)):
-            return _BLOCKED
-        self._seat.pose = Pose(x=x, y=y, yaw=pose.yaw, pitch=pose.pitch)
-        return _FREE
-
-    def _slide(self, dx: float, dy: float, step: float) -> str:
-        """Try one axis of a step, unless the step is nearly perpendicular to it."""
-        return self._try(dx, dy) if abs(dx + dy) > SLIDE_SHARE_MIN * step else _BLOCKED
+    def state(self) -> Moving:
+        return Moving(self._left, self._along, self._hindered)
 
     def _in_way(self, tick: int, met: str) -> tuple[Event, ...]:
         """The event that another body is in the way, at most once per move.
 
         Its tick is the one before the step: up to that tick the other body had no effect on the move.
         """
-        if met in (_FREE, _BLOCKED) or self._hindered:
+        if met in (FREE, HOUSE) or self._hindered:
             return ()
         self._hindered = True
         return (Event(tick=tick - 1, seat=self._seat.name, kind="in_way", data={"by": met}),)
 
     def _stop(self, tick: int, met: str, step: Vec2, events: tuple[Event, ...]) -> TickResult:
         name = self._seat.name
-        if met != _BLOCKED:
+        if met != HOUSE:
             return Outcome(motion="move", ok=False, reason=f"{met} is in the way", by=met), events
         by = self._culprit(self._seat, step)
         outcome = Outcome(motion="move", ok=False, reason="blocked", by=by)
@@ -176,16 +182,16 @@ def duration_ticks(seconds: float) -> int:
     return max(1, math.ceil(max(0.0, seconds) / rules.TICK_S - 1e-6))
 
 
-def _clip(value: float, most: float) -> float:
+def clip(value: float, most: float) -> float:
+    """``value``, or the nearest number from ``-most`` to ``most``."""
     return max(-most, min(most, value))
 
 
-def _too_close(seat: BodyState, other: BodyState, x: float, y: float) -> bool:
-    there, least = other.pose, seat.spec.radius + other.spec.radius - EPS
-    dx, dy = x - there.x, y - there.y
-    if abs(dx) >= least or abs(dy) >= least or math.hypot(dx, dy) >= least:
-        return False
-    return math.hypot(dx, dy) < math.hypot(seat.pose.x - there.x, seat.pose.y - there.y)
+def pitch_limit(spec: BodySpec, pose: Pose) -> float:
+    """[rad] By how much a camera may be tilted: by the body's limit, or as far as it is already, as measured heads may
+    be.
+    """
+    return max(spec.pitch_limit, abs(pose.pitch))
 
 
 class ObstacleFootprints:

@@ -4,30 +4,42 @@ import math
 from collections.abc import Iterable, Sequence
 
 import numpy as np
+from msgspec import UNSET
 from numpy.typing import NDArray
 
 from hthor.errors import HthorError, TaskError
 from hthor.geometry.plane import wrap
-from hthor.types import HouseSpec, Pose, TaskSpec, Vec2
+from hthor.types import HouseSpec, Pose, TaskSpec, Vec2, is_person
 from hthor.world import numbers
 from hthor.world.state.body_state import BodyState
 
 
-def place_bodies(seats: Sequence[BodyState], human: Pose, robots: Sequence[Pose]) -> None:
-    """Put every seat at its start, or at the free place nearest to it.
+def place_bodies(seats: Sequence[BodyState], people: Sequence[Pose], robots: Sequence[Pose]) -> None:
+    """Put every seat at its start, or at the free place nearest to it, with its head straight.
 
-    A robot without a start of its own stands as near as possible to the first robot's start, clear of earlier bodies.
+    Those with a start of their own come first. A person without one stands as near as possible to the first person's
+    start, a robot without one to the first robot's, clear of all bodies that already have their places.
+
+    Args:
+        people: the starts of the first people, at least of one. robots: the starts of the first robots.
     """
-    first = robots[0] if robots else human
-    for number, seat in enumerate(seats):
-        given = human if number == 0 else robots[number - 1] if number <= len(robots) else None
-        pose = first if given is None else given
-        x, y = (
-            seat.space.nearest_free(pose.x, pose.y) if given is not None else _clear_place(seat, pose, seats[:number])
-        )
-        limit = seat.spec.pitch_limit
-        pitch = max(-limit, min(limit, pose.pitch))
-        seat.clear(Pose(x=float(x), y=float(y), yaw=wrap(pose.yaw), pitch=float(pitch)))
+    persons = [seat for seat in seats if is_person(seat.name)]
+    machines = [seat for seat in seats if not is_person(seat.name)]
+    placed: list[BodyState] = []
+    for seat, pose in (*zip(persons, people, strict=False), *zip(machines, robots, strict=False)):
+        _stand(seat, pose, seat.space.nearest_free(pose.x, pose.y))
+        placed.append(seat)
+    rest = [(seat, people[0]) for seat in persons[len(people) :]]
+    rest += [(seat, (robots or people)[0]) for seat in machines[len(robots) :]]
+    for seat, pose in rest:
+        _stand(seat, pose, _clear_place(seat, pose, placed))
+        placed.append(seat)
+
+
+def _stand(seat: BodyState, pose: Pose, place: Vec2) -> None:
+    limit = seat.spec.pitch_limit
+    pitch = max(-limit, min(limit, pose.pitch))
+    seat.clear(Pose(x=float(place[0]), y=float(place[1]), yaw=wrap(pose.yaw), pitch=float(pitch)))
 
 
 def _clear_place(seat: BodyState, pose: Pose, others: Sequence[BodyState]) -> Vec2:
@@ -55,7 +67,9 @@ def _is_clear(place: Vec2, seat: BodyState, others: Sequence[BodyState]) -> bool
 
 
 def check_fits(body: BodyState, pose: Pose, seats: Iterable[BodyState]) -> None:
-    """Raise HthorError unless ``body`` can be at ``pose``: on free floor, clear of the others, its camera in range."""
+    """Raise HthorError unless ``body`` can be at ``pose``: on free floor, clear of others, head and camera in range."""
+    if pose.head is not UNSET and not body.has_neck:
+        raise HthorError(f"{body.name} has no neck, so its head cannot be turned")
     limit = body.spec.pitch_limit
     if abs(pose.pitch) > limit + 1e-9:
         raise HthorError(
@@ -83,7 +97,7 @@ def check_task(task: TaskSpec, house: HouseSpec) -> None:
         for placement in task.objects:
             numbers.point3(f"position of {placement.id}", placement.position)
             numbers.number(f"yaw of {placement.id}", placement.yaw, "radians")
-        for pose in (task.human_start, *task.robot_starts):
+        for pose in (task.human_start, *task.other_human_starts, *task.robot_starts):
             numbers.pose(pose)
     except HthorError as error:
         raise TaskError(task.id, "objects or starts", str(error)) from None

@@ -5,7 +5,9 @@ from typing import Any
 
 import numba
 import numpy as np
+from msgspec import UNSET
 
+from hthor.geometry import plane
 from hthor.geometry.ray_casting import Bools, Floats
 from hthor.houses.space import grid_kernel, solids
 from hthor.houses.space.free_space import FreeSpace
@@ -24,7 +26,9 @@ class RangeScanner:
         self._over = 0.0 if isinstance(spec, RobotSpec) else spec.eye  # a robot's range finder cannot look over things
 
     def scan(self, pose: Pose, space: FreeSpace) -> Scan:
-        """The scan from ``pose``, exact on the obstacle grid ``space`` of 5 cm cells."""
+        """The scan from the head at ``pose``, exact on the obstacle grid ``space`` of 5 cm cells."""
+        if pose.head is not UNSET:
+            pose = Pose(x=pose.x, y=pose.y, yaw=plane.wrap(pose.gaze), pitch=pose.pitch)
         place = *space.origin, space.cell, pose.x, pose.y, pose.yaw
         ranges, tops, walls = _march(space.raw, self._tops, *place, self._bearings, self._limit, self._over)
         beyond = walls if self._over else None

@@ -15,7 +15,8 @@ ViewAxes = tuple[float, ...]
 
 def view_vector(pose: Pose, spec: BodySpec) -> Floats:
     """(14,) float64: eye [m], forward, left and up axes (house frame), tangents of half the fields of view."""
-    cy, sy, cp, sp = math.cos(pose.yaw), math.sin(pose.yaw), math.cos(pose.pitch), math.sin(pose.pitch)
+    yaw = pose.gaze
+    cy, sy, cp, sp = math.cos(yaw), math.sin(yaw), math.cos(pose.pitch), math.sin(pose.pitch)
     wide, high = half_fov_tangents(spec)
     axes = (cp * cy, cp * sy, sp, -sy, cy, 0.0, -sp * cy, -sp * sy, cp)
     return np.array((pose.x, pose.y, spec.eye, *axes, wide, high))

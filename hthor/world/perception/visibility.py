@@ -9,7 +9,7 @@ from msgspec.structs import force_setattr
 
 from hthor import rules
 from hthor.geometry.ray_casting import Floats, Ints
-from hthor.types import HUMAN, Detection, Opening, Pose, Sighting, Thing, Vec2, Vec3
+from hthor.types import Detection, Opening, Pose, Sighting, Thing, Vec2, Vec3, is_person
 from hthor.world.model.geom_index import GeomIndex
 from hthor.world.perception import occlusion_kernel, view_frustum, visibility_kernel
 from hthor.world.perception.landmarks import Landmark, landmarks, pack_targets
@@ -230,7 +230,7 @@ class Visibility:
     def _eye_numbers(view: _SeatView) -> tuple[float, float, float, float, float, float, float]:
         """Position [m], heading and pitch [rad] of an eye, and the tangents of half its fields of view."""
         pose = view.body.pose
-        return (pose.x, pose.y, view.body.spec.eye, pose.yaw, pose.pitch, *view.tangents)
+        return (pose.x, pose.y, view.body.spec.eye, pose.gaze, pose.pitch, *view.tangents)
 
     def _is_near(self, index: int, pose: Pose, height: float) -> bool:
         """Whether an object is within range of the eye; the sum is that of the kernel, so that both agree bitwise."""
@@ -276,11 +276,11 @@ def _object_detection(item: MovableObject, eye: Vec3) -> Detection:
 def _body_detection(other: BodyState, eye: Vec3) -> Detection:
     pose: Pose = other.pose
     position = (pose.x, pose.y, other.spec.height / 2)
-    human = other.name == HUMAN
+    person = is_person(other.name)
     return Detection(
         id=other.name,
-        kind="person" if human else other.spec.name,
-        family="person" if human else "robot",
+        kind="person" if person else other.spec.name,
+        family="person" if person else "robot",
         position=position,
         size=(2 * other.spec.radius, 2 * other.spec.radius, other.spec.height),
         yaw=pose.yaw,

@@ -1,4 +1,4 @@
-"""Pictures of a world, drawn only when they are read.
+"""Pictures of a world, drawn only when they are read, in any thread.
 
 The profile ``fast`` draws the engine's own solids in a millisecond, with the processor only. The profile ``nice`` draws
 detailed meshes with textures and shadows, through OpenGL; it is loaded at its first use.
@@ -6,6 +6,8 @@ detailed meshes with textures and shadows, through OpenGL; it is loaded at its f
 
 from __future__ import annotations
 
+import functools
+import threading
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -18,7 +20,7 @@ from hthor.world import numbers
 from hthor.world.model.composer_env import LazyComposerEnv
 from hthor.world.model.geom_index import GeomIndex
 from hthor.world.rendering import camera
-from hthor.world.rendering.camera import PoseSnapshot
+from hthor.world.rendering.camera import Images, PoseSnapshot
 from hthor.world.state.body_state import BodyState
 
 if TYPE_CHECKING:
@@ -87,28 +89,25 @@ class LazyImages:
         self._opengl_renderer: OpenGLRenderer | None = None
         self._ray_renderer: RayRenderer | None = None
         self._labels = SegmentationLabels(geoms.names)
+        self._lock = threading.RLock()  # renderers and labels keep buffers from picture to picture
 
     def names(self, seed: int) -> tuple[str, ...]:
         """The owners that the numbers of a segmentation stand for in the episode of that seed."""
-        self._labels.draw(seed)
-        return self._labels.names
+        with self._lock:
+            self._labels.draw(seed)
+            return self._labels.names
 
     def view(self, seat: str, mode: str, size: Size, profile: str | None, seed: int) -> NDArray[Any]:
         """The camera's picture now: rgb (H, W, 3) uint8, depth (H, W) float32 [m] or segmentation (H, W) int32."""
         _check(MODES, mode=mode)
-        size = self._size(seat, size)
-        picture: NDArray[Any] = self._draw(profile).view(self._moment(), seat, mode, size, self._by(seat))
-        return self._labelled(picture, seed) if mode == "segmentation" else picture
+        return self._view(self._moment(), seat, mode, self._size(seat, size), profile, seed)
 
     def look(self, seat: str, size: Size, profile: str | None, seed: int) -> View:
         """Colour, depth and segmentation of this moment."""
         size = self._size(seat, size)
-        images = self._draw(profile).look(self._moment(), seat, size, self._by(seat))
+        images = self._look(self._moment(), seat, size, profile, seed)
         return View(
-            rgb=images.rgb,
-            depth=images.depth,
-            segmentation=self._labelled(images.segmentation, seed),
-            camera=self.camera(seat, size),
+            rgb=images.rgb, depth=images.depth, segmentation=images.segmentation, camera=self.camera(seat, size)
         )
 
     def camera(self, seat: str, size: Size) -> Camera:
@@ -119,11 +118,22 @@ class LazyImages:
     def frame(self, seat: str, size: Size, profile: str | None) -> Callable[[], NDArray[np.uint8]]:
         """A function that draws the colour picture of the seat's camera at this moment."""
         _check(PROFILES, profile=profile or self.profile)
-        fixed, moment, by = self._size(seat, size), self._moment(), self._by(seat)
+        return functools.partial(self._view, self._moment(), seat, "rgb", self._size(seat, size), profile, 0)
 
-        def draw() -> NDArray[np.uint8]:
-            picture: NDArray[np.uint8] = self._draw(profile).view(moment, seat, "rgb", fixed, by)
-            return picture
+    def frozen(self, seat: str, seed: int) -> Callable[[str], NDArray[Any]]:
+        """A function that draws the pictures of the seat's camera at this moment by their modes, each once.
+
+        In the profile "fast" all three are drawn at once, which costs little more than one.
+        """
+        size, moment, drawn = self._size(seat, None), self._moment(), dict[str, NDArray[Any]]()
+
+        def draw(mode: str) -> NDArray[Any]:
+            with self._lock:
+                if mode not in drawn and self.profile == "fast":
+                    drawn.update(self._look(moment, seat, size, None, seed)._asdict())
+                elif mode not in drawn:
+                    drawn[mode] = self._view(moment, seat, mode, size, None, seed)
+                return drawn[mode]
 
         return draw
 
@@ -133,7 +143,9 @@ class LazyImages:
             raise ValueError(
                 f"pixels_per_metre must be more than 0 and at most 500, got {numbers.quoted(pixels_per_metre)}"
             )
-        picture: NDArray[np.uint8] = self._draw(profile).top_view(self._moment(), self.bounds, pixels_per_metre)
+        moment = self._moment()
+        with self._lock:
+            picture: NDArray[np.uint8] = self._draw(profile).top_view(moment, self.bounds, pixels_per_metre)
         return picture
 
     @property
@@ -142,6 +154,18 @@ class LazyImages:
         corners: list[Vec2] = [corner for room in self._house.rooms for corner in room.polygon]
         xs, ys = [corner[0] for corner in corners], [corner[1] for corner in corners]
         return (min(xs) - _MARGIN_M, min(ys) - _MARGIN_M, max(xs) + _MARGIN_M, max(ys) + _MARGIN_M)
+
+    def _view(
+        self, moment: PoseSnapshot, seat: str, mode: str, size: tuple[int, int], profile: str | None, seed: int
+    ) -> NDArray[Any]:
+        with self._lock:
+            picture: NDArray[Any] = self._draw(profile).view(moment, seat, mode, size, self._by(seat))
+            return self._labelled(picture, seed) if mode == "segmentation" else picture
+
+    def _look(self, moment: PoseSnapshot, seat: str, size: tuple[int, int], profile: str | None, seed: int) -> Images:
+        with self._lock:
+            images: Images = self._draw(profile).look(moment, seat, size, self._by(seat))
+            return images._replace(segmentation=self._labelled(images.segmentation, seed))
 
     def _by(self, seat: str) -> CameraSpec:
         return self._cameras.get(self._seats[seat].name, camera.OWN)  # raises for an unknown seat

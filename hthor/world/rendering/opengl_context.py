@@ -45,6 +45,28 @@ def context(width: int, height: int) -> Any:
 
 
 @contextlib.contextmanager
+def current(context: Any) -> Iterator[None]:
+    """Make ``context`` the current one of this thread, and none afterwards: it can be current in one thread only."""
+    context.make_current()
+    try:
+        yield
+    finally:
+        _release(context)
+
+
+def _release(context: Any) -> None:
+    backend = sys.modules[type(context).__module__]
+    name = backend.__name__.rpartition(".")[2]
+    if name == "egl":
+        nothing = backend.EGL.EGL_NO_SURFACE, backend.EGL.EGL_NO_SURFACE, backend.EGL.EGL_NO_CONTEXT
+        backend.EGL.eglMakeCurrent(backend.EGL_DISPLAY, *nothing)
+    elif name == "osmesa":
+        backend.osmesa.OSMesaMakeCurrent(None, None, backend.GL.GL_FLOAT, 0, 0)
+    else:
+        backend.glfw.make_context_current(None)
+
+
+@contextlib.contextmanager
 def named(context: Any) -> Iterator[None]:
     """Make the engine load its OpenGL functions from the library that ``context`` comes from."""
     before = os.environ.get(_VARIABLE)

@@ -66,9 +66,9 @@ class OpenGLRenderer:
         self._numbers = np.array([number.get(owner, -1) for owner in dressed.owner], np.int32)
         self._data = mujoco.MjData(self._model)
         self._gl = opengl_context.context(64, 64)
-        with opengl_context.named(self._gl):
+        with opengl_context.current(self._gl), opengl_context.named(self._gl):
             self._context = mujoco.MjrContext(self._model, int(mujoco.mjtFontScale.mjFONTSCALE_100))
-        mujoco.mjr_setBuffer(int(mujoco.mjtFramebuffer.mjFB_OFFSCREEN), self._context)
+            mujoco.mjr_setBuffer(int(mujoco.mjtFramebuffer.mjFB_OFFSCREEN), self._context)
         self._scene = mujoco.MjvScene(self._model, maxgeom=self._model.ngeom + 64)
         self._option = mujoco.MjvOption()
 
@@ -118,7 +118,7 @@ class OpenGLRenderer:
         mujoco.mj_kinematics(self._model, self._data)
 
     def _stand(self, body: int, head: int, pose: Pose, spec: BodySpec) -> None:
-        turn, shift = bodies.head_transform(spec, pose.pitch)
+        turn, shift = bodies.head_transform(spec, pose.pitch, pose.head or 0.0)
         about, cos, sin = geoms.quaternion(pose.yaw), math.cos(pose.yaw), math.sin(pose.yaw)
         self._data.mocap_pos[body], self._data.mocap_quat[body] = (pose.x, pose.y, 0.0), about
         x, y, z = shift
@@ -134,9 +134,12 @@ class OpenGLRenderer:
         mujoco.mjv_updateScene(self._model, self._data, self._option, None, blank, everything, self._scene)
 
     def _shoot(self, mode: str, size: tuple[int, int]) -> Any:
+        with opengl_context.current(self._gl):
+            return self._rendered(mode, size)
+
+    def _rendered(self, mode: str, size: tuple[int, int]) -> Any:
         fine = _SUPERSAMPLING if mode == "rgb" else 1
         width, height = size[0] * fine, size[1] * fine
-        self._gl.make_current()
         if (self._context.offWidth, self._context.offHeight) != (width, height):
             mujoco.mjr_resizeOffscreen(width, height, self._context)
         for flag in (mujoco.mjtRndFlag.mjRND_SEGMENT, mujoco.mjtRndFlag.mjRND_IDCOLOR):
@@ -176,8 +179,8 @@ def _downsampled(pixels: NDArray[np.uint8], times: int) -> NDArray[np.uint8]:
 
 
 def _free(gl: Any, context: Any) -> None:
-    gl.make_current()
-    context.free()
+    with opengl_context.current(gl):
+        context.free()
     gl.free()
 
 

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from msgspec import UNSET
 from numpy.typing import NDArray
 
 from hthor.looks import finishes
@@ -88,15 +89,15 @@ class RayRenderer:
         return view, w, hit
 
     def _pose(self, moment: PoseSnapshot, without: str) -> None:
-        """Put everything where it was at ``moment``, heads tilted, and the body ``without`` far away."""
+        """Put everything where it was at ``moment``, heads turned, and the body ``without`` far away."""
         moment.restore(self._model, self._data, without)
         for seat, (pose, spec) in moment.seats.items():
-            if seat == without or pose.pitch == 0.0:
+            if seat == without or (pose.pitch == 0.0 and pose.head is UNSET):
                 continue
             if seat not in self._heads:
                 parts = enumerate(bodies.look(spec))
                 self._heads[seat] = np.array([self._span[seat][0] + k for k, part in parts if part.moves == HEAD], int)
-            self._tilt(self._heads[seat], *bodies.head_transform(spec, pose.pitch), pose)
+            self._tilt(self._heads[seat], *bodies.head_transform(spec, pose.pitch, pose.head or 0.0), pose)
 
     def _tilt(self, ids: Any, turn: Any, offset: Any, pose: Any) -> None:
         """Turn the solids of a head, in the frame of a body that stands at ``pose``."""

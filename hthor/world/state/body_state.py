@@ -7,17 +7,40 @@ from typing import Protocol
 from hthor.errors import UnknownName
 from hthor.geometry import plane
 from hthor.houses.space.free_space import FreeSpace
-from hthor.types import BodySpec, Event, HouseSpec, Outcome, Pose
+from hthor.types import BodySpec, Drive, Event, HouseSpec, Outcome, Pose, Vec3, is_person
+from hthor.world.records import ActivityState, Driving
 
 _ROUNDING_M = 1e-9
 """[m] Safety margin against rounding on the distance within which a body cannot have left its room."""
 
 
 class Activity(Protocol):
-    """A motion under way."""
+    """A motion under way.
+
+    Attributes:
+        of_hands: whether it keeps the hands busy, so that a `Drive` does not replace it.
+    """
+
+    of_hands: bool
 
     def advance(self, tick: int) -> tuple[Outcome | None, tuple[Event, ...]]:
         """Carry the motion on by one tick; the outcome is None until the motion has ended."""
+
+    def state(self) -> ActivityState:
+        """All that it needs to go on later."""
+
+
+class Driver(Protocol):
+    """Keeps the set-point that a body drives by; `hthor.world.motion.driving.DriveMotion`."""
+
+    def keep(self, drive: Drive) -> None:
+        """Take over a set-point."""
+
+    def step(self, tick: int, last: bool) -> tuple[Event, ...]:
+        """Make one of the steps of a tick, ``last`` the last of them; its events."""
+
+    def state(self) -> Driving:
+        """All that it needs to go on later."""
 
 
 class BodyState:
@@ -27,19 +50,22 @@ class BodyState:
         name: its seat. spec: what it can do. space: its free floor now, without shut doorways.
         pose: where it is; replaced by a new record whenever the body moves, never changed in place.
         activity: the motion under way, None while idle. outcome: how the last motion ended.
+        drive: the set-point that it drives by, None if it does not drive. has_neck: whether its head turns by itself.
         holding: id of the object in hand or held by a handle, empty for none.
     """
 
-    __slots__ = ("activity", "holding", "name", "outcome", "pose", "space", "spec")
+    __slots__ = ("activity", "drive", "has_neck", "holding", "name", "outcome", "pose", "space", "spec")
 
     def __init__(self, name: str, spec: BodySpec, space: FreeSpace) -> None:
         self.name, self.spec, self.space = name, spec, space
+        self.has_neck = is_person(name)
         self.clear(Pose(x=0.0, y=0.0))
 
     def clear(self, pose: Pose) -> None:
         """Begin an episode at ``pose``: idle, with empty hands."""
         self.pose = pose
         self.activity: Activity | None = None
+        self.drive: Driver | None = None
         self.outcome: Outcome | None = None
         self.holding = ""
 
@@ -62,6 +88,14 @@ class RoomTracker:
         """Begin an episode."""
         self._last = dict.fromkeys(self._seats, 0)
         self._surely_within = dict.fromkeys(self._seats, (0.0, 0.0, 0.0))
+
+    def record(self, seat: str) -> tuple[int, Vec3]:
+        """The number of the seat's room, and the disc (x, y, radius) [m] in which it surely stays in that room."""
+        return self._last[seat], self._surely_within[seat]
+
+    def restore(self, seat: str, room: int, within: Vec3) -> None:
+        """Go back to what `record` returned."""
+        self._last[seat], self._surely_within[seat] = room, within
 
     def room(self, seat: str, pose: Pose) -> str:
         """Id of the room that the seat's body is in at ``pose``."""

@@ -18,6 +18,7 @@ from hthor.world.model import geoms
 from hthor.world.model.composer_env import LazyComposerEnv
 from hthor.world.model.composer_task import Door
 from hthor.world.model.door_geometry import LEAF_M
+from hthor.world.records import DoorRecord
 from hthor.world.state.body_state import BodyState
 from hthor.world.state.support_surfaces import SupportSurfaces
 
@@ -92,6 +93,25 @@ class Doors:
         self._firm(leaf)
         self._env.touch()
         self.changes += 1
+
+    def records(self) -> tuple[DoorRecord, ...]:
+        """The doors that have been moved in this episode."""
+        leaves = (self._leaves[id] for id in sorted(self._moved))
+        return tuple(DoorRecord(leaf.thing.id, leaf.share, leaf.open, leaf.user) for leaf in leaves)
+
+    def restore(self, records: Iterable[DoorRecord]) -> None:
+        """Go back to these doors, after the engine."""
+        self.reset()
+        for record in records:
+            leaf = self._leaves[record.id]
+            leaf.share, leaf.open, leaf.user = record.share, record.open, record.user
+            self._moved.add(record.id)
+            self._surfaces.pull(record.id, record.share)
+            self._firm(leaf)
+
+    def shut(self) -> dict[str, Opening]:
+        """The doorways that are shut, by id."""
+        return {leaf.thing.id: leaf.opening for leaf in self if leaf.opening is not None and not leaf.open}
 
     def _firm(self, leaf: DoorState) -> None:
         """Set what the doors stop: a hinged door stops objects only while it is closed, a drawer always."""

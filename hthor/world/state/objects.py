@@ -9,6 +9,7 @@ from hthor.world.model import geoms as geom_bits
 from hthor.world.model.composer_env import LazyComposerEnv, QPose
 from hthor.world.model.geom_index import GeomIndex
 from hthor.world.model.inventory import MovableSpec
+from hthor.world.records import ObjectRecord
 from hthor.world.state.movable_object import ABSENT_POSITION, MovableObject
 from hthor.world.state.overlap_test import FLOOR, OverlapTest
 from hthor.world.state.support_surfaces import SupportSurface, SupportSurfaces
@@ -149,6 +150,46 @@ class Objects:
             self._loose.add(item.number)
         self._env.touch()
         self.changes += 1
+
+    def records(self) -> tuple[ObjectRecord, ...]:
+        """The objects of the episode."""
+        return tuple(
+            ObjectRecord(
+                id=item.id,
+                position=item.position,
+                yaw=item.yaw,
+                support=item.support,
+                held_by=item.held_by,
+                bearers=item.bearers,
+                loose=item.number in self._loose,
+                ghost=item.id in self._ghosts,
+            )
+            for item in self._list
+            if item.present
+        )
+
+    def restore(self, records: Iterable[ObjectRecord], hand: Callable[[MovableObject], Callable[[], QPose]]) -> None:
+        """Go back to these objects, after the engine; ``hand(item)`` gives the pose of the hand that holds one."""
+        known = {record.id: record for record in records}
+        ghosts = {record.id for record in known.values() if record.ghost}
+        for id in sorted(self._ghosts ^ ghosts):
+            self._collide(self._items[id], id not in ghosts)
+        self._loose.clear()
+        self.positions[:], self.present[:] = ABSENT_POSITION, False
+        for item in self._list:
+            item.clear()
+            if (record := known.get(item.id)) is None:
+                continue
+            item.present, item.position, item.yaw = True, record.position, record.yaw
+            item.support, item.held_by, item.bearers = record.support, record.held_by, record.bearers
+            self.positions[item.number], self.present[item.number] = item.position, True
+            if record.loose:
+                self._loose.add(item.number)
+            if item.held_by:
+                self._env.carry(item.tree, item.qpos, item.dof, hand(item))
+        self._news.update(range(len(self._list)))
+        self._after_handling()
+        self.roster += 1
 
     def lying(self, place: SupportSurface) -> tuple[MovableObject, ...]:
         """The objects that lie on a surface, directly or on top of others."""

@@ -1,4 +1,4 @@
-"""The person's body: its abilities and its looks.
+"""A person's body: its abilities and its looks.
 
 Speed, turn rate and field of view are those of a person in a headset with a stick in either hand (see `rules`).
 """
@@ -7,7 +7,7 @@ import math
 
 from hthor import rules
 from hthor.types import HUMAN as SEAT
-from hthor.types import BodySpec, Part, Rgba, Vec3
+from hthor.types import BodySpec, Part, Rgba, Vec3, is_person
 from hthor.world.model.bodies.primitives import HEAD, ball, box, post, rod, wheel
 
 HUMAN = BodySpec(
@@ -45,7 +45,21 @@ SHOES: Rgba = (0.16, 0.14, 0.14, 1.0)
 SOLES: Rgba = (0.86, 0.85, 0.82, 1.0)
 EYE: Rgba = (0.12, 0.11, 0.12, 1.0)
 LIPS: Rgba = (0.70, 0.42, 0.38, 1.0)
+_OUTFITS: tuple[tuple[Rgba, Rgba], ...] = (
+    (JUMPER, CUFF),
+    ((0.66, 0.33, 0.24, 1.0), (0.50, 0.24, 0.17, 1.0)),
+    ((0.36, 0.50, 0.29, 1.0), (0.27, 0.38, 0.21, 1.0)),
+    ((0.50, 0.38, 0.58, 1.0), (0.38, 0.28, 0.45, 1.0)),
+)
+"""Colours of the jumper and the cuffs of the first, second, third and fourth person; the fifth is dressed as the first.
+"""
 _SIDES = (1.0, -1.0)
+
+
+def outfit(seat: str) -> dict[Rgba, Rgba]:
+    """The colours of a person's clothes by those of the first person's; for any other seat, nothing."""
+    number = int(seat.removeprefix(SEAT) or 1) - 1 if is_person(seat) else 0
+    return dict(zip(_OUTFITS[0], _OUTFITS[number % len(_OUTFITS)], strict=True))
 
 
 def look() -> tuple[Part, ...]:

@@ -1,4 +1,4 @@
-"""The bodies of robots and of the person, whose poses are set directly: they have no degrees of freedom.
+"""The bodies of robots and of people, whose poses are set directly: they have no degrees of freedom.
 
 A body collides with nothing in the engine. Walls, furniture and other bodies stop it on the free-space grid that
 planners use too (see `hthor.world.motion`). Its head turns with the camera: solids and meshes that move with "head" are
@@ -8,17 +8,19 @@ given in their pose while the camera looks straight ahead.
 import functools
 import importlib
 import math
+from collections.abc import Mapping
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import msgspec
 import numpy as np
 
 from hthor import plugins
 from hthor.errors import HthorError
-from hthor.looks import Piece
+from hthor.looks import Material, Piece
 from hthor.looks.furniture import plain
-from hthor.types import HUMAN, BodySpec, Part, Rgba, RobotSpec, Vec3
+from hthor.types import HUMAN, BodySpec, Part, Rgba, RobotSpec, Vec3, is_person
 from hthor.world.model import geoms
 from hthor.world.model.bodies import avatar
 from hthor.world.model.bodies.primitives import HEAD, box, post
@@ -49,17 +51,32 @@ def load_robot(name: str) -> RobotSpec:
     return spec
 
 
-def look(spec: BodySpec) -> tuple[Part, ...]:
-    """The body's solids in its own frame: those of its file, or a plain drum with a mast."""
+def look(spec: BodySpec, seat: str = HUMAN) -> tuple[Part, ...]:
+    """The body's solids in its own frame: those of its file, or a plain drum with a mast.
+
+    People differ in the colours of their clothes, by their ``seat``.
+    """
     draw = getattr(_module(spec), "look", None)
-    return _plain(spec) if draw is None else tuple(draw())
+    parts = _plain(spec) if draw is None else tuple(draw())
+    if seat == HUMAN or not is_person(seat):
+        return parts
+    colours = avatar.outfit(seat)
+    return tuple(msgspec.structs.replace(part, rgba=colours.get(part.rgba, part.rgba)) for part in parts)
 
 
 @functools.lru_cache(maxsize=64)
-def pieces(spec: BodySpec) -> tuple[Piece, ...]:
+def pieces(spec: BodySpec, seat: str = HUMAN) -> tuple[Piece, ...]:
     """The body's meshes in its own frame, for pictures for people: those of its file, or meshes of its solids."""
     draw = _human_pieces if _module(spec) is avatar else getattr(_module(spec), "pieces", None)
-    return tuple(plain.plain_pieces(look(spec)) if draw is None else draw())
+    found = tuple(plain.plain_pieces(look(spec, seat)) if draw is None else draw())
+    if seat == HUMAN or not is_person(seat):
+        return found
+    colours = avatar.outfit(seat)
+    return tuple(piece._replace(material=_dyed(piece.material, colours)) for piece in found)
+
+
+def _dyed(material: Material, colours: Mapping[Rgba, Rgba]) -> Material:
+    return msgspec.structs.replace(material, rgba=colours.get(material.rgba, material.rgba))
 
 
 def _human_pieces() -> tuple[Piece, ...]:
@@ -74,14 +91,17 @@ def neck(spec: BodySpec) -> Vec3:
     return place
 
 
-def head_transform(spec: BodySpec, pitch: float) -> tuple[Any, Any]:
-    """The motion of the head when the camera tilts by ``pitch`` [rad]: rotation (3, 3) and offset (3,) [m].
+def head_transform(spec: BodySpec, pitch: float, yaw: float = 0.0) -> tuple[Any, Any]:
+    """The motion of a head that turns left by ``yaw`` and tilts up by ``pitch`` [rad]: rotation (3, 3), shift (3,) [m].
 
-    A point that is at p while the camera looks straight ahead moves to ``rotation @ p + offset``, all in the
+    A point that is at p while the camera looks straight ahead moves to ``rotation @ p + shift``, all in the
     body's frame.
     """
     cos, sin = math.cos(pitch), math.sin(pitch)
     rotation = np.array(((cos, 0.0, -sin), (0.0, 1.0, 0.0), (sin, 0.0, cos)))
+    if yaw:
+        left, ahead = math.sin(yaw), math.cos(yaw)
+        rotation = np.array(((ahead, -left, 0.0), (left, ahead, 0.0), (0.0, 0.0, 1.0))) @ rotation
     pivot = np.array(neck(spec))
     return rotation, pivot - rotation @ pivot
 
@@ -99,9 +119,10 @@ def grasp_point(spec: BodySpec, size: Vec3) -> Vec3:
     return (x, y, z + size[2] / 2)
 
 
-def seat_names(robots: int) -> tuple[str, ...]:
-    """The seats of a world with ``robots`` robots: "human", "robot", "robot2", ..."""
-    return (HUMAN, *(f"robot{number if number > 1 else ''}" for number in range(1, robots + 1)))
+def seat_names(people: int, robots: int) -> tuple[str, ...]:
+    """The seats of a world: the people's, "human", "human2", ..., then the robots', "robot", "robot2", ..."""
+    counts = ((HUMAN, people), ("robot", robots))
+    return tuple(f"{name}{number if number > 1 else ''}" for name, many in counts for number in range(1, many + 1))
 
 
 class Body(Entity):
@@ -110,7 +131,7 @@ class Body(Entity):
     def _build(self, seat: str, spec: BodySpec) -> None:
         self.seat, self.spec = seat, spec
         self._root = mjcf.RootElement(model=f"body|{seat}")
-        for index, part in enumerate(look(spec)):
+        for index, part in enumerate(look(spec, seat)):
             geoms.add_part(self._root.worldbody, f"part:{index}", part, group=geoms.BODIES, **geoms.GHOST)
 
     @property

@@ -116,7 +116,7 @@ class SceneBuilder:
     def _body(self, seat: str, spec: BodySpec) -> None:
         """Add a seat's figure as two movable parts: its body and its head."""
         puppets = {"": self._puppet(), "head": self._puppet()}
-        for moves, pieces in _by_joint(bodies.pieces(spec)).items():
+        for moves, pieces in _by_joint(bodies.pieces(spec, seat)).items():
             self._pieces(puppets[moves], seat, pieces, (spec, moves), _STILL)
 
     def _pieces(self, body: Any, owner: str, pieces: Iterable[Piece], key: Any, frame: Any) -> None:

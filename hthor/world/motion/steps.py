@@ -1,0 +1,57 @@
+"""One step of a body on the floor: straight on, or sliding along what is in the way.
+
+Where the way ahead is blocked a body slides along x or y; where both are blocked it stays. Other bodies are discs: no
+body may come closer to another than the sum of their radii, but a body that is too close already may always move away.
+"""
+
+import math
+from collections.abc import Sequence
+
+from hthor.types import Pose, Vec2
+from hthor.world.state.body_state import BodyState
+
+EPS = 1e-9
+"""[m, rad, ticks] Tolerance for rounding."""
+SLIDE_SHARE_MIN = 0.05
+"""A body slides only if at least this share of the step lies along the axis; our choice."""
+FREE, HOUSE = "", "*"
+"""What blocks a step: nothing or the house; any other value is the seat in the way."""
+
+
+def go_or_slide(seat: BodyState, others: Sequence[BodyState], step: Vec2, length: float) -> tuple[str, bool]:
+    """Go by ``step`` [m], or else along one of the axes x and y, unless the step is nearly perpendicular to it.
+
+    Args:
+        others: all other bodies. length: [m] of the step.
+
+    Returns:
+        what blocked the straight step, and whether the body had to stay where it was.
+    """
+    dx, dy = step
+    met = go(seat, others, dx, dy)
+    if not met:
+        return FREE, False
+    least = SLIDE_SHARE_MIN * length
+    slid = (abs(dx) > least and not go(seat, others, dx, 0.0)) or (abs(dy) > least and not go(seat, others, 0.0, dy))
+    return met, not slid
+
+
+def go(seat: BodyState, others: Sequence[BodyState], dx: float, dy: float) -> str:
+    """Go by (dx, dy) [m] if that place is free; else returns what is in the way."""
+    pose = seat.pose
+    x, y = pose.x + dx, pose.y + dy
+    for other in others:
+        if _too_close(seat, other, x, y):
+            return other.name
+    if not seat.space.segment_free((pose.x, pose.y), (x, y)):
+        return HOUSE
+    seat.pose = Pose(x=x, y=y, yaw=pose.yaw, pitch=pose.pitch, head=pose.head)
+    return FREE
+
+
+def _too_close(seat: BodyState, other: BodyState, x: float, y: float) -> bool:
+    there, least = other.pose, seat.spec.radius + other.spec.radius - EPS
+    dx, dy = x - there.x, y - there.y
+    if abs(dx) >= least or abs(dy) >= least or math.hypot(dx, dy) >= least:
+        return False
+    return math.hypot(dx, dy) < math.hypot(seat.pose.x - there.x, seat.pose.y - there.y)
