@@ -121,8 +121,8 @@ class Goal(Struct, frozen=True, kw_only=True, omit_defaults=True):
 class TaskSpec(Struct, frozen=True, kw_only=True, omit_defaults=True):
     """One task, as frozen data; ``t_star`` [s] is the reference time, see `hthor.tasks.kind`.
 
-    The first person begins at ``human_start``, the others at ``other_human_starts``; those who have no place there begin
-    at the free places nearest to the first. ``difficulty`` is easy, medium or hard, and depends on the task
+    The first person begins at ``human_start``, the others at ``other_human_starts``; those who have no place there
+    begin at the free places nearest to the first. ``difficulty`` is easy, medium or hard, and depends on the task
     alone; ``split`` is "seen" if its house is one of the ten scenes, else "new". Both are empty in suites that do not
     state them.
     """
