@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from hthor.agents.skills.conversation.conversation import Conversation
 from hthor.agents.skills.knowledge import PAPER_KINDS
 from hthor.agents.skills.message_timing import APART_M, ASIDE_M, MessageTiming, find_detection, sighting_text
 from hthor.types import Action, Briefing, Detection, Motion, Observation, Send, Wait, is_person
@@ -18,11 +20,13 @@ class Agent:
     """Frontier exploration with an ideal detector within 1.5 m.
 
     When it sees the target, it tells the person once where that is, and again ten seconds after a declined message.
-    Then it watches the target from a place where it blocks nobody.
+    Then it watches the target from a place where it blocks nobody. It answers questions from what it has seen so far.
     """
 
     privileges = ("ideal_detector",)
     robots: tuple[str, ...] = ()
+    asks = False
+    """Whether it asks what became of its suggestions."""
 
     def begin(self, briefing: Briefing) -> None:
         """Start with an empty map."""
@@ -31,6 +35,7 @@ class Agent:
 
         self.briefing = briefing
         self.multi_object: MultiObjectFrontier | None = None
+        self.conversation = Conversation(briefing, self._unfinished, self.asks)
         carries = "pick" in briefing.body.capabilities and briefing.relation != "find"
         if carries or briefing.kind not in PAPER_KINDS:
             from hthor.agents.skills.multi_object_frontier import MultiObjectFrontier
@@ -45,9 +50,16 @@ class Agent:
         self.kinds: dict[str, str] = {}
 
     def act(self, observation: Observation) -> Action:
-        """Update the map, tell the person what is in view, and move on."""
-        if self.multi_object is not None:
-            return self.multi_object.act(observation)
+        """Update the map, tell people what is in view, answer their questions, and move on."""
+        heard = self.conversation.hear(observation)
+        action = self._search(heard) if self.multi_object is None else self.multi_object.act(heard)
+        return self.conversation.speak(heard, action)
+
+    def _unfinished(self) -> Sequence[str]:
+        return (self.briefing.target,) if self.multi_object is None else self.multi_object.unfinished()
+
+    def _search(self, observation: Observation) -> Action:
+        """The next motion and message in a task with one object to find."""
         self.explorer.see(observation)
         self.kinds.update((thing.id, thing.kind) for thing in observation.detections)
         seen = find_detection(observation, self.briefing.target)

@@ -61,6 +61,10 @@ class MultiObjectFrontier:
         self.placing = motion if isinstance(motion, Place) else None
         return Action(motion=motion, say=say)
 
+    def unfinished(self) -> list[str]:
+        """The objects of jobs that are not known to be done."""
+        return [job.target for job in self.jobs if not self.seen.is_done(job)]
+
     def _motion(self, observation: Observation) -> Motion:
         if self.mine is not None and self.mine.hands > 1 and self.carrier.is_close(observation, self.seen, self.mine):
             self.explorer.drop()

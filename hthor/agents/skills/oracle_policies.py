@@ -64,6 +64,10 @@ class SingleTaskOracle:
         self.yielding.note(observation, motion)
         return Action(motion=motion, say=say)
 
+    def unfinished(self) -> list[str]:
+        """The objects of jobs that are not done."""
+        return [job.target for job in self.jobs if not self.knowledge.is_done(job)]
+
     def _update(self, observation: Observation) -> None:
         """Learn from an observation what the robot does not know already."""
 

@@ -1,0 +1,122 @@
+"""A robot's part in talking with people, around a policy that only makes suggestions.
+
+    heard = conversation.hear(observation)
+    action = conversation.speak(heard, policy.act(heard))
+
+The policy knows nothing of questions: the receipt in its observation is that of its own last suggestion.
+"""
+
+import math
+from collections.abc import Callable, Collection
+
+import msgspec
+
+from hthor.agents.skills.conversation.answers import Answers, kind_of
+from hthor.agents.skills.conversation.queries import Queries
+from hthor.agents.skills.conversation.sightings import Sightings
+from hthor.types import Action, Briefing, Observation, Receipt, Send, is_person
+
+_OPEN = ("sent", "shown")
+
+
+class Conversation:
+    """Answers people's questions, addresses suggestions if there are several people, and may ask what became of them.
+
+    Args:
+        unfinished: the objects of the task that are not where they belong yet, as far as the policy knows.
+        asks: whether the robot asks questions of its own.
+    """
+
+    def __init__(self, briefing: Briefing, unfinished: Callable[[], Collection[str]], asks: bool = False) -> None:
+        self.unfinished = unfinished
+        self.sightings = Sightings()
+        self.answers = Answers(briefing, self.sightings, unfinished)
+        self.queries = Queries(briefing) if asks else None
+        self._has_several_people = sum(map(is_person, briefing.teammates)) > 1
+        self._said: Send | None = None
+        self._last: Send | None = None  # the last message that there was a receipt of, and its number
+        self._number = -1
+        self._suggestion: Send | None = None  # the policy's last one, and what became of it
+        self._receipt: Receipt | None = None
+
+    def hear(self, observation: Observation) -> Observation:
+        """The observation for the policy."""
+        self.sightings.note(observation)
+        receipt = observation.receipt
+        if receipt is None:
+            return observation
+        if receipt.message != self._number:
+            self._number, self._last = receipt.message, self._said
+        if self._last is self._suggestion:
+            self._receipt = receipt
+            return observation
+        if self.queries is not None and self._last is not None and self._last.question and self._receipt is not None:
+            self._receipt = self.queries.updated(self._receipt, receipt)
+        return msgspec.structs.replace(observation, receipt=self._receipt)
+
+    def speak(self, observation: Observation, action: Action) -> Action:
+        """The action with what the robot says: an answer that is due, else the policy's suggestion, else a question."""
+        suggestion = action.say if isinstance(action.say, Send) else None
+        answer = self.answers.due(observation) if observation.inbox else None
+        say: Send | None = None
+        if answer is not None:
+            say = self._answer(observation, answer, suggestion)
+        elif suggestion is not None:
+            say = self._suggest(observation, suggestion)
+        elif self.queries is not None:
+            say = self._ask(observation, self.queries)
+        self._said = say or self._said
+        return action if say is action.say else msgspec.structs.replace(action, say=say)
+
+    def _suggest(self, observation: Observation, suggestion: Send) -> Send:
+        if self._has_several_people and not suggestion.to and suggestion.position is not None:
+            suggestion = msgspec.structs.replace(suggestion, to=self._addressee(observation, suggestion))
+        self._suggestion = suggestion
+        self.sightings.note_told(suggestion.object)
+        return suggestion
+
+    def _addressee(self, observation: Observation, suggestion: Send) -> str:
+        """The person seen nearest to the place of a suggestion, rather one with free hands; "" if nobody was seen."""
+        assert suggestion.position is not None
+        spot, busy = suggestion.position[:2], self.sightings.holders(observation)
+        people = self.sightings.people
+        return min(people, key=lambda seat: (seat in busy, math.dist(people[seat], spot), seat), default="")
+
+    def _answer(self, observation: Observation, answer: Send, suggestion: Send | None) -> Send:
+        """Give an answer; an answer about what the policy suggests stands for the suggestion.
+
+        Another suggestion of this moment is left out, as if the answer had covered it.
+        """
+        if suggestion is not None and answer.position is not None and answer.object == suggestion.object:
+            self._suggestion = msgspec.structs.replace(suggestion, to=answer.to, answers=answer.answers)
+            return self._suggestion
+        if suggestion is not None:
+            self._suggestion = suggestion
+            self._receipt = Receipt(message=-1, status="covered", tick=observation.tick, by=answer.to)
+        elif self._suggestion is not None and answer.position and answer.object == self._suggestion.object:
+            self._suggestion = answer
+        else:
+            self._cover(observation.tick, answer.to)
+        return answer
+
+    def _ask(self, observation: Observation, queries: Queries) -> Send | None:
+        """A question about the last suggestion, if that is the last thing that the robot said."""
+        suggestion, receipt = self._suggestion, self._receipt
+        if suggestion is None or receipt is None or self._last is not suggestion or self._said is not suggestion:
+            return None
+        if suggestion.object not in self.unfinished() or self._is_held(observation, suggestion.object):
+            return None
+        kind = self.sightings.kind(suggestion.object) or kind_of(suggestion.object)
+        question = queries.due(observation.tick, suggestion, kind, receipt)
+        if question is not None:
+            self._cover(observation.tick, question.to)
+        return question
+
+    def _cover(self, tick: int, reader: str) -> None:
+        """Note that a message covers the suggestion, if it is open on this reader's panel."""
+        if self._receipt is not None and self._receipt.status in _OPEN and self._receipt.by == reader:
+            self._receipt = msgspec.structs.replace(self._receipt, status="covered", tick=tick)
+
+    def _is_held(self, observation: Observation, object: str) -> bool:
+        """Whether somebody is known to hold the object."""
+        return any(state.held_by for state in self.sightings.named(object, observation))

@@ -1,0 +1,63 @@
+"""What a robot has been close enough to detect in a trial so far."""
+
+import math
+from collections.abc import Collection
+
+from hthor.types import Detection, Observation, ThingState, Vec2, is_person
+
+
+class Sightings:
+    """Things and people that the robot has detected, where they were last.
+
+    A robot that gets true states (`Observation.truth`) knows where a thing is now, but speaks only of things that it
+    has been close to: those that it has detected, or has told people about in front of a closed door.
+
+    Attributes:
+        people: where each person was seen last [m], by seat.
+    """
+
+    def __init__(self) -> None:
+        self.people: dict[str, Vec2] = {}
+        self._things: dict[str, Detection] = {}
+        self._told: set[str] = set()
+        self._last: tuple[Detection, ...] = ()
+
+    def note(self, observation: Observation) -> None:
+        """Remember what is in view; call at every act."""
+        if observation.detections is self._last:
+            return
+        self._last = observation.detections
+        for seen in self._last:
+            if seen.family == "person":
+                self.people[seen.id] = seen.position[:2]
+            elif seen.family in ("object", "furniture"):
+                self._things[seen.id] = seen
+
+    def note_told(self, object: str) -> None:
+        """Remember that people were told where this thing is."""
+        self._told.add(object)
+
+    def named(self, name: str, observation: Observation) -> list[ThingState]:
+        """The thing of this id, or else all things of this kind, as far as they are known; the nearest first."""
+        truth = {state.id: state for state in observation.truth}
+        known = {id: truth.get(id) or _state(seen) for id, seen in self._things.items()}
+        known |= {id: truth[id] for id in self._told if id in truth}
+        if name in known:
+            return [known[name]]
+        here = (observation.pose.x, observation.pose.y)
+        alike = [state for state in known.values() if state.kind == name]
+        return sorted(alike, key=lambda state: (math.dist(here, state.position[:2]), state.id))
+
+    def kind(self, thing: str) -> str:
+        """The kind of a thing that was detected, empty for any other."""
+        seen = self._things.get(thing)
+        return "" if seen is None else seen.kind
+
+    def holders(self, observation: Observation) -> set[str]:
+        """The people who have something in hand, as far as the robot sees or knows now."""
+        things: Collection[Detection | ThingState] = (*observation.detections, *observation.truth)
+        return {thing.held_by for thing in things if is_person(thing.held_by)}
+
+
+def _state(seen: Detection) -> ThingState:
+    return ThingState(id=seen.id, kind=seen.kind, position=seen.position, support=seen.support, held_by=seen.held_by)
