@@ -20,6 +20,7 @@ import msgspec
 from hthor import plugins, rules, seeds
 from hthor.comms import claims
 from hthor.comms.mailbox import Mailbox
+from hthor.episode.briefing import make_briefing
 from hthor.episode.episode_log import EpisodeLog, Fault
 from hthor.episode.episode_state import EpisodeState
 from hthor.episode.goal_progress import GoalProgress
@@ -70,7 +71,8 @@ class Episode:
         self._failed: dict[str, Fault] = {}
         self._writer.trace(self.world)
         self.events.extend(self._progress.update(self.world.snapshot(), self.world.house, has_events=True))
-        self._notify(0)
+        for observer in self._observers:
+            observer(self, tuple(self.events))
 
     @property
     def tick(self) -> int:
@@ -90,23 +92,7 @@ class Episode:
 
     def briefing(self, seat: str) -> Briefing:
         """What the seat's agent or human model is told before the trial."""
-        goal, privileges = self.task.goal, self._privileges.get(seat, ())
-        return Briefing(
-            seat=seat,
-            instruction=self.task.instruction,
-            target=goal.target,
-            destination=goal.destination,
-            relation=goal.relation,
-            body=self.world.bodies[seat],
-            tick_s=rules.TICK_S,
-            time_limit=self.task.time_limit,
-            teammates=tuple(other for other in self.seats if other != seat),
-            privileges=privileges,
-            house=self.world.house if "house_map" in privileges else None,
-            kind=self.task.kind,
-            jobs=goal.todo,
-            crew=dict(self.world.bodies),
-        )
+        return make_briefing(self.task, self.world, self.seats, seat, self._privileges.get(seat, ()))
 
     def observe(self, seat: str, *, frozen: bool = False) -> Observation:
         """What the seat observes at this tick; the same record until the next `advance`.
@@ -173,25 +159,22 @@ class Episode:
         """
         if self.paused or self.done:
             raise HthorError(f"this trial is {'paused' if self.paused else 'over'}, so no time passes in it")
-        first, events = len(self.events), self.events
+        world, events = self.world, self.events
+        first, tick = len(events), world.tick
         for seat in self.seats:
             if seat in self._observed and self._observed[seat].inbox:
-                events.extend(self._mailbox.shown(self.tick, seat))
+                events.extend(self._mailbox.shown(tick, seat))
         if self._failed:
             self._dismiss_failed()
-        self._act()
-        events.extend(self.world.advance())
+        self._act(tick)
+        events.extend(world.advance())
         self._observed.clear()
-        self._writer.trace(self.world)
-        snapshot = self.world.snapshot()
-        self.met = self._kind.met(self.task, snapshot, self.world.house)
-        if self._progress.value is not None:
-            changes = self._progress.update(
-                snapshot, self.world.house, met=self.met, has_events=len(self.events) > first
-            )
-            events.extend(changes)
-        self._notify(first)
-        return tuple(events[first:])
+        self._writer.trace(world)
+        self._judge(has_events=len(events) > first)
+        happened = tuple(events[first:])
+        for observer in self._observers:
+            observer(self, happened)
+        return happened
 
     # ------------------------------------------------------------------------------------- pausing, ending, watching
 
@@ -274,9 +257,16 @@ class Episode:
         self._active = tuple(seat for seat in self._active if seat not in self._failed)
         self._failed = {}
 
-    def _act(self) -> None:
+    def _judge(self, *, has_events: bool) -> None:
+        """Judge the goal by the true state of the world; ``has_events``: whether anything happened in this tick."""
+        snapshot, house = self.world.snapshot(), self.world.house
+        self.met = self._kind.met(self.task, snapshot, house)
+        if self._progress.value is not None:
+            self.events.extend(self._progress.update(snapshot, house, met=self.met, has_events=has_events))
+
+    def _act(self, tick: int) -> None:
         """Let every seat that has acted say what it says and begin its motion."""
-        tick, idle, actions = self.tick, self.world.idle, self._actions
+        idle, actions = self.world.idle, self._actions
         for seat in self._active:
             if seat not in actions:
                 if idle(seat):
@@ -312,7 +302,3 @@ class Episode:
             return event
         claim = claims.claim_error(send, event.data["position"], self.world.snapshot(), self.world.house)
         return msgspec.structs.replace(event, data={**event.data, **claim})
-
-    def _notify(self, first: int) -> None:
-        for observer in self._observers:
-            observer(self, tuple(self.events[first:]))
