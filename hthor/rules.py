@@ -11,8 +11,6 @@ SIMULATION = 1
 """Version of the world: increased when the same motions would have other outcomes than before."""
 TICK_S = 0.1
 """Length of a tick [s]. Time is counted in ticks, and in seconds only where people read it."""
-SUBTICKS = 6
-"""Steps of a tick in which a body that drives is moved: 60 a second, as often as a headset shows a picture."""
 TIME_LIMIT_S = 90.0
 """Time limit of a task [s] (P)."""
 MOVE_MAX_M = 0.5

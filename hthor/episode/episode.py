@@ -25,6 +25,7 @@ from hthor.episode.episode_log import EpisodeLog, Fault
 from hthor.episode.episode_state import EpisodeState
 from hthor.episode.goal_progress import GoalProgress
 from hthor.episode.log_writer import LogWriter
+from hthor.episode.set_points import rounded
 from hthor.episode.trial_world import TrialWorld
 from hthor.errors import HthorError
 from hthor.tasks.kind import TaskKind
@@ -66,6 +67,7 @@ class Episode:
         self._writer = LogWriter({seat: self.world.bodies[seat] for seat in self.seats})
         self.events, self.faults = self._writer.events, self._writer.faults
         self._active = self.seats  # without those that were retired
+        self._steps = 0  # of this tick, that bodies that drive have made
         self._observed: dict[str, Observation] = {}
         self._actions: dict[str, tuple[Action, Observation | None]] = {}
         self._failed: dict[str, Fault] = {}
@@ -104,6 +106,8 @@ class Episode:
         known = self._observed.get(seat)
         if known is not None:
             return known
+        if self._steps:
+            raise HthorError("observe before the first step of a tick, so that all seats observe the same moment")
         world = self.world
         observation = Observation(
             tick=world.tick,
@@ -141,6 +145,26 @@ class Episode:
             action = msgspec.structs.replace(action, say=self._actions[seat][0].say)
         self._actions[seat] = (action, observation)
 
+    def steer(self, seat: str, drive: Drive) -> None:
+        """Let a seat drive like this from its next step on, as a live person does between two ticks.
+
+        Raises:
+            HthorError: when there is no such seat.
+        """
+        if seat not in self.seats:
+            raise HthorError(f"'{seat}' is no seat of this trial; its seats are {', '.join(self.seats)}")
+        self._start(seat, drive)
+
+    def substep(self) -> None:
+        """Move the bodies that drive by one of the tick's `hthor.types.SUBTICKS` steps; `advance` makes those left.
+
+        Observe and submit before the first step of a tick: all seats then observe the moment at which it begins.
+        """
+        if self.paused or self.done:
+            raise HthorError(f"this trial is {'paused' if self.paused else 'over'}, so no time passes in it")
+        self.world.substep()
+        self._steps += 1
+
     def retire(self, seat: str, error: Exception) -> None:
         """Take a failed agent out of the trial: its body stays where it is from now on, and its fault is logged."""
         kind = str(getattr(error, "kind", type(error).__name__))
@@ -169,6 +193,7 @@ class Episode:
         self._act(tick)
         events.extend(world.advance())
         self._observed.clear()
+        self._steps = 0
         self._writer.trace(world)
         self._judge(has_events=len(events) > first)
         happened = tuple(events[first:])
@@ -214,6 +239,7 @@ class Episode:
             observed={seat: msgspec.structs.replace(one, senses=None) for seat, one in self._observed.items()},
             actions=dict(self._actions),
             failed=dict(self._failed),
+            steps=self._steps,
         )
 
     def load_state(self, state: EpisodeState) -> None:
@@ -229,6 +255,7 @@ class Episode:
         self.met, self.voided, self.paused = state.met, state.voided, state.paused
         self._progress.load_state(state.progress, self.world.snapshot())
         self._active, self._actions, self._failed = state.active, dict(state.actions), dict(state.failed)
+        self._steps = state.steps
         self._observed = {
             seat: msgspec.structs.replace(one, senses=self.world.senses(seat)) for seat, one in state.observed.items()
         }
@@ -284,8 +311,10 @@ class Episode:
         self._actions = {}
 
     def _start(self, seat: str, motion: Motion) -> None:
+        if isinstance(motion, Drive):
+            motion = rounded(motion)
         self.world.start(seat, motion)
-        self._writer.note_motion(self.tick, seat, motion, started=not self.world.idle(seat))
+        self._writer.note_motion(self.tick, self._steps, seat, motion, started=not self.world.idle(seat))
 
     def _say(self, seat: str, action: Action) -> None:
         tick, say = self.tick, action.say

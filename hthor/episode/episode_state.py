@@ -22,3 +22,4 @@ class EpisodeState(Struct, frozen=True, kw_only=True):
     observed: dict[str, Observation]
     actions: dict[str, tuple[Action, Observation | None]]
     failed: dict[str, Fault]
+    steps: int

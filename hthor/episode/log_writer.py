@@ -51,10 +51,10 @@ class LogWriter:
             if seat in self._recorders:
                 self._recorders[seat].head(world.tick, pose.pitch)
 
-    def note_motion(self, tick: int, seat: str, motion: Motion, *, started: bool) -> None:
-        """Note a motion that begins; ``started`` is false if the body is still free after it."""
+    def note_motion(self, tick: int, step: int, seat: str, motion: Motion, *, started: bool) -> None:
+        """Note a motion that begins at a step of a tick; ``started`` is false if the body is still free after it."""
         if seat in self._recorders:
-            self._recorders[seat].motion(tick, motion)
+            self._recorders[seat].motion(tick, motion, step)
         self.rest.note_motion(tick, seat, motion, started=started)
 
     def log(self, tick: int, end: str, reason: str, journals: Mapping[str, Sequence[Event]]) -> EpisodeLog:

@@ -55,7 +55,7 @@ class TrialWorld(Protocol):
         """
 
     def substep(self) -> None:
-        """Move the bodies that drive by one of the tick's `rules.SUBTICKS` steps, before `advance` makes the others.
+        """Move the bodies that drive by one of a tick's `hthor.types.SUBTICKS` steps; `advance` makes those left.
 
         Calling it is optional: with the same set-points at the same steps, the states are the same. After the last step
         of a tick it does nothing until `advance` was called.

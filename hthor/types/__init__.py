@@ -5,7 +5,22 @@ y forward, z up). A body's ``yaw`` is its heading, counter-clockwise from +x. A 
 frame* (origin at the centre of its bounding box, front towards +y) counter-clockwise about z.
 """
 
-from hthor.types.actions import Action, Close, Drive, Drop, Motion, Move, Open, Pick, Place, Reply, Rotate, Send, Wait
+from hthor.types.actions import (
+    SUBTICKS,
+    Action,
+    Close,
+    Drive,
+    Drop,
+    Motion,
+    Move,
+    Open,
+    Pick,
+    Place,
+    Reply,
+    Rotate,
+    Send,
+    Wait,
+)
 from hthor.types.events import Event, Mind, Snapshot
 from hthor.types.house import (
     HUMAN,
@@ -40,6 +55,7 @@ from hthor.types.specs import (
 
 __all__ = [
     "HUMAN",
+    "SUBTICKS",
     "Action",
     "AgentRef",
     "BodySpec",

@@ -4,6 +4,9 @@ from msgspec import Struct
 
 from hthor.types.house import Vec3
 
+SUBTICKS = 6
+"""Steps of a tick in which a body that drives is moved: 60 a second, about as often as a headset shows a picture."""
+
 
 class Move(Struct, tag="move", frozen=True, kw_only=True):
     """Walk by ``forward`` and ``left`` [m] in the body's frame, at the body's speed.
@@ -62,7 +65,7 @@ class Drive(Struct, tag="drive", frozen=True, kw_only=True):
     """Keep going at this velocity, and hold the head like this, until another motion replaces it.
 
     It never ends by itself and is never refused: a velocity beyond the body's speed is shortened to it, and a number
-    that is not finite counts as 0. In every step of `rules.SUBTICKS` to a tick the body moves as far as the house and
+    that is not finite counts as 0. In every step of `SUBTICKS` to a tick the body moves as far as the house and
     other bodies let it, sliding along what it meets, as in a `Move`. A person's head points where ``yaw`` and ``pitch``
     say at once, and the body turns after it at its turn rate; a robot, which has no neck, turns at its turn rate and
     tilts its camera within its limit. While the hands are busy, only the head moves.

@@ -169,7 +169,7 @@ class Simulation:
         return self._seats[seat].outcome
 
     def substep(self) -> None:
-        """Make one of the tick's `rules.SUBTICKS` steps of the bodies that drive; `advance` makes those that are left.
+        """Move the bodies that drive by one of a tick's `hthor.types.SUBTICKS` steps; `advance` makes those left.
 
         With the same set-points at the same steps, the states are the same, whoever makes the steps. After the last
         step of a tick this does nothing until `advance` was called.

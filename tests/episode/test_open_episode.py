@@ -5,6 +5,7 @@ from __future__ import annotations
 import random
 import threading
 import time
+from collections.abc import Iterator
 from typing import Any
 
 import msgspec
@@ -14,9 +15,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from walking_stage import SEATS, WalkingStage, minds
 
+from hthor import tasks
 from hthor.episode import Charged, Concurrent, DecisionClock, Episode, EpisodeLog, play
 from hthor.errors import HthorError
-from hthor.types import HUMAN, Action, Drive, Event, Observation, Reply, Send, TrialSpec, Wait
+from hthor.humans.core.behaviour_log import INPUT_UNIT
+from hthor.types import HUMAN, SUBTICKS, Action, Drive, Event, Observation, Reply, Send, TrialSpec, Wait
+from hthor.world import World
 
 roots = st.integers(0, 10**6)
 
@@ -217,3 +221,61 @@ def test_a_body_that_drives_rests_only_while_it_stands() -> None:
             episode.submit(HUMAN, Action(motion=Drive(forward=0.0 if tick else 1.0)))
         episode.advance()
     assert episode.log().idle[HUMAN] == 10
+
+
+@pytest.fixture(scope="module")
+def house() -> World:
+    return World("hazel", robots=["scout"])
+
+
+def driven(world: World, inputs: list[int], *, live: bool) -> EpisodeLog:
+    """The log of a person who drives by these inputs, step by step as in a live session, or a tick at a time."""
+    task = next(task for task in tasks.load_suite("smoke").tasks if task.house == "hazel")
+    brief = msgspec.structs.replace(trial(), task=msgspec.structs.replace(task, time_limit=9.0))
+    episode, points = Episode(brief, world), iter(batched(inputs))
+    episode.reset()
+    point = next(points, None)
+    while not episode.done:
+        for step in range(SUBTICKS) if live else (0,):
+            while point is not None and point[:2] <= (episode.tick, step):
+                forward, left, yaw, pitch = (number * INPUT_UNIT for number in point[2:])
+                episode.steer(HUMAN, Drive(forward=forward, left=left, yaw=yaw, pitch=pitch))
+                point = next(points, None)
+            if live:
+                episode.substep()
+        episode.advance()
+    return episode.log()
+
+
+def batched(inputs: list[int]) -> Iterator[tuple[int, ...]]:
+    return (tuple(inputs[k : k + 6]) for k in range(0, len(inputs), 6))
+
+
+@pytest.mark.slow
+@settings(max_examples=10)
+@given(st.data())
+def test_a_trial_is_repeated_from_the_inputs_in_its_log(house: World, data: st.DataObject) -> None:
+    numbers = st.integers(-15_000, 15_000)
+    points = st.tuples(st.integers(0, 85), st.integers(0, SUBTICKS - 1), numbers, numbers, numbers, numbers)
+    given_inputs = sorted(data.draw(st.lists(points, min_size=3, max_size=12)), key=lambda point: point[:2])
+    log = driven(house, [number for point in given_inputs for number in point], live=True)
+    (inputs,) = [event.data["runs"] for event in log.journal if event.kind == "inputs"]
+    assert driven(house, inputs, live=True) == log
+
+
+def test_steps_of_a_tick_change_nothing_if_the_set_points_change_with_the_ticks(house: World) -> None:
+    inputs = [0, 0, 12_000, 0, 3_000, -2_000, 20, 0, 9_000, 4_000, 20_000, 0, 60, 0, 0, 0, -9_000, 500]
+    assert driven(house, inputs, live=True) == driven(house, inputs, live=False)
+
+
+def test_a_seat_observes_before_the_first_step_of_a_tick(house: World) -> None:
+    episode = Episode(msgspec.structs.replace(trial(), task=TASK), WalkingStage())  # type: ignore[arg-type]
+    episode.world.substep = lambda: None  # type: ignore[method-assign]
+    episode.reset()
+    seen = episode.observe(HUMAN)
+    episode.substep()
+    assert episode.observe(HUMAN) is seen
+    with pytest.raises(HthorError, match="before the first step"):
+        episode.observe("robot")
+    episode.advance()
+    assert episode.observe("robot").tick == 1

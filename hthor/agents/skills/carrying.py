@@ -124,7 +124,7 @@ class Carrier:
         return step or self._attend(observation, state)
 
     def _handle(self, state: ThingState) -> Vec3:
-        """The free handle, of two that that the nearest person reaches last; the middle until the heading is seen."""
+        """The free handle, of two the one farther from the nearest person; the middle until its heading is seen."""
         if self._yaw is None:
             return state.position
         ends = [plane.to_house((side * self._half, 0.0, 0.0), state.position, self._yaw) for side in (1.0, -1.0)]

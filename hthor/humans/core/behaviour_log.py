@@ -7,6 +7,8 @@ journal adds what a recorder in the headset sees, as events of these kinds:
   pairs (tick, deflection from that tick on in thousandths of ``full``). The direction is in the path.
 - ``head``, once per trial: ``pitch``, a flat list of pairs (tick, pitch [mrad] from that tick on, up positive);
   ``fastest`` [rad/s], the body's limit of turning.
+- ``inputs``, once per trial in which the person drove: ``runs``, a flat list of sextuples (tick, step of the tick,
+  forward, left, yaw and pitch of the `Drive` from that step on), in units of `INPUT_UNIT` [m/s, rad].
 - ``attempt``, with the tick at which it began: ``what`` was tried ("pick", "place", "open", "close", "drop"), how many
   ``seconds`` it took, whether it succeeded (``ok``), and if not ``why`` ("missed" when the hand closed on nothing, else
   the world's reason); for a "place" also ``at`` [m], the position on the furniture. An attempt cut off by the end of
@@ -24,14 +26,17 @@ from collections.abc import Iterable, Sequence
 
 import msgspec
 
-from hthor.types import BodySpec, Event, Motion, Move
+from hthor.types import BodySpec, Drive, Event, Motion, Move
 
 _THOUSAND = 1000
 """[count] Steps per full deflection of the stick, and per radian of pitch. Our choice."""
 _DONE = {"pick": "picked", "place": "placed", "open": "opened", "close": "closed", "drop": "dropped"}
 """The kind of event in the trial's log for each kind of attempt that succeeds."""
 
-RecorderState = tuple[tuple[int, ...], tuple[int, ...]]
+INPUT_UNIT = 1e-4
+"""[m/s, rad] The unit of the set-points in the journal. Our choice: finer than any stick or headset measures."""
+
+RecorderState = tuple[tuple[int, ...], tuple[int, ...], tuple[int, ...]]
 
 
 class BehaviourRecorder:
@@ -41,16 +46,26 @@ class BehaviourRecorder:
         self.seat, self.body, self.tick_s, self._step = seat, body, tick_s, body.speed * tick_s
         self._stick: list[int] = [0, 0]
         self._pitch: list[int] = []
+        self._inputs: list[int] = []
 
-    def motion(self, tick: int, motion: Motion) -> None:
-        """Record a motion that begins at ``tick``."""
+    def motion(self, tick: int, motion: Motion, step: int = 0) -> None:
+        """Record a motion that begins at ``tick``, for a `Drive` after ``step`` of the tick's steps."""
         deflection = 0
         if isinstance(motion, Move):
             share = math.hypot(motion.forward, motion.left) / self._step
             deflection = round(_THOUSAND * min(1.0, share)) if math.isfinite(share) else 0
+        elif isinstance(motion, Drive):
+            share = math.hypot(motion.forward, motion.left) / self.body.speed
+            deflection = round(_THOUSAND * min(1.0, share))
+            self._record_inputs(tick, step, motion)
         stick = self._stick
         if stick[-1] != deflection:
             stick += (tick, deflection)
+
+    def _record_inputs(self, tick: int, step: int, drive: Drive) -> None:
+        numbers = [round(value / INPUT_UNIT) for value in (drive.forward, drive.left, drive.yaw, drive.pitch)]
+        if self._inputs[-len(numbers) :] != numbers:
+            self._inputs += (tick, step, *numbers)
 
     def head(self, tick: int, pitch: float) -> None:
         """Record the ``pitch`` [rad] of the head."""
@@ -66,15 +81,16 @@ class BehaviourRecorder:
         written = list(own)
         tried = [event.tick for event in written if event.kind == "attempt"]
         ended = (self._completed(event, done, tried) if _is_open(event) else event for event in written)
-        return (stick, Event(tick=0, seat=self.seat, kind="head", data=pitch), *ended)
+        inputs = [Event(tick=0, seat=self.seat, kind="inputs", data={"runs": self._inputs})] if self._inputs else []
+        return (stick, Event(tick=0, seat=self.seat, kind="head", data=pitch), *inputs, *ended)
 
     def save_state(self) -> RecorderState:
         """A copy of what was recorded."""
-        return tuple(self._stick), tuple(self._pitch)
+        return tuple(self._stick), tuple(self._pitch), tuple(self._inputs)
 
     def load_state(self, state: RecorderState) -> None:
         """Continue from a copy."""
-        self._stick, self._pitch = list(state[0]), list(state[1])
+        self._stick, self._pitch, self._inputs = (list(part) for part in state)
 
     def _completed(self, attempt: Event, done: Sequence[Event], tried: Sequence[int]) -> Event:
         """The attempt, with its success if that is in ``done`` before the next attempt (``tried``: all ticks)."""

@@ -1,6 +1,6 @@
 """Driving: a body keeps a velocity and a direction of its head until another motion replaces them.
 
-A tick has `rules.SUBTICKS` steps, in each of which the bodies that drive go one after another in the order of the
+A tick has `hthor.types.SUBTICKS` steps, in each of which the bodies that drive go one after another in the order of the
 seats, before all other motions of the tick. A step is that of a `Move`, only shorter (`hthor.world.motion.steps`). A
 body that carries something jointly makes one step a tick instead, the last, as in a `Move`.
 
@@ -22,7 +22,7 @@ from msgspec import UNSET
 
 from hthor import rules
 from hthor.geometry.plane import turn, wrap
-from hthor.types import Drive, Event, Outcome, Pose, Vec2
+from hthor.types import SUBTICKS, Drive, Event, Outcome, Pose, Vec2
 from hthor.world import numbers
 from hthor.world.motion.locomotion import Culprit, clip
 from hthor.world.motion.steps import FREE, HOUSE, go_or_slide
@@ -37,7 +37,7 @@ a measured head sways.
 """
 LOAD = "load"
 """What stops a body that holds something which its bearers cannot lift."""
-_STEP_S = rules.TICK_S / rules.SUBTICKS
+_STEP_S = rules.TICK_S / SUBTICKS
 _DROVE = Outcome(motion="drive", ok=True)
 _BEGIN = Driving(Drive())
 
@@ -212,13 +212,13 @@ class DrivenBodies:
     def step(self, tick: int) -> list[Event]:
         """Make one of the steps of ``tick`` unless all are done; its events."""
         events: list[Event] = []
-        if self.steps >= rules.SUBTICKS:
+        if self.steps >= SUBTICKS:
             return events
         self.steps += 1
         for seat in self.active:
             pose = seat.pose
             assert seat.drive is not None
-            events += seat.drive.step(tick, self.steps == rules.SUBTICKS)
+            events += seat.drive.step(tick, self.steps == SUBTICKS)
             if seat.holding and seat.pose is not pose:
                 self._follow(seat.holding)
         return events
@@ -226,7 +226,7 @@ class DrivenBodies:
     def finish(self, tick: int) -> list[Event]:
         """Make the steps of ``tick`` that are left; their events."""
         events: list[Event] = []
-        while self.active and self.steps < rules.SUBTICKS:
+        while self.active and self.steps < SUBTICKS:
             events += self.step(tick)
         self.steps = 0
         return events
