@@ -27,6 +27,7 @@ from hthor.humans.population.parameters import Parameters
 from hthor.humans.population.participant import with_practice
 from hthor.humans.search.option_choice import DOORWAY_S, SETTLE_S
 from hthor.types import TrialSpec
+from hthor.types.events import Choice, Offer, OptionRow
 
 EVERY = 4  # one participant in so many is held out
 PENALTY = 0.01
@@ -37,8 +38,8 @@ class Decisions:
     """The choices and offers of some people."""
 
     def __init__(self) -> None:
-        self.choices: list[tuple[TrialSpec, list[list[float]], int]] = []
-        self.offers: list[dict[str, Any]] = []
+        self.choices: list[tuple[TrialSpec, Sequence[OptionRow], int]] = []
+        self.offers: list[Offer] = []
         self.people: set[tuple[int, int]] = set()
 
 
@@ -54,12 +55,12 @@ def read(runs: Iterable[Path]) -> tuple[Decisions, Decisions]:
         for _, record in trial_log.read(run / "trials.jsonl" if run.is_dir() else run):
             side = test if record.spec.session % EVERY == EVERY - 1 else learn
             side.people.add((record.spec.seed, record.spec.session))
-            for event in record.journal:
-                count += event.kind in ("choice", "offer")
-                if event.kind == "choice" and event.data["aim"] == "target" and len(event.data["options"]) > 1:
-                    side.choices.append((record.spec, event.data["options"], event.data["chosen"]))
-                elif event.kind == "offer":
-                    side.offers.append(event.data)
+            for entry in record.journal:
+                count += isinstance(entry, (Choice, Offer))
+                if isinstance(entry, Choice) and entry.aim == "target" and len(entry.options) > 1:
+                    side.choices.append((record.spec, entry.options, entry.chosen))
+                elif isinstance(entry, Offer):
+                    side.offers.append(entry)
         if not count:
             raise HthorError(f"{run} holds no choice and no offer. Give the folder of a run with proxies.")
     if not learn.choices or not test.choices or not learn.offers or not test.offers:
@@ -114,7 +115,7 @@ def fit_answer(values: np.ndarray, said: np.ndarray) -> np.ndarray:
     return weights
 
 
-def law(choice: tuple[TrialSpec, list[list[float]], int]) -> list[float]:
+def law(choice: tuple[TrialSpec, Sequence[OptionRow], int]) -> list[float]:
     """What the proxy that chose made of its options: the utilities of its own law, with its own parameters."""
     spec, options, _ = choice
     traits = with_practice(_traits(spec.humans[0].model, spec.seed, spec.humans[0].participant), spec.index)
@@ -158,7 +159,7 @@ def judge_choices(test: Decisions, weights: np.ndarray) -> dict[str, dict[str, f
 
 def judge_answers(test: Decisions, weights: np.ndarray, rate: float) -> dict[str, dict[str, float]]:
     """The clone beside the mean rate of accepting."""
-    said = [int(offer["answer"] == "accept") for offer in test.offers]
+    said = [int(offer.answer == "accept") for offer in test.offers]
     chance = [clone.logistic(clone.dot(weights, clone.reasons(offer))) for offer in test.offers]
     pairs = {"clone": chance, "mean_rate": [rate] * len(said)}
     return {name: judge([np.array([1.0 - p, p]) for p in some], said) for name, some in pairs.items()}
@@ -168,9 +169,9 @@ def learn_from(runs: Sequence[Path]) -> dict[str, Any]:
     """The document that `cloned_person.py` loads: weights, and how they did on the people held out."""
     learn, test = read(runs)
     choice = fit_choice(*table(learn))
-    said = np.array([float(offer["answer"] == "accept") for offer in learn.offers])
+    said = np.array([float(offer.answer == "accept") for offer in learn.offers])
     answer = fit_answer(np.array([clone.reasons(offer) for offer in learn.offers]), said)
-    quiet = [offer["answer"] == "ignore" for offer in learn.offers if offer["answer"] != "accept"]
+    quiet = [offer.answer == "ignore" for offer in learn.offers if offer.answer != "accept"]
     return {
         "schema": clone.SCHEMA,
         "choice": [round(float(weight), 6) for weight in choice],

@@ -19,7 +19,7 @@ from hthor.errors import HthorError
 from hthor.humans.core.policy import Answer, Offer, OptionDescription, Situation
 from hthor.humans.models import proxy
 from hthor.humans.population.participant import Participant
-from hthor.types import Briefing
+from hthor.types import Briefing, events
 
 WEIGHTS = Path(__file__).with_suffix(".json")
 SCHEMA = "hthor.example.clone/1"
@@ -57,7 +57,7 @@ class Clone:
 
     def answer(self, offer: Offer) -> Answer:
         """A logit of accepting; what is not accepted is left alone as often as in the logs."""
-        chance = logistic(dot(self.weights["answer"], reasons(as_recorded(offer))))
+        chance = logistic(dot(self.weights["answer"], reasons(offer)))
         if seeds.draw(self.root, "accept", offer.number) < chance:
             return "accept"
         return "ignore" if seeds.draw(self.root, "ignore", offer.number) < self.weights["ignored"] else "decline"
@@ -82,15 +82,10 @@ def features(option: Sequence[float]) -> list[float]:
     ]
 
 
-def as_recorded(offer: Offer) -> dict[str, Any]:
-    """An offer as the journal's "offer" has it."""
-    return {name: getattr(offer, name) for name in ("trust", "useful", "gain", "load", "again")}
-
-
-def reasons(offer: Mapping[str, Any]) -> list[float]:
-    """What an answer may depend on, of one "offer" of the journal."""
-    useful = float(offer["useful"])
-    return [1.0, useful, offer["trust"] - 0.5, math.log1p(offer["gain"]), offer["load"], min(offer["again"], 3.0)]
+def reasons(offer: Offer | events.Offer) -> list[float]:
+    """What an answer may depend on, of an offer or of its record in the journal; a live person's trust is not known."""
+    trust = 0.5 if offer.trust is msgspec.UNSET else offer.trust
+    return [1.0, float(offer.useful), trust - 0.5, math.log1p(offer.gain), offer.load, min(offer.again, 3.0)]
 
 
 def dot(weights: Sequence[float], values: Sequence[float]) -> float:

@@ -17,7 +17,8 @@ from typing import Any
 from hthor.humans.llm import backends
 from hthor.humans.models import proxy
 from hthor.humans.population.participant import Participant
-from hthor.types import HUMAN, Briefing, Event
+from hthor.types import HUMAN, Briefing
+from hthor.types.events import JournalEntry, Note
 
 
 class Model(proxy.Model):
@@ -33,10 +34,10 @@ class Model(proxy.Model):
         super().begin(briefing)
 
     @property
-    def journal(self) -> Sequence[Event]:
+    def journal(self) -> Sequence[JournalEntry]:
         """The proxy's journal, and how often the model was asked and could not be understood."""
         asked = {"questions": self.speaker.questions, "fallbacks": self.speaker.fallbacks}
-        return (*super().journal, Event(tick=0, seat=HUMAN, kind="language_model", data=asked))
+        return (*super().journal, Note(tick=0, seat=HUMAN, topic="language_model", values=asked))
 
 
 def ingredients(source: str = "") -> dict[str, Any]:  # noqa: ARG001  there is none

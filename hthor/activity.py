@@ -1,10 +1,13 @@
-"""Reports the current step of a long operation to a listener, if there is one."""
+"""Reports the current step of a long operation, and notes for the user, to listeners, if there are any."""
 
+import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 
-_listener: ContextVar[Callable[[str], None] | None] = ContextVar("listener", default=None)
+_Listener = Callable[[str], None]
+_listener: ContextVar[_Listener | None] = ContextVar("listener", default=None)
+_reader: ContextVar[_Listener | None] = ContextVar("reader", default=None)
 
 
 def say(words: str) -> None:
@@ -13,11 +16,39 @@ def say(words: str) -> None:
         listener(words)
 
 
+def note(words: str) -> None:
+    """Tell the user something that they should know of a result but that is no error, as a sentence.
+
+    Without a reader it is a warning of Python's.
+    """
+    if (reader := _reader.get()) is not None:
+        reader(words)
+    else:
+        warnings.warn(words, stacklevel=2)
+
+
 @contextmanager
-def heard_by(listener: Callable[[str], None]) -> Iterator[None]:
+def heard_by(listener: _Listener) -> Iterator[None]:
     """Report all steps within the block to ``listener``."""
     before = _listener.set(listener)
     try:
         yield
     finally:
         _listener.reset(before)
+
+
+@contextmanager
+def read_by(reader: _Listener) -> Iterator[None]:
+    """Give all notes within the block to ``reader``, each once."""
+    seen = set[str]()
+
+    def read(words: str) -> None:
+        if words not in seen:
+            seen.add(words)
+            reader(words)
+
+    before = _reader.set(read)
+    try:
+        yield
+    finally:
+        _reader.reset(before)

@@ -12,14 +12,14 @@ from typing import Annotated
 
 import typer
 
-from hthor import __version__
+from hthor import __version__, activity
 from hthor.commands import assets, calibrate, compare, doctor, houses, merge, priors, replay, report, runs, score, suite
 from hthor.commands.agent import agent, serve
 from hthor.commands.eval import evaluate
 from hthor.commands.humans import humans
 from hthor.commands.leaderboard import board, list_entries, verify
 from hthor.commands.tasks import make, tasks
-from hthor.console import completion, exit_status, help_text, waiting_notice
+from hthor.console import completion, exit_status, help_text, output, waiting_notice
 from hthor.errors import HthorError
 
 app = typer.Typer(
@@ -108,5 +108,6 @@ def main() -> None:
     if completion.VARIABLE in os.environ:
         completion.attach(app)
     groups = [str(group.name) for group in app.registered_groups]
-    with waiting_notice.shown(sys.argv[1:], groups):
+    notes = activity.read_by(lambda words: output.say(f"note: {words}"))
+    with waiting_notice.shown(sys.argv[1:], groups), notes:
         exit_status.conclude(app)

@@ -1,38 +1,41 @@
 """How far the claim of a message is from the truth."""
 
 import math
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator
+
+from msgspec import UNSET, UnsetType
 
 from hthor.geometry import plane
-from hthor.types import HouseSpec, Send, Snapshot, Thing, Vec3
+from hthor.types import HouseSpec, Snapshot, Thing, Vec3
+from hthor.types.events import Sent
 
 OFF_M = 1.0
 """[m] A claim is false if its object is farther than this from the claimed position; our choice."""
 
 
-def claim_error(send: Send, position: Vec3 | None, snapshot: Snapshot, house: HouseSpec) -> dict[str, float | None]:
-    """The data of a claim for the log: ``{"off": metres}``, empty where nothing is claimed.
+def claim_error(name: str, position: Vec3 | None, snapshot: Snapshot, house: HouseSpec) -> float | UnsetType | None:
+    """How far [m] a message's claim is from the truth; unset where nothing is claimed.
 
-    A message claims something when it names an ``object`` and a ``position``: that the thing of this id, or a thing of
-    this kind, is there. ``off`` is the distance from there to the nearest such thing: to the centre of an object that
-    can be carried, the outline on the plan of furniture in its place, a room's edge (0 within) or a body's axis. It is
-    None when there is no such thing at all; naming it is then a false claim, even without a position.
+    A message claims something when it names an object and a position: that the thing of this id, or a thing of this
+    kind, is there. The error is the distance from there to the nearest such thing: to the centre of an object that can
+    be carried, the outline on the plan of furniture in its place, a room's edge (0 within) or a body's axis. It is None
+    when there is no such thing at all; naming it is then a false claim, even without a position.
 
     Args:
-        position: of the claim [m], as the mailbox parsed it. snapshot: the true state when the message is sent.
+        name: what the sender named. position: of the claim [m], as the mailbox parsed it.
+        snapshot: the true state when the message is sent.
     """
-    if not isinstance(send.object, str) or not send.object:
-        return {}
-    ways = list(_distances(send.object, position or (0.0, 0.0, 0.0), snapshot, house))
+    if not name:
+        return UNSET
+    ways = list(_distances(name, position or (0.0, 0.0, 0.0), snapshot, house))
     if position is None and ways:
-        return {}
-    return {"off": round(min(ways), 3) if ways else None}
+        return UNSET
+    return round(min(ways), 3) if ways else None
 
 
-def is_false(data: Mapping[str, Any]) -> bool:
-    """Whether the claim of a ``sent`` event with this data was wrong when it was made."""
-    return "off" in data and (data["off"] is None or data["off"] > OFF_M)
+def is_false(sent: Sent) -> bool:
+    """Whether the claim of a message was wrong when it was made."""
+    return sent.off is not UNSET and (sent.off is None or sent.off > OFF_M)
 
 
 def _distances(name: str, position: Vec3, snapshot: Snapshot, house: HouseSpec) -> Iterator[float]:

@@ -15,7 +15,8 @@ from typing import Any
 from msgspec import Struct
 
 from hthor import rules
-from hthor.types import HUMAN, Event, Message, Receipt, Reply, Send, Status, Vec3
+from hthor.types import HUMAN, Message, Receipt, Reply, Send, Status, Vec3
+from hthor.types.events import Accepted, Answered, Covered, Declined, Event, Refused, Sent, Shown
 from hthor.types.observations import ImageSource
 
 _OPEN = ("sent", "shown")
@@ -62,7 +63,7 @@ class Mailbox:
         if reason:
             return (self._refused(tick, sender, reason),)
         number, readers = len(self._messages), self._readers(sender, send)
-        events = [] if send.answers is None else [self._set_status(tick, send.answers, sender, "answered", sender)]
+        events: list[Event] = [] if send.answers is None else [self._answered(tick, send.answers, sender)]
         for reader in readers:
             events += self._cover(tick, sender, reader, number, send.question)
         text, cut = clean_text(send.text, rules.TEXT_MAX)
@@ -100,16 +101,21 @@ class Mailbox:
         unread = [number for number in inbox if self._deliveries[number, seat].status == "sent"]
         if seat in self._robots:
             self._inboxes[seat] = tuple(number for number in inbox if self._messages[number].question)
-        return tuple(self._set_status(tick, number, seat, "shown", seat) for number in unread)
+        for number in unread:
+            self._set_status(tick, number, seat, "shown")
+        return tuple(Shown(tick=tick, seat=seat, message=number, sender=self._sender(number)) for number in unread)
 
     def reply(self, tick: int, seat: str, reply: Reply) -> tuple[Event, ...]:
         """Record a person's answer: "accepted", "declined", "answered" for a question; or "refused", with a reason."""
         reason = self._reply_refusal(seat, reply)
         if reason:
             return (self._refused(tick, seat, reason, message=reply.message),)
-        if self._messages[reply.message].question:
-            return (self._set_status(tick, reply.message, seat, "answered", seat, yes=reply.accept),)
-        return (self._set_status(tick, reply.message, seat, "accepted" if reply.accept else "declined", seat),)
+        number = reply.message
+        if self._messages[number].question:
+            return (self._answered(tick, number, seat, reply.accept),)
+        self._set_status(tick, number, seat, "accepted" if reply.accept else "declined")
+        answer = Accepted if reply.accept else Declined
+        return (answer(tick=tick, seat=seat, message=number, sender=self._sender(number)),)
 
     def receipt(self, seat: str) -> Receipt | None:
         """The latest status of this seat's last message, None before its first. Reading it resets `changed`."""
@@ -150,27 +156,34 @@ class Mailbox:
         everybody = self._people if sender in self._robots else (*self._people, *self._robots)
         return tuple(seat for seat in everybody if seat != sender)
 
-    def _cover(self, tick: int, sender: str, reader: str, by: int, question: bool) -> Iterable[Event]:
-        """Take away what a new message covers: a person's open message, a robot's open question of the same sender."""
-        for number in self._inboxes[reader]:
-            same = question and self._messages[number].question and self._messages[number].sender == sender
-            if reader in self._people or same:
-                yield self._set_status(tick, number, reader, "covered", sender, by=by)
+    def _sender(self, number: int) -> str:
+        return self._messages[number].sender
 
-    def _set_status(self, tick: int, number: int, reader: str, status: Status, seat: str, **more: Any) -> Event:
-        """Move a message on to its next status for one reader; ``seat`` is the one that does it."""
-        receipt = Receipt(message=number, status=status, tick=tick, by=reader, yes=more.get("yes"))
+    def _answered(self, tick: int, number: int, seat: str, yes: bool | None = None) -> Answered:
+        """Record that the seat answered a question; ``yes`` is None if its answer is a message."""
+        self._set_status(tick, number, seat, "answered", yes)
+        return Answered(tick=tick, seat=seat, message=number, sender=self._sender(number), yes=yes)
+
+    def _cover(self, tick: int, sender: str, reader: str, by: int, question: bool) -> Iterable[Covered]:
+        """Take away what a new message covers: a person's open message, a robot's open question of the same sender."""
+        named = reader if len(self._people) > 1 else ""
+        for number in self._inboxes[reader]:
+            asked = self._sender(number)
+            same = question and self._messages[number].question and asked == sender
+            if reader in self._people or same:
+                self._set_status(tick, number, reader, "covered")
+                yield Covered(tick=tick, seat=sender, message=number, sender=asked, by=by, reader=named)
+
+    def _set_status(self, tick: int, number: int, reader: str, status: Status, yes: bool | None = None) -> None:
+        """Move a message on to its next status for one reader."""
+        receipt = Receipt(message=number, status=status, tick=tick, by=reader, yes=yes)
         self._deliveries[number, reader] = receipt
         if status not in _OPEN:
             self._inboxes[reader] = tuple(other for other in self._inboxes[reader] if other != number)
-        sender = self._messages[number].sender
+        sender = self._sender(number)
         if self._receipts[sender].message == number:
             self._receipts[sender] = receipt
             self._changed.add((sender, "receipt"))
-        data = {"message": number, "sender": sender, **more}
-        if status == "covered" and len(self._people) > 1:
-            data["reader"] = reader
-        return Event(tick=tick, seat=seat, kind=status, data=data)
 
     def _send_refusal(self, sender: str, send: Send) -> str:
         seats = (*self._people, *self._robots)
@@ -218,34 +231,36 @@ class Mailbox:
         return "" if status in _OPEN else f"the message is already {status}"
 
     @staticmethod
-    def _refused(tick: int, seat: str, reason: str, message: object = None) -> Event:
-        number = message if isinstance(message, int) else None
-        data = {"reason": reason} if number is None else {"reason": reason, "message": number}
-        return Event(tick=tick, seat=seat, kind="refused", data=data)
+    def _refused(tick: int, seat: str, reason: str, message: Any = None) -> Refused:
+        number = message if _is_number(message) else None
+        return Refused(tick=tick, seat=seat, reason=reason, message=number)
 
 
-def _sent(message: Message, cut: int) -> Event:
+def _sent(message: Message, cut: int) -> Sent:
     """The event that a message was sent; ``cut`` is how many characters its text lost."""
-    data: dict[str, Any] = {
-        "message": message.id,
-        "text": message.text,
-        "object": message.object,
-        "position": _plain(message.position),
-    }
-    extra = {"cut": cut, "to": message.to, "question": message.question}
-    data |= {name: value for name, value in extra.items() if value}
-    if message.answers is not None:
-        data["answers"] = message.answers
-    return Event(tick=message.tick, seat=message.sender, kind="sent", data=data)
+    return Sent(
+        tick=message.tick,
+        seat=message.sender,
+        message=message.id,
+        text=message.text,
+        object=message.object,
+        position=_to_millimetre(message.position),
+        to=message.to,
+        question=message.question,
+        answers=message.answers,
+        cut=cut,
+    )
 
 
 def _is_number(value: Any) -> bool:
     return isinstance(value, int) and not isinstance(value, bool)
 
 
-def _plain(position: Vec3 | None) -> list[float] | None:
-    """A position for the log, to the millimetre."""
-    return None if position is None else [round(number, 3) for number in position]
+def _to_millimetre(position: Vec3 | None) -> Vec3 | None:
+    if position is None:
+        return None
+    x, y, z = position
+    return round(x, 3), round(y, 3), round(z, 3)
 
 
 def clean_text(text: str, limit: int) -> tuple[str, int]:

@@ -29,7 +29,8 @@ from hthor.episode.set_points import rounded
 from hthor.episode.trial_world import TrialWorld
 from hthor.errors import HthorError
 from hthor.tasks.kind import TaskKind
-from hthor.types import HUMAN, Action, Briefing, Drive, Event, Motion, Observation, Send, TrialSpec, is_person
+from hthor.types import HUMAN, Action, Briefing, Drive, Motion, Observation, Send, TrialSpec, is_person
+from hthor.types.events import AgentFault, Event, JournalEntry, Paused, Resumed, Sent, Success, Thought, Timeout, Voided
 
 Observer = Callable[["Episode", Sequence[Event]], None]
 """Called after `Episode.reset` and after every tick, with the events since its last call; it must change nothing."""
@@ -207,13 +208,13 @@ class Episode:
         """Stop the trial's time until `resume`; the log has when and why, and nothing else changes."""
         if not self.paused:
             self.paused = True
-            self.events.append(Event(tick=self.tick, seat=HUMAN, kind="paused", data={"reason": reason}))
+            self.events.append(Paused(tick=self.tick, seat=HUMAN, reason=reason))
 
     def resume(self) -> None:
         """Let time pass again."""
         if self.paused:
             self.paused = False
-            self.events.append(Event(tick=self.tick, seat=HUMAN, kind="resumed"))
+            self.events.append(Resumed(tick=self.tick, seat=HUMAN))
 
     def void(self, reason: str) -> None:
         """End the trial and mark it as one that does not count, such as one in which a cable came loose."""
@@ -261,16 +262,17 @@ class Episode:
         }
 
     def log(
-        self, ratings: Mapping[str, int | None] | None = None, journals: Mapping[str, Sequence[Event]] | None = None
+        self,
+        ratings: Mapping[str, int | None] | None = None,
+        journals: Mapping[str, Sequence[JournalEntry]] | None = None,
     ) -> EpisodeLog:
         """The trial's log up to now.
 
         Args:
             ratings: each person's rating of trust in the robots after the trial, by seat.
-            journals: each human model's own events, by seat, for the journal.
+            journals: each human model's own entries for the journal, by seat.
         """
-        end = "voided" if self.voided else "success" if self.met else "timeout" if self.done else ""
-        log = self._writer.log(self.tick, end, self.voided, journals or {})
+        log = self._writer.log(self.tick, self._end(), journals or {})
         return msgspec.structs.replace(log, met=self.met, progress=self._progress.value, ratings=dict(ratings or {}))
 
     # ----------------------------------------------------------------------------------------------- within one tick
@@ -279,7 +281,7 @@ class Episode:
         for seat in self._active:
             if (fault := self._failed.get(seat)) is not None:
                 self.faults.append(fault)
-                self.events.append(Event(tick=self.tick, seat=seat, kind="fault", data={"kind": fault.kind}))
+                self.events.append(AgentFault(tick=self.tick, seat=seat, fault=fault.kind))
                 self._writer.rest.note(self.tick, seat, resting=True)
         self._active = tuple(seat for seat in self._active if seat not in self._failed)
         self._failed = {}
@@ -301,7 +303,7 @@ class Episode:
                 continue
             action, seen = actions[seat]
             if seen is not None and seen.tick < tick:
-                self.events.append(Event(tick=tick, seat=seat, kind="thought", data={"ticks": tick - seen.tick}))
+                self.events.append(Thought(tick=tick, seat=seat, ticks=tick - seen.tick))
             if action.say is not None:
                 self._say(seat, action)
             if isinstance(action.motion, Drive) or ((seen is None or seen.idle) and idle(seat)):
@@ -327,7 +329,15 @@ class Episode:
 
     def _with_claim_error(self, event: Event, send: Send) -> Event:
         """The event; for a sent message, with the distance of its claim from the truth added."""
-        if event.kind != "sent":
+        if not isinstance(event, Sent):
             return event
-        claim = claims.claim_error(send, event.data["position"], self.world.snapshot(), self.world.house)
-        return msgspec.structs.replace(event, data={**event.data, **claim})
+        off = claims.claim_error(send.object, event.position, self.world.snapshot(), self.world.house)
+        return msgspec.structs.replace(event, off=off)
+
+    def _end(self) -> tuple[Event, ...]:
+        """The last event of the trial; none while it goes on."""
+        if self.voided:
+            return (Voided(tick=self.tick, seat=HUMAN, reason=self.voided),)
+        if not self.done:
+            return ()
+        return ((Success if self.met else Timeout)(tick=self.tick, seat=HUMAN),)

@@ -2,7 +2,7 @@
 
 from msgspec import Struct
 
-from hthor.types import Event
+from hthor.types.events import Event, JournalEntry
 
 
 class Fault(Struct, frozen=True, kw_only=True):
@@ -28,8 +28,8 @@ class EpisodeLog(Struct, frozen=True, kw_only=True):
         progress: the share of the goal that is met at the end, from 0 to 1; None for task kinds without partial goals.
             Every change of it is an event "progress" with the new ``value``.
         idle: for how many ticks each seat's body carried out no motion, or only waited.
-        journal: events from the human's recorder and model: stick, pitch, attempts, glimpses and choices, as
-            `hthor.humans.core.behaviour_log` lists them.
+        journal: entries from the human's recorder and model: stick, pitch, attempts, glimpses and choices, see
+            `hthor.types.events.journal`.
     """
 
     events: tuple[Event, ...]
@@ -40,4 +40,4 @@ class EpisodeLog(Struct, frozen=True, kw_only=True):
     faults: tuple[Fault, ...]
     progress: float | None = None
     idle: dict[str, int] = {}
-    journal: tuple[Event, ...] = ()
+    journal: tuple[JournalEntry, ...] = ()

@@ -4,7 +4,8 @@ from collections.abc import Mapping
 
 from hthor import rules
 from hthor.tasks.kind import TaskKind
-from hthor.types import HUMAN, Event, HouseSpec, Snapshot, TaskSpec, ThingState
+from hthor.types import HUMAN, HouseSpec, Snapshot, TaskSpec, ThingState
+from hthor.types.events import Event, Progress
 
 _EVERY_TICKS = round(1.0 / rules.TICK_S)
 """[ticks] Progress is computed at least this often."""
@@ -37,7 +38,7 @@ class GoalProgress:
         if share == self.value:
             return ()
         self.value = share
-        return (Event(tick=snapshot.tick, seat=HUMAN, kind="progress", data={"value": share}),)
+        return (Progress(tick=snapshot.tick, seat=HUMAN, value=share),)
 
     def save_state(self, snapshot: Snapshot) -> tuple[float | None, bool]:
         """The share, and whether it is that of the snapshot's objects."""

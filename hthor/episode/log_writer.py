@@ -9,7 +9,8 @@ from hthor.episode.episode_log import EpisodeLog, Fault
 from hthor.episode.rest_time import RestState, RestTime
 from hthor.episode.trial_world import TrialWorld
 from hthor.humans.core.behaviour_log import BehaviourRecorder, RecorderState
-from hthor.types import HUMAN, BodySpec, Event, Motion, is_person
+from hthor.types import BodySpec, Motion, is_person
+from hthor.types.events import Event, JournalEntry
 
 _THOUSAND = 1000.0
 """Millimetres in a metre, milliradians in a radian."""
@@ -57,13 +58,11 @@ class LogWriter:
             self._recorders[seat].motion(tick, motion, step)
         self.rest.note_motion(tick, seat, motion, started=started)
 
-    def log(self, tick: int, end: str, reason: str, journals: Mapping[str, Sequence[Event]]) -> EpisodeLog:
-        """The log up to this tick, with ``end`` as its last event unless that is empty, and the people's journals."""
-        events = tuple(self.events)
-        if end:
-            events += (Event(tick=tick, seat=HUMAN, kind=end, data={"reason": reason} if reason else {}),)
+    def log(self, tick: int, end: Sequence[Event], journals: Mapping[str, Sequence[JournalEntry]]) -> EpisodeLog:
+        """The log up to this tick, with the last event ``end`` if the trial is over, and the people's journals."""
+        events = (*self.events, *end)
         recorders = self._recorders.items()
-        journal = [event for seat, one in recorders for event in one.journal(journals.get(seat, ()), events)]
+        journal = [entry for seat, one in recorders for entry in one.journal(journals.get(seat, ()), events)]
         return EpisodeLog(
             events=events,
             paths={seat: list(path) for seat, path in self._paths.items()},

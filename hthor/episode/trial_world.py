@@ -3,7 +3,8 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
 
-from hthor.types import BodySpec, Event, HouseSpec, Motion, Outcome, Pose, Senses, Snapshot, TaskSpec, ThingState
+from hthor.types import BodySpec, HouseSpec, Motion, Outcome, Pose, Senses, Snapshot, TaskSpec, ThingState
+from hthor.types.events import Event
 from hthor.types.sensors import RgbImage
 
 

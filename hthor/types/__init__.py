@@ -1,4 +1,4 @@
-"""The records that the packages of hthor exchange; begin with `events` (`Mind`) and `observations`.
+"""The records that the packages of hthor exchange; begin with `mind` and `observations`.
 
 Frames and units, everywhere in hthor: metres, radians, seconds; the *house frame* is MuJoCo's world frame (x right,
 y forward, z up). A body's ``yaw`` is its heading, counter-clockwise from +x. A thing's ``yaw`` turns its *local
@@ -21,7 +21,6 @@ from hthor.types.actions import (
     Send,
     Wait,
 )
-from hthor.types.events import Event, Mind, Snapshot
 from hthor.types.house import (
     HUMAN,
     HouseSpec,
@@ -38,8 +37,10 @@ from hthor.types.house import (
     Wall,
     is_person,
 )
+from hthor.types.mind import Mind
 from hthor.types.observations import Briefing, Message, Observation, Outcome, Receipt, Status, ThingState
 from hthor.types.sensors import Camera, CameraSpec, Detection, DetectorSpec, Scan, Senses, Sighting, View
+from hthor.types.snapshot import Snapshot
 from hthor.types.specs import (
     AgentRef,
     BodySpec,
@@ -67,7 +68,6 @@ __all__ = [
     "DetectorSpec",
     "Drive",
     "Drop",
-    "Event",
     "Goal",
     "HouseSpec",
     "HumanSeat",

@@ -18,7 +18,6 @@ from hthor.types import (
     Close,
     Detection,
     Drop,
-    Event,
     Message,
     Motion,
     Move,
@@ -38,6 +37,7 @@ from hthor.types import (
     Wait,
     is_person,
 )
+from hthor.types.events import Event, Refused
 from hthor.world import numbers, walk_to
 from hthor.world.interactive_simulation import InteractiveSimulation
 from hthor.world.rendering.lazy_images import Size
@@ -282,6 +282,6 @@ class Actor:
 
     def _post(self, events: Iterable[Event]) -> None:
         for event in events:
-            if event.kind == "refused":
-                raise HthorError(f"{self.seat}: {event.data['reason']}")
+            if isinstance(event, Refused):
+                raise HthorError(f"{self.seat}: {event.reason}")
         self._world.note(events)

@@ -44,7 +44,7 @@ class EditableSimulation(Simulation):
         body.pose, body.activity = pose, None
         self._driven.stop(body)
         self._door_handling.release(seat)
-        self._joint_carrying.release(body)
+        self._joint_carrying.release(body, self.tick)
         if body.holding:
             self._objects.follow(body.holding)
 

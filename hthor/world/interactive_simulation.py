@@ -6,20 +6,8 @@ from hthor import catalog, rules
 from hthor.comms.mailbox import Mailbox
 from hthor.errors import UnknownName
 from hthor.geometry import plane
-from hthor.types import (
-    Event,
-    Message,
-    Motion,
-    Outcome,
-    Placement,
-    Receipt,
-    Room,
-    TaskSpec,
-    Thing,
-    ThingState,
-    Vec3,
-    is_person,
-)
+from hthor.types import Message, Motion, Outcome, Placement, Receipt, Room, TaskSpec, Thing, ThingState, Vec3, is_person
+from hthor.types.events import Event
 from hthor.world import numbers
 from hthor.world.motion import spawn
 from hthor.world.sensing_simulation import SensingSimulation

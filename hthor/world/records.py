@@ -6,7 +6,8 @@ the rest is not stated. Positions are in the house frame [m], angles in [rad].
 
 from msgspec import Struct
 
-from hthor.types import Close, Drive, Drop, Event, Open, Outcome, Pick, Place, Pose, Rotate, Vec2, Vec3
+from hthor.types import Close, Drive, Drop, Open, Outcome, Pick, Place, Pose, Rotate, Vec2, Vec3
+from hthor.types.events import Event
 
 HandAction = Pick | Place | Drop | Open | Close
 

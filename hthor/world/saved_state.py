@@ -14,7 +14,8 @@ from msgspec import Struct
 
 from hthor import rules
 from hthor.errors import HthorError
-from hthor.types import BodySpec, DetectorSpec, Event, HouseSpec
+from hthor.types import BodySpec, DetectorSpec, HouseSpec
+from hthor.types.events import Event
 from hthor.world.model.composer_env import QPose
 from hthor.world.model.engine import mujoco
 from hthor.world.motion.reach import held_pose

@@ -11,7 +11,6 @@ from hthor.types import (
     BodySpec,
     DetectorSpec,
     Drive,
-    Event,
     HouseSpec,
     Motion,
     Move,
@@ -27,6 +26,7 @@ from hthor.types import (
     Wait,
     is_person,
 )
+from hthor.types.events import Event, Refused
 from hthor.world import numbers
 from hthor.world.interaction import manipulation
 from hthor.world.model import inventory
@@ -157,8 +157,7 @@ class Simulation:
         if reason:
             verb = manipulation.motion_name(action)
             body.outcome = Outcome(motion=verb, ok=False, reason=reason)
-            data = {"motion": verb, "reason": reason}
-            self._events.append(Event(tick=self.tick, seat=seat, kind="refused", data=data))
+            self._events.append(Refused(tick=self.tick, seat=seat, motion=verb, reason=reason))
             return
         if body.drive is not None and isinstance(action, (Move, Rotate, Wait)):
             self._driven.stop(body)

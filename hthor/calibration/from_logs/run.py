@@ -15,6 +15,7 @@ from hthor.errors import RunError
 from hthor.humans.population import parameter_registry, population_file, resolve
 from hthor.humans.population.population import Population, Validity
 from hthor.humans.population.resolve import PROXY
+from hthor.types.events import Stick
 
 SCHEMA = "hthor.estimates/1"
 
@@ -57,7 +58,7 @@ def estimate_from_logs(
     """
     tell("reading")
     data = trial_features.read_sessions(logs)
-    if not any(event.kind == "stick" for one in data.trials for event in one.record.journal):
+    if not any(isinstance(entry, Stick) for one in data.trials for entry in one.record.journal):
         raise RunError(
             f"{logs[0]} has no record of the person's motions and attempts. It was written by an older version of "
             "hthor; repeat the run with 'hthor eval'."

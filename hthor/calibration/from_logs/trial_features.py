@@ -1,12 +1,13 @@
 """Reads logs as people with their trials in order, and extracts the features that the estimators use."""
 
 import math
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from msgspec import Struct
+from msgspec import UNSET, Struct
 
-from hthor import rules
+from hthor import log_format, rules
 from hthor.calibration.from_logs.features import locomotion, messages
 from hthor.calibration.from_logs.features.locomotion import Walk
 from hthor.calibration.from_logs.features.messages import Offer, Reading
@@ -16,7 +17,7 @@ from hthor.errors import RunError
 from hthor.eval.records import trial_record
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.humans.population.parameters import Parameters
-from hthor.types import HUMAN
+from hthor.types import HUMAN, events
 
 
 class Trial(Struct, frozen=True, kw_only=True):
@@ -91,12 +92,17 @@ def _records(path: Path) -> list[TrialRecord]:
             f"{file}, line {len(lines)} is cut off: it has no end. Finish the run with the 'hthor eval' command that "
             "began it, or delete that line."
         )
-    return [_record(file, number, line + b"\n") for number, line in enumerate(lines[:-1], 1)]
+    skipped = Counter[str]()
+    records = [_record(file, number, line + b"\n", skipped) for number, line in enumerate(lines[:-1], 1)]
+    log_format.note_skipped(file, skipped)
+    return records
 
 
-def _record(file: Path, number: int, line: bytes) -> TrialRecord:
+def _record(file: Path, number: int, line: bytes, skipped: Counter[str]) -> TrialRecord:
     try:
-        return trial_record.decode(line)
+        return trial_record.decode(line, skipped)
+    except trial_record.OtherVersion as other:
+        raise RunError(other.sentence(file)) from None
     except trial_record.Damaged as damage:
         raise RunError(
             f"{file}, line {number} is not a trial that 'hthor eval' logged: {damage.field}: {damage.problem}. "
@@ -148,25 +154,26 @@ def _reduced(trial: Trial) -> TrialFeatures:
         noticings=messages.message_noticings(record),
         offers=messages.message_offers(record),
         choices=tuple(
-            Choice(options=event.data["options"], chosen=event.data["chosen"], pace=pace)
-            for event in record.journal
-            if event.kind == "choice" and event.data["aim"] == "target" and len(event.data["options"]) > 1
+            Choice(options=entry.options, chosen=entry.chosen, pace=pace)
+            for entry in record.journal
+            if isinstance(entry, events.Choice) and entry.aim == "target" and len(entry.options) > 1
         ),
         exposures=tuple(
-            Exposure(rows=event.data["gathered"], noticed=event.data["noticed"])
-            for event in record.journal
-            if event.kind == "exposure"
+            Exposure(rows=entry.gathered, noticed=entry.noticed)
+            for entry in record.journal
+            if isinstance(entry, events.Exposure)
         ),
         experience=_experience(record),
     )
 
 
 def _experience(record: TrialRecord) -> Experience:
-    accepted = [event.tick for event in record.journal if event.kind == "offer" and _helps(event.data)]
-    misled = [event.tick for event in record.journal if event.kind == "misled"]
+    offers = [entry for entry in record.journal if isinstance(entry, events.Offer)]
+    accepted = [offer.tick for offer in offers if offer.relevant and offer.answer == "accept"]
+    misled = [entry.tick for entry in record.journal if isinstance(entry, events.Misled)]
     helped = accepted[0] * rules.TICK_S if accepted and not misled else math.nan
     return Experience(
-        offered=any(event.kind == "shown" for event in record.events),
+        offered=any(isinstance(event, events.Shown) for event in record.events),
         helped=helped,
         misled=len(misled),
         met=record.met,
@@ -174,24 +181,20 @@ def _experience(record: TrialRecord) -> Experience:
     )
 
 
-def _helps(offer: dict[str, object]) -> bool:
-    return bool(offer["relevant"]) and offer["answer"] == "accept"
-
-
 def manipulation_attempts(record: TrialRecord) -> tuple[Attempt, ...]:
     """The attempts of a trial in order; an attempt without outcome was cut short by walking on or by the end."""
     walked = [
         tick
-        for event in record.journal
-        if event.kind == "stick"
-        for tick, deflection in zip(event.data["runs"][::2], event.data["runs"][1::2], strict=True)
+        for entry in record.journal
+        if isinstance(entry, events.Stick)
+        for tick, deflection in zip(entry.runs[::2], entry.runs[1::2], strict=True)
         if deflection > 0
     ]
     found = []
-    for event in record.journal:
-        if event.kind == "attempt":
-            cut = "ok" not in event.data
-            until = min((tick for tick in walked if tick > event.tick), default=record.ticks)
-            seconds = (until - event.tick) * rules.TICK_S if cut else float(event.data["seconds"])
-            found.append(Attempt(seconds=seconds, missed=event.data.get("why") == "missed", cut=cut))
+    for entry in record.journal:
+        if isinstance(entry, events.Attempt):
+            until = min((tick for tick in walked if tick > entry.tick), default=record.ticks)
+            cut = entry.seconds is UNSET
+            seconds = (until - entry.tick) * rules.TICK_S if entry.seconds is UNSET else entry.seconds
+            found.append(Attempt(seconds=seconds, missed=entry.why == "missed", cut=cut))
     return tuple(found)

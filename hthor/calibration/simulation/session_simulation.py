@@ -20,6 +20,7 @@ from hthor.humans.population.parameters import Parameters
 from hthor.humans.population.participant import Participant, add_random_effects, participant_root
 from hthor.tasks import Suite
 from hthor.types import HUMAN, HumanSeat, RobotSeat, TaskSpec, TrialSpec
+from hthor.types.events import Picked, Sent
 
 CODE_ROOT = "sessions"
 
@@ -110,10 +111,9 @@ def outcome_row(number: int, trial: TrialSpec, log: EpisodeLog) -> OutcomeRow:
     first: dict[str, int] = {}
     messages, target = 0, trial.task.goal.target
     for event in log.events:
-        kind = event.kind
-        messages += kind == "sent"
-        if kind != "picked" or (event.seat == HUMAN and event.data.get("object") == target):
-            first.setdefault(kind, event.tick)
+        messages += isinstance(event, Sent)
+        if not isinstance(event, Picked) or (event.seat == HUMAN and event.object == target):
+            first.setdefault(event.kind, event.tick)
     ticks = log.ticks if log.met else round(trial.task.time_limit / rules.TICK_S)
     ticks_of_first = [first.get(kind, -1) for kind in _FIRST]
     return (number, int(log.met), ticks, *ticks_of_first, messages, int("accepted" in first), log.ratings[HUMAN] or 0)

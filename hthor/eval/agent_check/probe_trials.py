@@ -19,8 +19,9 @@ from hthor.eval.runner.fault_report import RecordedAgent
 from hthor.guest import Guest
 from hthor.guest.process_tools import resource_usage
 from hthor.tasks.suite import make_suite
-from hthor.types import Action, Briefing, Detection, Event, Observation, Send, TrialSpec, Wait
+from hthor.types import Action, Briefing, Detection, Observation, Send, TrialSpec, Wait
 from hthor.types.cameras import OWN
+from hthor.types.events import Accepted, Declined, Sent
 
 _TASKS = ("smoke/alder/manipulation-01", "smoke/elder/manipulation-02")
 _LIMIT_S = 30.0
@@ -173,7 +174,7 @@ def longest_on_one_spot_s(log: EpisodeLog, seat: str) -> float:
 
     After that it may wait for a good reason: the person knows where to go.
     """
-    until = min((event.tick for event in log.events if event.kind == "accepted"), default=log.ticks)
+    until = min((event.tick for event in log.events if isinstance(event, Accepted)), default=log.ticks)
     step = rules.LOG_EVERY_TICKS
     points = [(x / 1000.0, y / 1000.0) for x, y, _ in log.paths[seat][: until // step + 1]]
     longest = start = 0
@@ -188,14 +189,10 @@ def count_repeated_messages(log: EpisodeLog, seat: str) -> int:
     """How many messages of a seat repeat its message before, although the person had not declined that message."""
     count, last = 0, None
     for event in log.events:
-        if event.kind == "sent" and event.seat == seat:
-            said = _said(event)
+        if isinstance(event, Sent) and event.seat == seat:
+            said = event.text, event.object
             count += said == last
             last = said
-        elif event.kind == "declined":
+        elif isinstance(event, Declined):
             last = None
     return count
-
-
-def _said(event: Event) -> tuple[object, ...]:
-    return event.data.get("text"), event.data.get("object")

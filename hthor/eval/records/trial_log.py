@@ -7,11 +7,12 @@ import fcntl
 import os
 import socket
 import time
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from hthor import jsonio
+from hthor import jsonio, log_format
 from hthor.errors import RunError, RunLocked
 from hthor.eval.records import trial_record
 from hthor.eval.records.trial_record import TrialRecord
@@ -37,22 +38,28 @@ class Place(NamedTuple):
 def read(path: Path) -> Iterator[tuple[bytes, TrialRecord]]:
     """Every whole line of a log and its record; a torn last line, which has no newline, is skipped.
 
+    Events of kinds that this version does not know are left out of the records, and a note says so.
+
     Raises:
-        RunError: for a damaged line, naming file, line and field.
+        RunError: for a damaged line, naming file, line and field, and for a log of another version.
     """
     if not path.exists():
         return
+    skipped = Counter[str]()
     with path.open("rb") as file:
         for number, line in enumerate(file, 1):
             if not line.endswith(b"\n"):
-                return
+                break
             try:
-                yield line, trial_record.decode(line)
+                yield line, trial_record.decode(line, skipped)
+            except trial_record.OtherVersion as other:
+                raise RunError(other.sentence(path)) from None
             except trial_record.Damaged as damage:
                 raise RunError(
                     f"{path}, line {number}: {damage.field}: {damage.problem}. The log was changed after it was "
                     f"written. Delete that line to have its trial played again by the same 'hthor eval' command."
                 ) from None
+    log_format.note_skipped(path, skipped)
 
 
 def places(path: Path) -> Iterator[tuple[Place, bytes, TrialRecord]]:

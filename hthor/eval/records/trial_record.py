@@ -1,17 +1,20 @@
 """One trial as one line of JSON; the same trial gives the same bytes everywhere."""
 
 import zlib
-from collections.abc import Sequence
-from typing import Any
+from collections import Counter
+from functools import cache
+from typing import Any, TypeVar
 
 import msgspec
-from msgspec import UNSET, Struct, UnsetType
+from msgspec import UNSET, UnsetType, field
 
-from hthor import documents, jsonio
+from hthor import documents, jsonio, log_format
 from hthor.episode import EpisodeLog, Fault
 from hthor.eval.metrics.trial_metrics import TrialMetrics, measure
 from hthor.guest.agent.manifest import File
-from hthor.types import Event, TrialSpec, Vec3
+from hthor.log_format import Logged
+from hthor.types import TrialSpec
+from hthor.types.events import Event, JournalEntry, LogEntry
 
 CODE_ROOT = "trial"
 
@@ -20,20 +23,17 @@ _DIGITS = 4
 _encoder = msgspec.json.Encoder(order="deterministic")
 _CHECK = b',"check":"%08x"}\n'
 _CHECK_LENGTH = len(_CHECK % 0)
-_NEEDED = {
-    "sent": ("message", "text"),
-    **dict.fromkeys(("shown", "accepted", "declined", "covered"), ("message",)),
-    "progress": ("value",),
-}
-"""The fields that events of a kind must have."""
+_KEY_DIGITS = 16
+_Entry = TypeVar("_Entry", bound=LogEntry)
 
 
-class TrialRecord(Struct, frozen=True, kw_only=True):
+class TrialRecord(Logged, frozen=True, kw_only=True):
     """A trial's specification, everything that happened in it, and its metrics; one line of `trials.jsonl`.
 
     Fields that are not listed here are those of `hthor.episode.EpisodeLog`.
 
     Attributes:
+        schema: the version of the log.
         key: hash of ``spec``, see `key`.
         files: by seat, the agent's own files that it opened and that ``agents`` in `run.json` does not list.
     """
@@ -48,8 +48,8 @@ class TrialRecord(Struct, frozen=True, kw_only=True):
     events: tuple[Event, ...]
     paths: dict[str, list[tuple[int, int, int]]]
     progress: float | None = None
-    idle: dict[str, int] = {}
-    journal: tuple[Event, ...] = ()
+    idle: dict[str, int] = field(default_factory=dict)
+    journal: tuple[JournalEntry, ...] = ()
     files: dict[str, tuple[File, ...]] | UnsetType = UNSET
 
     @property
@@ -58,27 +58,26 @@ class TrialRecord(Struct, frozen=True, kw_only=True):
         return EpisodeLog(**{name: getattr(self, name) for name in EpisodeLog.__struct_fields__})
 
 
-_decoder = msgspec.json.Decoder(TrialRecord)
+_decoder = log_format.LineDecoder(TrialRecord)
 
 
 Damaged = documents.Unreadable
+OtherVersion = log_format.OtherVersion
 """A line that was changed after it was written. ``field`` names the place, ``problem`` what is wrong there."""
 
 
 def key(spec: TrialSpec) -> str:
     """The trial's name: the first 16 hexadecimal digits of the hash of everything that decides the trial."""
-    return jsonio.sha256(spec)[:16]
+    return jsonio.sha256(spec)[:_KEY_DIGITS]
 
 
 def make_record(spec: TrialSpec, log: EpisodeLog) -> TrialRecord:
     """The record of a trial that was run. Metrics are computed from what is written, after rounding."""
-    events, journal = (
-        tuple(msgspec.structs.replace(event, data=_rounded(event.data)) for event in some)
-        for some in (log.events, log.journal)
+    kept = msgspec.structs.replace(
+        log, events=tuple(map(_rounded_entry, log.events)), journal=tuple(map(_rounded_entry, log.journal))
     )
-    kept = msgspec.structs.replace(log, events=events, journal=journal)
     fields = {name: getattr(kept, name) for name in EpisodeLog.__struct_fields__}
-    return TrialRecord(key=key(spec), spec=spec, metrics=measure(spec, kept), **fields)
+    return TrialRecord(schema=log_format.SCHEMA, key=key(spec), spec=spec, metrics=measure(spec, kept), **fields)
 
 
 def encode(record: TrialRecord) -> bytes:
@@ -99,46 +98,36 @@ def verify_checksum(line: bytes) -> None:
         raise Damaged("check", f"{check[10:18].decode('ascii', 'replace')} is not the line's checksum")
 
 
-def decode(line: bytes) -> TrialRecord:
-    """The record of a whole line; raises Damaged, which names the field that is not as it was written."""
-    with documents.reading_errors():
-        record = _decoder.decode(line)
+def decode(line: bytes, skipped: Counter[str] | None = None) -> TrialRecord:
+    """The record of a whole line.
+
+    Args:
+        skipped: counts the events of kinds that this version does not know, which the record does not have.
+
+    Raises:
+        Damaged: when the line is not as it was written; names the field.
+        OtherVersion: when the line is of a version of the log that this version does not read.
+    """
+    record = _decoder.decode(line, Counter() if skipped is None else skipped)
     verify_checksum(line)
-    if record.key != key(record.spec):
+    if record.key != key(record.spec) and record.key != _key_in(line):
         raise Damaged("key", f"'{record.key}' is not the key of the trial in 'spec', '{key(record.spec)}'")
-    check_events(record.events)
     return record
 
 
-class _Data(Struct):
-    """The fields that are read, whatever the kind of event."""
-
-    message: int | UnsetType = UNSET
-    text: str | UnsetType = UNSET
-    object: str | UnsetType = UNSET
-    position: Vec3 | UnsetType | None = UNSET
-    off: float | UnsetType | None = UNSET
-    on: str | UnsetType = UNSET
-    thing: str | UnsetType = UNSET
-    by: str | int | UnsetType = UNSET
-    value: float | UnsetType = UNSET
-    bearers: tuple[str, ...] | UnsetType = UNSET
+def _key_in(line: bytes) -> str:
+    """The key of the spec in a line, with fields that a later version has added."""
+    return jsonio.sha256(msgspec.json.decode(line)["spec"])[:_KEY_DIGITS]
 
 
-def check_events(events: Sequence[Event]) -> None:
-    """Check that the data of all events can be read.
+@cache
+def _fields_with_floats(kind: type[LogEntry]) -> tuple[str, ...]:
+    return tuple(field.name for field in msgspec.structs.fields(kind) if "float" in str(field.type))
 
-    Raises:
-        Damaged: names the event, by its number from 0, and the field.
-    """
-    for number, event in enumerate(events):
-        try:
-            with documents.reading_errors():
-                msgspec.convert(event.data, _Data)
-        except Damaged as error:
-            raise Damaged(f"events[{number}].data.{error.field}", error.problem) from None
-        if missing := next((name for name in _NEEDED.get(event.kind, ()) if name not in event.data), ""):
-            raise Damaged(f"events[{number}].data.{missing}", f"is missing; an event '{event.kind}' has it")
+
+def _rounded_entry(entry: _Entry) -> _Entry:
+    changes = {name: _rounded(getattr(entry, name)) for name in _fields_with_floats(type(entry))}
+    return msgspec.structs.replace(entry, **changes) if changes else entry
 
 
 def _rounded(value: Any) -> Any:
@@ -147,5 +136,5 @@ def _rounded(value: Any) -> Any:
     if isinstance(value, dict):
         return {name: _rounded(part) for name, part in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_rounded(part) for part in value]
+        return tuple(_rounded(part) for part in value)
     return value

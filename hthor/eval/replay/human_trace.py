@@ -20,10 +20,25 @@ from hthor.eval.replay import session_history
 from hthor.eval.replay.session_history import RunFiles
 from hthor.eval.runner.trial_runner import TrialRunner
 from hthor.guest import AgentInputs, GuestConfig
-from hthor.types import HUMAN, Action, Briefing, Event, Observation
+from hthor.humans.core.thoughts import Aim, HumanThought, TrustNow
+from hthor.types import HUMAN, Action, Briefing, Observation
+from hthor.types.events import (
+    Accepted,
+    Answered,
+    Attempt,
+    Covered,
+    Declined,
+    Exposure,
+    JournalEntry,
+    Offer,
+    Shown,
+)
 
-SCHEMA = "hthor.mind/1"
-_JOURNAL = ("attempt", "exposure", "offer")
+SCHEMA = "hthor.mind/2"
+_JOURNAL = (Attempt, Exposure, Offer)
+_MESSAGES = (Shown, Accepted, Declined, Answered, Covered)
+TraceEvent = HumanThought | Attempt | Exposure | Offer | Shown | Accepted | Declined | Answered | Covered
+"""An event of a trace."""
 
 
 class HumanTrace(Struct, frozen=True, kw_only=True):
@@ -36,7 +51,7 @@ class HumanTrace(Struct, frozen=True, kw_only=True):
     key: str
     same: bool
     traits: dict[str, float]
-    events: tuple[Event, ...]
+    events: tuple[TraceEvent, ...]
 
 
 class TracedHuman:
@@ -44,7 +59,7 @@ class TracedHuman:
 
     def __init__(self, human: Any) -> None:
         self.human, self.recording = human, False
-        self.thoughts: list[Event] = []
+        self.thoughts: list[HumanThought] = []
         self._goal: object = None
         self._trust: float | None = None
 
@@ -69,7 +84,7 @@ class TracedHuman:
         return state
 
     @property
-    def journal(self) -> Sequence[Event]:
+    def journal(self) -> Sequence[JournalEntry]:
         """The model's journal of this trial."""
         return tuple(getattr(self.human, "journal", ()))
 
@@ -78,13 +93,10 @@ class TracedHuman:
         goal, trust = self.human.about, self.human.trust.mean
         if goal != self._goal:
             self._goal = goal
-            self._add(tick, "aim", about=goal)
+            self.thoughts.append(Aim(tick=tick, seat=HUMAN, about=goal))
         if trust != self._trust:
             self._trust = trust
-            self._add(tick, "trust", mean=round(trust, 4))
-
-    def _add(self, tick: int, kind: str, **data: Any) -> None:
-        self.thoughts.append(Event(tick=tick, seat=HUMAN, kind=kind, data=data))
+            self.thoughts.append(TrustNow(tick=tick, seat=HUMAN, mean=round(trust, 4)))
 
 
 def trace_human(
@@ -113,8 +125,8 @@ def trace_human(
             person.recording = one == spec
             record = runner.run(participants, one).record
         traits = {name: getattr(person.human.traits, name) for name in person.human.traits.__struct_fields__}
-    journal = [event for event in record.journal if event.kind in _JOURNAL]
-    messages = [event for event in record.events if event.kind in ("shown", "accepted", "declined", "covered")]
-    events = sorted([*person.thoughts, *journal, *messages], key=lambda event: event.tick)
+    journal = [entry for entry in record.journal if isinstance(entry, _JOURNAL)]
+    messages = [event for event in record.events if isinstance(event, _MESSAGES)]
+    events: list[TraceEvent] = sorted([*person.thoughts, *journal, *messages], key=lambda event: event.tick)
     same = trial_record.encode(record) == trial_record.encode(trial)
     return HumanTrace(key=trial.key, same=same, traits=traits, events=tuple(events))

@@ -18,7 +18,8 @@ from hthor.eval.results.result_file import Counts, Effort, Hashes, RunResult, Sc
 from hthor.eval.statistics import intervals
 from hthor.eval.statistics.intervals import Estimate
 from hthor.guest import Isolation
-from hthor.types import Event, is_person
+from hthor.types import is_person
+from hthor.types.events import Event, Sent
 
 
 def make_result(
@@ -109,7 +110,7 @@ def _by_seat(records: Sequence[TrialRecord], metric: Metric) -> dict[str, Estima
 
 
 def _is_robots_message(event: Event) -> bool:
-    return event.kind == "sent" and not is_person(event.seat)
+    return isinstance(event, Sent) and not is_person(event.seat)
 
 
 def estimate_metric(records: Sequence[TrialRecord], metric: Metric, seat: str = "") -> Estimate:

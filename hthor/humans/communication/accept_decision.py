@@ -10,15 +10,15 @@ with it they walk to the place that it names and look there.
 """
 
 import math
-from typing import Any
 
 from hthor.humans.core.policy import Answer, Offer
+from hthor.humans.core.thoughts import Weighed
 from hthor.humans.core.trial_context import HumanContext
 from hthor.humans.motor.locomotion import Walker
 from hthor.humans.population.parameters import Parameters
 from hthor.humans.search.option_choice import OptionChoice
 from hthor.humans.search.option_description import Option
-from hthor.types import Event, Vec3
+from hthor.types import Vec3
 
 NEUTRAL_TRUST = 0.5
 """[share] Mean trust that adds nothing to the logit of an offer. Our choice: the middle of the scale."""
@@ -51,9 +51,18 @@ def decide_answer(human: HumanContext, offer: Offer, relevant: bool = True) -> A
     elif answer == "decline" and human.draw("ignore", number) < traits.p_ignore:
         answer = "ignore"
     if human.listener is not None:
-        data: dict[str, Any] = {**{name: round(part, 4) for name, part in parts.items()}, "share": round(share, 4)}
-        data |= {"message": offer.number, "relevant": relevant, "slipped": slipped, "answer": answer}
-        human.listener(Event(tick=human.now.tick, seat=human.task.seat, kind="weighed", data=data))
+        human.listener(
+            Weighed(
+                tick=human.now.tick,
+                seat=human.seat,
+                number=number,
+                terms={name: round(part, 4) for name, part in parts.items()},
+                share=round(share, 4),
+                relevant=relevant,
+                slipped=slipped,
+                answer=answer,
+            )
+        )
     return answer
 
 

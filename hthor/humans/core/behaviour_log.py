@@ -1,37 +1,41 @@
-"""The journal of a trial: what a headset's recorder stores in addition to the paths.
+"""Records stick and pitch of a trial, and puts its journal together; `hthor.types.events.journal` lists the kinds.
 
-The trial's log has what the system sees: poses (x, y and yaw at 5 Hz), messages, picks and places, the rating. The
-journal adds what a recorder in the headset sees, as events of these kinds:
-
-- ``stick``, once per trial: ``full`` [m/s], the speed at full deflection of the stick, and ``runs``, a flat list of
-  pairs (tick, deflection from that tick on in thousandths of ``full``). The direction is in the path.
-- ``head``, once per trial: ``pitch``, a flat list of pairs (tick, pitch [mrad] from that tick on, up positive);
-  ``fastest`` [rad/s], the body's limit of turning.
-- ``inputs``, once per trial in which the person drove: ``runs``, a flat list of sextuples (tick, step of the tick,
-  forward, left, yaw and pitch of the `Drive` from that step on), in units of `INPUT_UNIT` [m/s, rad].
-- ``attempt``, with the tick at which it began: ``what`` was tried ("pick", "place", "open", "close", "drop"), how many
-  ``seconds`` it took, whether it succeeded (``ok``), and if not ``why`` ("missed" when the hand closed on nothing, else
-  the world's reason); for a "place" also ``at`` [m], the position on the furniture. An attempt cut off by the end of
-  the trial has neither ``seconds`` nor ``ok``.
-- ``exposure``: glimpses at an object that is searched for, see `hthor.humans.perception.exposure_log`.
-- ``choice``: the options to search next, and the chosen one, see `hthor.humans.search.option_description`.
-- ``offer``: a message that was read, and the answer, see `hthor.humans.models._dialogue`.
-- ``misled``: the participant left the place named by an accepted message without success.
-
-The episode records stick and head for every human model; only some human models record the other kinds.
+The episode records stick and head for every human model; only some human models record more.
 """
 
 import math
 from collections.abc import Iterable, Sequence
+from typing import TypeGuard
 
 import msgspec
+from msgspec import UNSET
 
-from hthor.types import BodySpec, Drive, Event, Motion, Move
+from hthor.types import BodySpec, Drive, Motion, Move
+from hthor.types.events import (
+    Attempt,
+    Closed,
+    Dropped,
+    Event,
+    Head,
+    Inputs,
+    JournalEntry,
+    LogEntry,
+    Opened,
+    Picked,
+    Placed,
+    Stick,
+)
 
 _THOUSAND = 1000
 """[count] Steps per full deflection of the stick, and per radian of pitch. Our choice."""
-_DONE = {"pick": "picked", "place": "placed", "open": "opened", "close": "closed", "drop": "dropped"}
-"""The kind of event in the trial's log for each kind of attempt that succeeds."""
+_DONE: dict[str, type[LogEntry]] = {
+    "pick": Picked,
+    "place": Placed,
+    "open": Opened,
+    "close": Closed,
+    "drop": Dropped,
+}
+"""The event in the trial's log for each kind of attempt that succeeds."""
 
 INPUT_UNIT = 1e-4
 """[m/s, rad] The unit of the set-points in the journal. Our choice: finer than any stick or headset measures."""
@@ -73,16 +77,16 @@ class BehaviourRecorder:
         if not self._pitch or self._pitch[-1] != tilt:
             self._pitch += (tick, tilt)
 
-    def journal(self, own: Iterable[Event], events: Iterable[Event]) -> tuple[Event, ...]:
-        """The whole journal: the human model's own events, with successes from the trial's log (``events``)."""
-        stick = Event(tick=0, seat=self.seat, kind="stick", data={"full": self.body.speed, "runs": self._stick})
-        pitch = {"fastest": self.body.turn_rate, "pitch": self._pitch}
-        done = [event for event in events if event.seat == self.seat and event.kind in _DONE.values()]
+    def journal(self, own: Iterable[JournalEntry], events: Iterable[Event]) -> tuple[JournalEntry, ...]:
+        """The whole journal: the human model's own entries, with successes from the trial's log (``events``)."""
+        stick = Stick(tick=0, seat=self.seat, full=self.body.speed, runs=tuple(self._stick))
+        head = Head(tick=0, seat=self.seat, fastest=self.body.turn_rate, pitch=tuple(self._pitch))
+        done = [event for event in events if event.seat == self.seat and isinstance(event, tuple(_DONE.values()))]
         written = list(own)
-        tried = [event.tick for event in written if event.kind == "attempt"]
-        ended = (self._completed(event, done, tried) if _is_open(event) else event for event in written)
-        inputs = [Event(tick=0, seat=self.seat, kind="inputs", data={"runs": self._inputs})] if self._inputs else []
-        return (stick, Event(tick=0, seat=self.seat, kind="head", data=pitch), *inputs, *ended)
+        tried = [entry.tick for entry in written if isinstance(entry, Attempt)]
+        ended = (self._completed(entry, done, tried) if _is_open(entry) else entry for entry in written)
+        inputs = [Inputs(tick=0, seat=self.seat, runs=tuple(self._inputs))] if self._inputs else []
+        return (stick, head, *inputs, *ended)
 
     def save_state(self) -> RecorderState:
         """A copy of what was recorded."""
@@ -92,17 +96,17 @@ class BehaviourRecorder:
         """Continue from a copy."""
         self._stick, self._pitch, self._inputs = (list(part) for part in state)
 
-    def _completed(self, attempt: Event, done: Sequence[Event], tried: Sequence[int]) -> Event:
+    def _completed(self, attempt: Attempt, done: Sequence[Event], tried: Sequence[int]) -> Attempt:
         """The attempt, with its success if that is in ``done`` before the next attempt (``tried``: all ticks)."""
         last = min((tick for tick in tried if tick > attempt.tick), default=math.inf)
-        kind = _DONE.get(attempt.data["what"])
-        ends = (event.tick for event in done if event.kind == kind and attempt.tick <= event.tick <= last)
+        kind = _DONE.get(attempt.what)
+        ends = (event.tick for event in done if type(event) is kind and attempt.tick <= event.tick <= last)
         end = next(ends, None)
         if end is None:
             return attempt
         seconds = round((end - attempt.tick) * self.tick_s, 3)
-        return msgspec.structs.replace(attempt, data={**attempt.data, "seconds": seconds, "ok": True})
+        return msgspec.structs.replace(attempt, seconds=seconds, ok=True)
 
 
-def _is_open(event: Event) -> bool:
-    return event.kind == "attempt" and "ok" not in event.data
+def _is_open(entry: JournalEntry) -> TypeGuard[Attempt]:
+    return isinstance(entry, Attempt) and entry.ok is UNSET

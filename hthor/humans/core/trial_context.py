@@ -1,13 +1,14 @@
 """What all parts of a human model share in one trial: traits, body, current observation, random numbers and journal."""
 
 from collections.abc import Callable, Generator, Iterator
-from typing import Any
 
 from hthor import seeds
 from hthor.humans.core.policy import Policy
+from hthor.humans.core.thoughts import HumanThought
 from hthor.humans.population.parameters import Parameters
 from hthor.navigation.path_follower import face
-from hthor.types import Briefing, Event, Motion, Observation, Rotate, Vec2, Vec3, Wait
+from hthor.types import Briefing, Motion, Observation, Rotate, Vec2, Vec3, Wait
+from hthor.types.events import JournalEntry
 
 Behaviour = Generator[Motion, None, bool]
 """An activity, one motion after the other; it returns whether it succeeded."""
@@ -31,23 +32,25 @@ class HumanContext:
 
     Attributes:
         policy: decides in the participant's place; None for the model's own way of deciding.
-        journal: events that a headset's recorder would store of this trial.
-        listener: called with beliefs and choices (`hthor.types.Event`); None when nobody asks for them.
+        seat: where the participant sits.
+        journal: what a headset's recorder would store of this trial.
+        listener: called with beliefs and choices; None when nobody asks for them.
     """
 
     now: Observation
 
     def __init__(self, traits: Parameters, root: int, briefing: Briefing, policy: Policy | None = None) -> None:
         self.traits, self.root, self.task, self.body = traits, root, briefing, briefing.body
+        self.seat = briefing.seat
         self.tick_s = briefing.tick_s
         self.policy = policy
-        self.journal: list[Event] = []
-        self.listener: Callable[[Event], None] | None = None
+        self.journal: list[JournalEntry] = []
+        self.listener: Callable[[HumanThought], None] | None = None
 
-    def record(self, kind: str, **data: Any) -> Event:
-        """Append an event to the journal under the current tick, and return it, so that its outcome can be added."""
-        self.journal.append(Event(tick=self.now.tick, seat=self.task.seat, kind=kind, data=data))
-        return self.journal[-1]
+    def record(self, entry: JournalEntry) -> int:
+        """Append an entry to the journal; returns its place there, so that its outcome can be added later."""
+        self.journal.append(entry)
+        return len(self.journal) - 1
 
     @property
     def here(self) -> Vec2:

@@ -11,6 +11,8 @@ from hthor.humans.communication.trust import Experience
 from hthor.humans.core.policy import Offer
 from hthor.humans.core.trial_context import HumanContext
 from hthor.types import Observation, Reply
+from hthor.types.events import Misled
+from hthor.types.events import Offer as OfferEntry
 
 Saving = Callable[[Advice], tuple[float, float | None]]
 """Estimates the seconds that advice saves, and the metres to its place, None without a place."""
@@ -26,8 +28,7 @@ class MessageDecision(Struct, frozen=True, kw_only=True):
 class Dialogue:
     """Reads messages, one at a time, and keeps the participant's ``experience`` of the robots.
 
-    Every answer is recorded in the journal as "offer": fields of `Offer`, whether the message was about the task
-    (``relevant``), its length in ``words``, and ``read_s``, the seconds from when it was shown to the answer.
+    Every answer is recorded in the journal, as `hthor.types.events.Offer`.
     """
 
     def __init__(self, human: HumanContext, advice: AdviceTracker) -> None:
@@ -49,8 +50,9 @@ class Dialogue:
         answer = decide_answer(human, offer, relevant)
         accepted = answer == "accept"
         reader.mark_answered(reading, accepted)
-        human.record(
-            "offer",
+        entry = OfferEntry(
+            tick=now.tick,
+            seat=human.seat,
             message=reading.message.id,
             number=offer.number,
             trust=round(trust, 4),
@@ -63,6 +65,7 @@ class Dialogue:
             read_s=round((now.tick - reading.since) * human.tick_s, 2),
             answer=answer,
         )
+        human.record(entry)
         if accepted and relevant and self.experience.helped is None and not self.experience.misled:
             self.experience.helped = now.tick * human.tick_s
         reply = None if answer == "ignore" else Reply(message=reading.message.id, accept=accepted)
@@ -71,7 +74,7 @@ class Dialogue:
     def record_misled(self) -> None:
         """Record that the accepted advice was of no help."""
         self.experience.misled, self.experience.helped = True, None
-        self.human.record("misled")
+        self.human.record(Misled(tick=self.human.now.tick, seat=self.human.seat))
 
     def _offer(self, reading: Reading, advice: Advice | None, trust: float, busy: bool, saving: Saving) -> Offer:
         gain, metres = saving(advice) if advice is not None else (0.0, None)

@@ -2,35 +2,43 @@
 
 import hashlib
 import math
-from collections.abc import Callable, Iterator
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
 from functools import cache
 from pathlib import Path
 
 import msgspec
-from msgspec import Struct
 
 from hthor import documents, rules
 from hthor.errors import HthorError
-from hthor.types import HUMAN, Briefing, Close, Drop, Event, Motion, Open, Pick, Place, Pose, TrialSpec
+from hthor.log_format import LineDecoder, Logged, OtherVersion
+from hthor.types import HUMAN, Briefing, Close, Drop, Motion, Open, Pick, Place, Pose, TrialSpec
+from hthor.types.events import (
+    Accepted,
+    Attempt,
+    Closed,
+    Declined,
+    Dropped,
+    Event,
+    Head,
+    Held,
+    JournalEntry,
+    Lowered,
+    Opened,
+    Picked,
+    Placed,
+    Released,
+    Stick,
+)
 
 _START_M = 0.002
 """[m] Distance within which a trial begins at a logged pose. Our choice: poses are logged to a millimetre."""
 _MILLI = 1000.0
 """[1/unit] Poses and pitches are logged in thousandths. Source: docs/files.md."""
-_HAND_ACTIONS: dict[str, Callable[[dict[str, str]], Motion]] = {
-    "picked": lambda data: Pick(object=data["object"]),
-    "held": lambda data: Pick(object=data["object"]),
-    "placed": lambda data: Place(on=data["on"]),
-    "dropped": lambda _: Drop(),
-    "lowered": lambda _: Drop(),
-    "released": lambda _: Drop(),
-    "opened": lambda data: Open(thing=data["thing"]),
-    "closed": lambda data: Close(thing=data["thing"]),
-}
 _HINT = "Give a run folder or its trials.jsonl, as in --humans replay:runs/oracle-paper-seed0."
 
 
-class LoggedTrial(Struct, frozen=True, kw_only=True):
+class LoggedTrial(Logged, frozen=True, kw_only=True):
     """One trial of a log and the ``seat`` of the participant in it; other fields of its line are ignored."""
 
     seat: str = HUMAN
@@ -39,7 +47,7 @@ class LoggedTrial(Struct, frozen=True, kw_only=True):
     ratings: dict[str, int | None]
     events: tuple[Event, ...]
     paths: dict[str, list[tuple[int, int, int]]]
-    journal: tuple[Event, ...] = ()
+    journal: tuple[JournalEntry, ...] = ()
 
     def is_of(self, briefing: Briefing) -> bool:
         """Whether this trial has the task of the briefing."""
@@ -56,14 +64,15 @@ class LoggedTrial(Struct, frozen=True, kw_only=True):
     def hand_actions(self) -> Iterator[tuple[int, Motion]]:
         """The actions of the hands, each with the tick at which it took effect."""
         for event in self.events:
-            if event.seat == self.seat and event.kind in _HAND_ACTIONS:
-                yield event.tick, _where(_HAND_ACTIONS[event.kind](event.data), event.tick, self._own_journal)
+            motion = _hand_action(event) if event.seat == self.seat else None
+            if motion is not None:
+                yield event.tick, _where(motion, event.tick, self._own_journal)
 
     def answers(self) -> Iterator[tuple[int, bool]]:
         """The ticks of answers; True for an accepted message."""
         for event in self.events:
-            if event.seat == self.seat and event.kind in ("accepted", "declined"):
-                yield event.tick, event.kind == "accepted"
+            if event.seat == self.seat and isinstance(event, (Accepted, Declined)):
+                yield event.tick, isinstance(event, Accepted)
 
     @property
     def rating(self) -> int | None:
@@ -71,8 +80,8 @@ class LoggedTrial(Struct, frozen=True, kw_only=True):
         return self.ratings[self.seat]
 
     @property
-    def _own_journal(self) -> tuple[Event, ...]:
-        return tuple(event for event in self.journal if event.seat == self.seat)
+    def _own_journal(self) -> tuple[JournalEntry, ...]:
+        return tuple(entry for entry in self.journal if entry.seat == self.seat)
 
     def poses(self) -> list[Pose]:
         """Pose of the head, every `rules.LOG_EVERY_TICKS` ticks."""
@@ -84,14 +93,14 @@ class LoggedTrial(Struct, frozen=True, kw_only=True):
 
     def moving(self) -> Callable[[int], bool | None]:
         """Whether the stick was pushed at a tick; None if the log does not say."""
-        runs = next((event.data["runs"] for event in self._own_journal if event.kind == "stick"), None)
+        runs = next((entry.runs for entry in self._own_journal if isinstance(entry, Stick)), None)
         if runs is None:
             return lambda _: None
         value = _steps(runs)
         return lambda tick: value(tick) > 0
 
     def _pitch(self) -> Callable[[int], float]:
-        runs = next((event.data["pitch"] for event in self._own_journal if event.kind == "head"), [0, 0])
+        runs = next((entry.pitch for entry in self._own_journal if isinstance(entry, Head)), (0, 0))
         value = _steps(runs)
         return lambda tick: value(tick) / _MILLI
 
@@ -114,14 +123,15 @@ def log_sha256(source: str) -> str:
 
 @cache
 def _read(path: str) -> dict[int, list[LoggedTrial]]:
-    decoder = msgspec.json.Decoder(LoggedTrial)
+    decoder, skipped = LineDecoder(LoggedTrial), Counter[str]()
     trials: dict[int, list[LoggedTrial]] = {}
     for number, line in enumerate(_bytes(Path(path)).splitlines(keepends=True), 1):
         if not line.endswith(b"\n"):
             break  # the run was stopped while it wrote this line
         try:
-            with documents.reading_errors():
-                trial = decoder.decode(line)
+            trial = decoder.decode(line, skipped)
+        except OtherVersion as other:
+            raise HthorError(other.sentence(Path(path))) from None
         except documents.Unreadable as error:
             raise HthorError(f"{path}, line {number}: {error}. {_HINT}") from None
         for human in trial.spec.humans:
@@ -139,16 +149,33 @@ def _bytes(path: Path) -> bytes:
         raise HthorError(f"there is no log to replay at {path}: {error.strerror}. {_HINT}") from None
 
 
-def _where(motion: Motion, tick: int, journal: tuple[Event, ...]) -> Motion:
+def _hand_action(event: Event) -> Motion | None:
+    """The motion of the hands that led to an event; None for other events."""
+    match event:
+        case Picked() | Held():
+            return Pick(object=event.object)
+        case Placed():
+            return Place(on=event.on)
+        case Dropped() | Lowered() | Released():
+            return Drop()
+        case Opened():
+            return Open(thing=event.thing)
+        case Closed():
+            return Close(thing=event.thing)
+        case _:
+            return None
+
+
+def _where(motion: Motion, tick: int, journal: tuple[JournalEntry, ...]) -> Motion:
     """The same motion; if the journal has the exact position of something put down, with that position."""
     if not isinstance(motion, Place):
         return motion
-    tried = [e for e in journal if e.kind == "attempt" and e.data.get("what") == "place" and e.tick <= tick]
-    at = tried[-1].data.get("at") if tried else None
-    return motion if at is None else Place(on=motion.on, position=tuple(at))
+    tried = [entry for entry in journal if isinstance(entry, Attempt) and entry.what == "place" and entry.tick <= tick]
+    at = tried[-1].at if tried else None
+    return motion if at is None else Place(on=motion.on, position=at)
 
 
-def _steps(runs: list[int]) -> Callable[[int], int]:
+def _steps(runs: Sequence[int]) -> Callable[[int], int]:
     """A step function from flat pairs of a tick and the value from then on."""
     ticks, values = runs[::2], runs[1::2]
     place = 0

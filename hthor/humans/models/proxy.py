@@ -8,6 +8,7 @@ from hthor.humans.communication.accept_decision import time_saved
 from hthor.humans.communication.interpretation import Advice, AdviceTracker
 from hthor.humans.communication.trust import Trust, initial_trust
 from hthor.humans.core.policy import Policy
+from hthor.humans.core.thoughts import HumanThought
 from hthor.humans.core.trial_context import Behaviour, HumanContext
 from hthor.humans.memory.object_memory import ObjectMemory
 from hthor.humans.memory.spatial_memory import SpatialMemory
@@ -17,7 +18,8 @@ from hthor.humans.models._goal_arbitration import BEGIN, REST, SEARCH, Goal, Goa
 from hthor.humans.motor.locomotion import Walker
 from hthor.humans.perception.perception import GLIMPSE_TICKS, Eyes
 from hthor.humans.population.participant import Participant, with_practice
-from hthor.types import Action, Briefing, Event, Motion, Observation, Reply, Vec2, Wait, is_person
+from hthor.types import Action, Briefing, Motion, Observation, Reply, Vec2, Wait, is_person
+from hthor.types.events import JournalEntry
 
 _RESTARTS = 2
 """[count] Behaviours that may end without a motion in one decision. Our choice."""
@@ -42,7 +44,7 @@ class Model:
     """Decides in the participant's place; set by models that change only the decisions."""
     eyes: type[Eyes] = Eyes
     """How things in view are noticed; set by models that change only the eyes."""
-    listener: Callable[[Event], None] | None = None
+    listener: Callable[[HumanThought], None] | None = None
     """Called with beliefs and choices, from the next trial on."""
 
     def __init__(self, participant: Participant, state: Mapping[str, Any] | None = None) -> None:
@@ -96,8 +98,8 @@ class Model:
         return self.trust.report(self._human.normal("report"), traits)
 
     @property
-    def journal(self) -> Sequence[Event]:
-        """The events that a headset's recorder would store of the trial so far."""
+    def journal(self) -> Sequence[JournalEntry]:
+        """What a headset's recorder would store of the trial so far."""
         return self._human.journal
 
     @property

@@ -1,13 +1,16 @@
 """How a participant handles things: slowly, sometimes missing, trying again.
 
-Every attempt is recorded in the journal, see `hthor.humans.core.behaviour_log`.
+Every attempt is recorded in the journal, as `hthor.types.events.Attempt`.
 """
 
 import math
 from collections.abc import Generator
 
+import msgspec
+
 from hthor.humans.core.trial_context import HumanContext
-from hthor.types import Event, Motion, Place, Wait
+from hthor.types import Motion, Place, Vec3, Wait
+from hthor.types.events import Attempt
 
 _MAX_ATTEMPTS = 8
 """[count] Misses in a row after which people do something else. Our choice."""
@@ -29,32 +32,35 @@ class Hands:
         for _ in range(_MAX_ATTEMPTS):
             number = self._attempts.get(name, 0)
             self._attempts[name] = number + 1
-            entry = self.human.record("attempt", what=type(motion).__name__.lower(), **_where(motion))
+            attempt = Attempt(
+                tick=self.human.now.tick, seat=self.human.seat, what=type(motion).__name__.lower(), at=_where(motion)
+            )
+            place = self.human.record(attempt)
             traits = self.human.traits
             seconds = traits.t_manip * math.exp(traits.manip_sd * self.human.normal("handle", name, number))
             handling = self.human.body.handling
             yield from self.human.rest(seconds - handling)
             if self.human.draw("miss", name, number) < traits.p_fail:
                 yield Wait(seconds=handling)
-                self._complete(entry, _MISSED)
+                self._complete(place, attempt, _MISSED)
                 continue
             yield motion
             outcome = self.human.now.outcome
             why = "" if outcome is None or outcome.ok else outcome.reason or "refused"
-            self._complete(entry, why)
+            self._complete(place, attempt, why)
             return why
         return _MISSED
 
-    def _complete(self, entry: Event, why: str) -> None:
-        """Add to the journal how an attempt ended: ``why`` it failed, empty when it succeeded."""
+    def _complete(self, place: int, attempt: Attempt, why: str) -> None:
+        """Add to the journal how the attempt at this place ended: ``why`` it failed, empty when it succeeded."""
         human = self.human
-        entry.data.update(seconds=round((human.now.tick - entry.tick) * human.tick_s, 3), ok=not why)
-        if why:
-            entry.data["why"] = why
+        seconds = round((human.now.tick - attempt.tick) * human.tick_s, 3)
+        human.journal[place] = msgspec.structs.replace(attempt, seconds=seconds, ok=not why, why=why)
 
 
-def _where(motion: Motion) -> dict[str, list[float]]:
-    """Where an object is put [m], to the millimetre; empty when the motion does not say."""
+def _where(motion: Motion) -> Vec3 | None:
+    """Where an object is put [m], to the millimetre; None when the motion does not say."""
     if not isinstance(motion, Place) or motion.position is None:
-        return {}
-    return {"at": [round(part, 3) for part in motion.position]}
+        return None
+    x, y, z = motion.position
+    return round(x, 3), round(y, 3), round(z, 3)

@@ -9,6 +9,7 @@ import math
 from msgspec import Struct
 
 from hthor.humans.core.trial_context import HumanContext
+from hthor.types.events import Exposure, ExposureRow
 
 _PER_OCTAVE = 4
 """[1/octave] Cells per octave of visual angle; the glimpses in a cell are added up. Our choice."""
@@ -18,8 +19,6 @@ _SHARE = 0.2
 """[share] Width of a cell of the visible share. Our choice."""
 _DIGITS = 4
 """[digits] Decimals of the means in the journal. Our choice."""
-
-Row = tuple[float, float, float, float, int, int]
 
 
 class Glimpse(Struct, frozen=True):
@@ -46,10 +45,9 @@ class Glimpse(Struct, frozen=True):
 class ExposureLog:
     """The glimpses of one trial at objects not noticed yet.
 
-    Each object gets one journal event "exposure", when it is noticed or at the end of the trial, with the ``object``,
-    whether it was ``noticed``, the ``seconds`` in view, and ``gathered``: rows [seconds, angle, ecc, share, beside,
-    attended] as in `Glimpse`, one per cell: total seconds and means, ``attended`` 0 or 1. The last row is the last
-    glimpse alone, at which the object was noticed if it was.
+    Each object gets one `Exposure` in the journal, when it is noticed or at the end of the trial. ``gathered`` has one
+    row per cell, with total seconds and means of `Glimpse`, and then the last glimpse alone, at which the object was
+    noticed if it was.
     """
 
     def __init__(self, human: HumanContext) -> None:
@@ -75,9 +73,16 @@ class ExposureLog:
         cells = self._cells.pop(name, {})
         rows = [_row(cell, sums) for cell, sums in sorted(cells.items())]
         rows.append(_rounded(last.seconds, last.angle, last.ecc, last.share, last.beside, last.attended))
-        seconds = round(sum(row[0] for row in rows), _DIGITS)
-        self.human.record(
-            "exposure", object=name, noticed=noticed, seconds=seconds, gathered=[list(row) for row in rows]
+        human = self.human
+        human.record(
+            Exposure(
+                tick=human.now.tick,
+                seat=human.seat,
+                object=name,
+                noticed=noticed,
+                seconds=round(sum(row[0] for row in rows), _DIGITS),
+                gathered=tuple(rows),
+            )
         )
 
     def end(self) -> None:
@@ -86,12 +91,12 @@ class ExposureLog:
             self.close(name, noticed=False)
 
 
-def _row(cell: tuple[int, int, int, int, bool], sums: list[float]) -> Row:
+def _row(cell: tuple[int, int, int, int, bool], sums: list[float]) -> ExposureRow:
     seconds, *rest = sums
     angle, ecc, share = (value / seconds for value in rest)
     return _rounded(seconds, angle, ecc, share, cell[3], cell[4])
 
 
-def _rounded(seconds: float, angle: float, ecc: float, share: float, beside: int, attended: bool) -> Row:
+def _rounded(seconds: float, angle: float, ecc: float, share: float, beside: int, attended: bool) -> ExposureRow:
     a, b, c, d = (round(value, _DIGITS) for value in (seconds, angle, ecc, share))
     return a, b, c, d, beside, int(attended)

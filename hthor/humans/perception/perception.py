@@ -10,13 +10,14 @@ as well: the sum is the exposure, a measure of how thoroughly the furniture was 
 
 import math
 
+from hthor.humans.core.thoughts import Forgot, HumanThought, Noticed
 from hthor.humans.core.trial_context import HumanContext
 from hthor.humans.memory.location_priors import receptacle_kinds
 from hthor.humans.memory.object_memory import Forgetting, KnownObject, ObjectMemory
 from hthor.humans.memory.spatial_memory import KnownPlace, SpatialMemory
 from hthor.humans.perception.detection_rate import Head, PlaceDetection, apparent_size, detection_rate, expected_size
 from hthor.humans.perception.exposure_log import ExposureLog, Glimpse
-from hthor.types import Detection, Event, Observation, Vec3
+from hthor.types import Detection, Observation, Vec3
 
 GLIMPSE_TICKS = 3
 """[ticks] Time from one glimpse to the next. Our choice, after about three fixations a second."""
@@ -82,7 +83,7 @@ class Eyes:
             if not self._notices(known, seen, head, seconds):
                 return
             self._exposures.close(known.id, noticed=True)
-            self._publish("noticed", seen.id, seen)
+            self._publish(Noticed(tick=self.at, seat=self.human.seat, object=seen.id, position=seen.position))
         if known.at != self._before:
             known.views += 1
         self.objects.see(known, seen, now.tick, (now.pose.x, now.pose.y))
@@ -105,7 +106,7 @@ class Eyes:
             if not self._gather(seen.id, self._rate_of_large(seen) * seconds, 0 if place is None else place.lost):
                 return
             place = memory.keep_place(seen)
-            self._publish("noticed", seen.id, seen)
+            self._publish(Noticed(tick=self.at, seat=self.human.seat, object=seen.id, position=seen.position))
         elif seen.state:
             memory.keep_place(seen)
         if place.at != self._before:
@@ -136,10 +137,11 @@ class Eyes:
 
     def _forget(self) -> None:
         for known in self._forgetting.forgotten_objects(self.current):
-            self._publish("forgot", known.id, known.seen)
+            where = None if known.seen is None else known.seen.position
+            self._publish(Forgot(tick=self.at, seat=self.human.seat, object=known.id, position=where))
             self.lose(known)
         for place in self._forgetting.forgotten_places():
-            self._publish("forgot", place.id)
+            self._publish(Forgot(tick=self.at, seat=self.human.seat, object=place.id))
             self.memory.lose(place)
             self._reset(place.id)
 
@@ -147,8 +149,6 @@ class Eyes:
         self._gathered.pop(name, None)
         self._threshold.pop(name, None)
 
-    def _publish(self, what: str, name: str, seen: Detection | None = None) -> None:
-        """Send an event to the listener."""
+    def _publish(self, thought: HumanThought) -> None:
         if self.human.listener is not None:
-            data = {"object": name} if seen is None else {"object": name, "position": list(seen.position)}
-            self.human.listener(Event(tick=self.at, seat=self.human.task.seat, kind=what, data=data))
+            self.human.listener(thought)

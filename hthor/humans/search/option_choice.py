@@ -58,8 +58,7 @@ class OptionChoice:
                 situation = option_description.describe(human, self.name, number, options, known, uniform)
                 chosen = options[option_description.checked_index(human.policy.choose(situation), situation)]
             if self.knowledge:
-                data = option_description.features(human.root, self.name, number, options, chosen, known, uniform)
-                human.record("choice", **data)
+                option_description.record_choice(human, self.name, number, options, chosen, known, uniform)
         if human.listener is not None:
             beliefs = self.place_beliefs(bool(self.memory.unexplored_doorways()))
             ahead = self.doorway_belief(beliefs)

@@ -5,12 +5,14 @@ from typing import Any
 
 from msgspec import Struct
 
-from hthor import catalog, seeds
+from hthor import catalog
 from hthor.errors import HthorError
 from hthor.humans.core.policy import OptionDescription, Situation
+from hthor.humans.core.thoughts import Beliefs, PlaceBelief, RankedOptions
 from hthor.humans.core.trial_context import HumanContext
 from hthor.humans.memory.spatial_memory import KnownDoorway, KnownPlace, SpatialMemory
-from hthor.types import Event, Vec2
+from hthor.types import Vec2
+from hthor.types.events import Choice, OptionRow
 
 MAX_RECORDED = 12
 """[count] Options of one choice kept in the journal: the chosen one and a random sample. Our choice."""
@@ -77,30 +79,31 @@ def checked_index(index: Any, situation: Situation) -> int:
     return index
 
 
-def features(
-    root: int,
+def record_choice(
+    human: HumanContext,
     name: str,
     number: int,
     options: Sequence[Option],
     chosen: Option,
     knowledge: Sequence[float],
     uniform: Sequence[float],
-) -> dict[str, Any]:
-    """The choice as the journal records it: `FEATURES` of each option, and the index of the chosen one.
+) -> None:
+    """Record the choice in the journal: `FEATURES` of each option, and the index of the chosen one.
 
     Of more than `MAX_RECORDED` options the chosen one and an equally likely sample of the others are kept: a
     conditional logit fitted to such samples is consistent (McFadden 1978).
     """
     kept = list(zip(options, knowledge, uniform, strict=True))
     if len(kept) > MAX_RECORDED:
-        luck = {o.name: seeds.draw(root, "kept", name, number, o.name) for o in options if o is not chosen}
+        luck = {o.name: human.draw("kept", name, number, o.name) for o in options if o is not chosen}
         names = {chosen.name, *sorted(luck, key=luck.__getitem__)[: MAX_RECORDED - 1]}
         kept = [one for one in kept if one[0].name in names]
-    rows = [
-        [round(k, 5), round(u, 5), round(o.metres, 2), round(o.exposure, 3), int(o.is_closed), int(o.place is None)]
+    rows: tuple[OptionRow, ...] = tuple(
+        (round(k, 5), round(u, 5), round(o.metres, 2), round(o.exposure, 3), int(o.is_closed), int(o.place is None))
         for o, k, u in kept
-    ]
-    return {"aim": name, "options": rows, "chosen": [option for option, *_ in kept].index(chosen)}
+    )
+    index = [option for option, *_ in kept].index(chosen)
+    human.record(Choice(tick=human.now.tick, seat=human.seat, aim=name, options=rows, chosen=index))
 
 
 def publish(
@@ -112,29 +115,31 @@ def publish(
     beliefs: Mapping[str, float],
     ahead: float,
 ) -> None:
-    """Send the listener the events "beliefs" and "choice"; ``ahead`` is the belief in what lies behind doorways."""
+    """Send the listener `Beliefs` and `RankedOptions`; ``ahead`` is the belief in what lies behind doorways."""
     assert human.listener is not None
-    tick = human.now.tick
-    places = [
-        {
-            "id": place.id,
-            "kind": place.kind,
-            "belief": round(beliefs[place.id], 5),
-            "exposure": round(memory.exposure(place, tick), 3),
-        }
+    tick, seat = human.now.tick, human.seat
+    places = tuple(
+        PlaceBelief(
+            id=place.id,
+            kind=place.kind,
+            belief=round(beliefs[place.id], 5),
+            exposure=round(memory.exposure(place, tick), 3),
+        )
         for place in memory.places.values()
-    ]
-    data = {"aim": name, "ahead": round(ahead, 5), "places": places}
-    human.listener(Event(tick=tick, seat=human.task.seat, kind="beliefs", data=data))
+    )
+    human.listener(Beliefs(tick=tick, seat=seat, aim=name, ahead=round(ahead, 5), places=places))
     ranked = sorted(options, key=lambda option: (-option.value, option.name))
-    data = {
-        "aim": name,
-        "options": [option.name for option in ranked],
-        "values": [round(option.value, 6) for option in ranked],
-        "metres": [round(option.metres, 2) for option in ranked],
-        "chosen": chosen.name,
-    }
-    human.listener(Event(tick=tick, seat=human.task.seat, kind="choice", data=data))
+    human.listener(
+        RankedOptions(
+            tick=tick,
+            seat=seat,
+            aim=name,
+            options=tuple(option.name for option in ranked),
+            values=tuple(round(option.value, 6) for option in ranked),
+            metres=tuple(round(option.metres, 2) for option in ranked),
+            chosen=chosen.name,
+        )
+    )
 
 
 def _described(option: Option, knowledge: float, uniform: float) -> OptionDescription:

@@ -17,10 +17,11 @@ from matplotlib.patches import Patch, Polygon, Wedge
 
 from hthor import rules
 from hthor.eval.records.trial_record import TrialRecord
-from hthor.eval.replay.human_trace import HumanTrace
+from hthor.eval.replay.human_trace import HumanTrace, TraceEvent
 from hthor.geometry import plane
+from hthor.humans.core.thoughts import Beliefs, Noticed, RankedOptions
 from hthor.report.drawing import floor_plan, human_trace_timeline, lettering, text_fit, trial_trace
-from hthor.types import HUMAN, Event, HouseSpec, Vec2
+from hthor.types import HUMAN, HouseSpec, Vec2
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -68,10 +69,10 @@ def figure(record: TrialRecord, house: HouseSpec, stream: HumanTrace) -> Figure:
     return sheet
 
 
-def _moments(events: Sequence[Event]) -> list[tuple[Event, Event]]:
+def _moments(events: Sequence[TraceEvent]) -> list[tuple[Beliefs, RankedOptions]]:
     """Some choices, each with the beliefs behind it: the first, the last, and others evenly between."""
-    beliefs = [event for event in events if event.kind == "beliefs"]
-    choices = [event for event in events if event.kind == "choice" and "values" in event.data]
+    beliefs = [event for event in events if isinstance(event, Beliefs)]
+    choices = [event for event in events if isinstance(event, RankedOptions)]
     pairs = list(zip(beliefs, choices, strict=False))
     if len(pairs) <= _MOMENTS:
         return pairs
@@ -79,11 +80,11 @@ def _moments(events: Sequence[Event]) -> list[tuple[Event, Event]]:
 
 
 def _draw_moment(
-    ax: Axes, record: TrialRecord, house: HouseSpec, beliefs: Event, choice: Event, stream: HumanTrace
+    ax: Axes, record: TrialRecord, house: HouseSpec, beliefs: Beliefs, choice: RankedOptions, stream: HumanTrace
 ) -> None:
     floor_plan.draw_house(ax, house)
     chances, ahead = posterior(beliefs)
-    exposures = {place["id"]: place["exposure"] for place in beliefs.data["places"]}
+    exposures = {place.id: place.exposure for place in beliefs.places}
     for thing in house.things:
         if thing.id in chances:
             _draw_place(ax, thing, chances[thing.id], exposures[thing.id])
@@ -93,15 +94,15 @@ def _draw_moment(
     shares = human_trace_timeline.option_chances(choice, stream.traits["beta"])
     spots = _spots(house)
     for name, share in shares.items():
-        if name in spots and name != choice.data["chosen"] and share >= _NAMED and name.startswith("door "):
+        if name in spots and name != choice.chosen and share >= _NAMED and name.startswith("door "):
             _say(ax, spots[name], f"{100 * share:.0f} %", "#555555")
-    goal = spots.get(choice.data["chosen"])
+    goal = spots.get(choice.chosen)
     if goal is not None:
         arrow = {"arrowstyle": "-|>", "color": trial_trace.TARGET, "lw": 1.6, "shrinkA": 5, "shrinkB": 2}
         ax.annotate("", goal, here, arrowprops=arrow, zorder=13)
     _draw_targets(ax, record)
-    chosen, share = _plain(choice.data["chosen"], beliefs), shares[choice.data["chosen"]]
-    what = f"the {_sought(record, choice.data['aim'])}"
+    chosen, share = _plain(choice.chosen, beliefs), shares[choice.chosen]
+    what = f"the {_sought(record, choice.aim)}"
     elsewhere = f"{100 * ahead:.0f} % behind doorways" if ahead > 0.0 else "nothing is left unseen"
     title = f"{until * rules.TICK_S:.1f} s: looks for {what},\n{elsewhere};\nchooses {chosen} ({100 * share:.0f} %)"
     ax.set_title(title, fontsize=8, loc="left", color=trial_trace.INK)
@@ -110,7 +111,7 @@ def _draw_moment(
 def _draw_end(ax: Axes, record: TrialRecord, house: HouseSpec, stream: HumanTrace) -> None:
     """Draw the whole path, and what was noticed, in a trial in which nothing had to be searched for."""
     floor_plan.draw_house(ax, house)
-    noticed = {event.data["object"] for event in stream.events if event.kind == "noticed"}
+    noticed = {event.object for event in stream.events if isinstance(event, Noticed)}
     for thing in house.things:
         if thing.id in noticed:
             _draw_place(ax, thing, 0.0, 0.0)
@@ -126,12 +127,11 @@ def _draw_targets(ax: Axes, record: TrialRecord) -> None:
             trial_trace.draw_mark(ax, placed.position, "*", 70, trial_trace.TARGET, 0.7, 12)
 
 
-def posterior(beliefs: Event) -> tuple[dict[str, float], float]:
+def posterior(beliefs: Beliefs) -> tuple[dict[str, float], float]:
     """Probability of the object at each known place, and behind doorways, given the search so far; the sum is 1."""
-    left = {p["id"]: p["belief"] * math.exp(-p["exposure"]) for p in beliefs.data["places"]}
-    ahead = float(beliefs.data["ahead"])
-    total = sum(left.values()) + ahead
-    return {name: mass / total for name, mass in left.items()}, ahead / total
+    left = {place.id: place.belief * math.exp(-place.exposure) for place in beliefs.places}
+    total = sum(left.values()) + beliefs.ahead
+    return {name: mass / total for name, mass in left.items()}, beliefs.ahead / total
 
 
 def _draw_place(ax: Axes, thing: Any, chance: float, exposure: float) -> None:
@@ -175,9 +175,9 @@ def _sought(record: TrialRecord, aim: str) -> str:
     return "objects" if several and aim == "target" else floor_plan.title(word).lower()
 
 
-def _plain(option: str, beliefs: Event) -> str:
+def _plain(option: str, beliefs: Beliefs) -> str:
     """The name of an option, in words."""
-    kinds = {place["id"]: place["kind"] for place in beliefs.data["places"]}
+    kinds = {place.id: place.kind for place in beliefs.places}
     return "a doorway" if option.startswith("door ") else f"the {floor_plan.title(kinds.get(option, option)).lower()}"
 
 

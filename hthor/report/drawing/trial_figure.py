@@ -13,7 +13,8 @@ from matplotlib.transforms import blended_transform_factory
 from hthor import rules
 from hthor.episode import EpisodeLog, Fault
 from hthor.report.drawing import floor_plan, lettering, text_fit, trial_legend, trial_timeline, trial_trace
-from hthor.types import Event, HouseSpec, TrialSpec, Vec2
+from hthor.types import HouseSpec, TrialSpec, Vec2
+from hthor.types.events import Sent
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -149,13 +150,13 @@ def _words(log: EpisodeLog) -> list[tuple[str, str]]:
     return [*first, (f"… and {left} more", trial_trace.INK), *last]
 
 
-def _line_of(log: EpisodeLog, number: int, event: Event) -> tuple[str, str]:
+def _line_of(log: EpisodeLog, number: int, message: Sent) -> tuple[str, str]:
     """A message's number, time, sender, words and outcome as one line, and its colour."""
-    fate = trial_trace.outcome_of(log, event.data["message"])
-    head = f"{number}  {event.tick * rules.TICK_S:.1f} s  {event.seat}: “"
+    fate = trial_trace.outcome_of(log, message.message)
+    head = f"{number}  {message.tick * rules.TICK_S:.1f} s  {message.seat}: “"
     end = f"” ({'unanswered' if fate in ('sent', 'shown') else fate})"
     room = _WIDE_IN - 2 * _EDGE_IN - text_fit.text_width(head + end, WORDS_PT)
-    return (head + text_fit.shorten(event.data["text"], room, WORDS_PT) + end, trial_trace.message_colour(log, event))
+    return (head + text_fit.shorten(message.text, room, WORDS_PT) + end, trial_trace.message_colour(log, message))
 
 
 def _write_words(ax: Axes, words: Sequence[tuple[str, str]]) -> None:
@@ -173,13 +174,13 @@ def draw_messages(ax: Axes, log: EpisodeLog, *, arrows: bool = True) -> None:
     Messages that would hide one another share a badge.
     """
     sent = [
-        (number, event, trial_trace.position_at(log, event.seat, event.tick))
-        for number, event in enumerate(trial_trace.messages(log), 1)
+        (number, message, trial_trace.position_at(log, message.seat, message.tick))
+        for number, message in enumerate(trial_trace.messages(log), 1)
     ]
     strength = 1.0 if len(sent) <= _LINES else 0.45 if len(sent) <= _MANY else 0.15
     shades, drawn = trial_trace.message_colours(log), set()
-    for _, event, here in sent if arrows else ():
-        claim, shade = event.data.get("position"), shades[event.data["message"]]
+    for _, message, here in sent if arrows else ():
+        claim, shade = message.position, shades[message.message]
         if claim is None or math.dist(claim[:2], here) <= _BESIDE_M:
             continue
         same = (shade, *(round(part / _BESIDE_M) for part in (*here, *claim[:2])))

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, Literal
 from hthor import rules
 from hthor.episode import EpisodeLog, Fault
 from hthor.report.drawing import trial_trace
-from hthor.types import HUMAN, Event, TrialSpec
+from hthor.types import HUMAN, TrialSpec
+from hthor.types.events import Progress
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,7 +30,7 @@ _LIFTS = (6, -14, 15)
 def draw_timeline(ax: Axes, spec: TrialSpec, log: EpisodeLog) -> None:
     """Draw who did what and when: one row per seat, and one for the progress of a goal with several parts."""
     seats = list(log.paths)
-    steps = [event for event in log.events if event.kind == "progress"]
+    steps = [event for event in log.events if isinstance(event, Progress)]
     rows = len(seats) + (log.progress is not None)
     end, limit = log.ticks * rules.TICK_S, spec.task.time_limit
     for row, seat in enumerate(seats):
@@ -63,9 +64,9 @@ def draw_timeline(ax: Axes, spec: TrialSpec, log: EpisodeLog) -> None:
         ax.spines[side].set_visible(False)
 
 
-def _draw_progress(ax: Axes, steps: Sequence[Event], end: float, row: float, word_s: float) -> None:
+def _draw_progress(ax: Axes, steps: Sequence[Progress], end: float, row: float, word_s: float) -> None:
     """Draw a bar that darkens as more of the goal is met, with the shares in words."""
-    marks = [(0.0, 0.0), *((event.tick * rules.TICK_S, float(event.data["value"])) for event in steps)]
+    marks = [(0.0, 0.0), *((event.tick * rules.TICK_S, event.value) for event in steps)]
     for (begin, value), (until, _) in zip(marks, [*marks[1:], (end, 0.0)], strict=True):
         ax.barh(row, until - begin, left=begin, height=0.42, color=trial_trace.TARGET, alpha=0.08 + 0.6 * value, lw=0)
     following = math.inf
@@ -94,7 +95,7 @@ def _timeline_marks(ax: Axes, log: EpisodeLog, seat: str, row: float, word_s: fl
         half = 0.5 * letter * (len(group.words) + 2)  # so that the seat's name is not covered
         trial_trace.draw_badge(ax, (max(group.place[0], half), row), group.words, group.shade)
     words = {kind: verb for kind, (_, verb) in trial_trace.ACTS.items()}
-    words |= {"accepted": "accepts", "declined": "declines"}
+    words |= {"accepted": "accepts", "declined": "declines", "answered": "answers"}
     last = dict.fromkeys(_LIFTS, -math.inf)
     for event in log.events:
         if event.seat != seat or event.kind not in words:

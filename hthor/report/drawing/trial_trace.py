@@ -12,7 +12,8 @@ from msgspec import Struct
 from hthor import rules
 from hthor.episode import EpisodeLog, Fault
 from hthor.errors import RunError
-from hthor.types import HUMAN, Event, HouseSpec, Job, Placement, RobotSeat, TrialSpec, Vec2
+from hthor.types import HUMAN, HouseSpec, Job, Placement, RobotSeat, TrialSpec, Vec2
+from hthor.types.events import Accepted, MessageEvent, Sent
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -34,6 +35,7 @@ ACTS = {
     "closed": ("s", "closes"),
 }
 """Marker and verb of each action that is drawn."""
+_OUTCOMES = ("accepted", "declined", "answered", "covered", "shown")
 _THERE_M = 0.3
 _PARTS, _ROUND, _PADDED = 2, 3, 1.6
 """Parts of a group of numbers that are written out; letters from which on a badge is no disc; its margins [letters]."""
@@ -102,26 +104,26 @@ def _path(log: EpisodeLog, seat: str) -> list[tuple[int, int, int]]:
     return path
 
 
-def messages(log: EpisodeLog) -> list[Event]:
+def messages(log: EpisodeLog) -> list[Sent]:
     """The messages that were sent, in order."""
-    return [event for event in log.events if event.kind == "sent"]
+    return [event for event in log.events if isinstance(event, Sent)]
 
 
 def outcome_of(log: EpisodeLog, message: int) -> str:
-    """The kind of a message's last event: accepted, declined, covered, shown or sent."""
-    kinds = {event.kind for event in log.events if event.data.get("message") == message}
-    return next((kind for kind in ("accepted", "declined", "covered", "shown") if kind in kinds), "sent")
+    """The kind of a message's last event: accepted, declined, answered, covered, shown or sent."""
+    kinds = {event.kind for event in log.events if isinstance(event, MessageEvent) and event.message == message}
+    return next((kind for kind in _OUTCOMES if kind in kinds), "sent")
 
 
-def message_colour(log: EpisodeLog, event: Event) -> str:
+def message_colour(log: EpisodeLog, message: Sent) -> str:
     """The colour of a message: strong if the human accepted it, else pale."""
-    return message_colours(log)[event.data["message"]]
+    return message_colours(log)[message.message]
 
 
 def message_colours(log: EpisodeLog) -> dict[int, str]:
     """The colours of all messages that were sent, by their numbers in the log."""
-    accepted = {event.data["message"] for event in log.events if event.kind == "accepted"}
-    sent = (event.data["message"] for event in messages(log))
+    accepted = {event.message for event in log.events if isinstance(event, Accepted)}
+    sent = (message.message for message in messages(log))
     return {number: MESSAGE if number in accepted else IDLE_MESSAGE for number in sent}
 
 
@@ -130,7 +132,7 @@ def first_fault(log: EpisodeLog, seat: str) -> Fault | None:
     return next((fault for fault in log.faults if fault.seat == seat), None)
 
 
-_Mark = tuple[int, Event, Vec2]
+_Mark = tuple[int, Sent, Vec2]
 _Joined = tuple[list[_Mark], str]
 """A message with its number and place (``_Mark``); those that share a badge, and their numbers in words."""
 
@@ -144,7 +146,7 @@ class MessageGroup(Struct, frozen=True, kw_only=True):
 
 
 def group_messages(
-    log: EpisodeLog, marks: Sequence[tuple[int, Event, Vec2]], letter: float, high: float
+    log: EpisodeLog, marks: Sequence[tuple[int, Sent, Vec2]], letter: float, high: float
 ) -> list[MessageGroup]:
     """Group messages, with numbers and places: those whose badges would touch are joined, at the place of the first.
 
@@ -172,13 +174,13 @@ def group_messages(
         MessageGroup(
             words=words,
             place=some[0][2],
-            shade=MESSAGE if any(shades[event.data["message"]] == MESSAGE for _, event, _ in some) else IDLE_MESSAGE,
+            shade=MESSAGE if any(shades[message.message] == MESSAGE for _, message, _ in some) else IDLE_MESSAGE,
         )
         for some, words in sorted(held, key=lambda one: one[0][0][0])
     ]
 
 
-def _numbers(marks: Sequence[tuple[int, Event, Vec2]]) -> str:
+def _numbers(marks: Sequence[tuple[int, Sent, Vec2]]) -> str:
     return number_ranges([number for number, _, _ in marks])
 
 

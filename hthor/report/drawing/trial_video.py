@@ -23,12 +23,13 @@ from hthor.episode import EpisodeLog
 from hthor.errors import HthorError
 from hthor.report.drawing import floor_plan, lettering, text_fit, trial_figure, trial_legend, trial_trace
 from hthor.types import HouseSpec, TrialSpec
+from hthor.types.events import Accepted, Declined, Lifted, Picked, Progress
 
 SPEED = 4
 """Seconds of the trial per second of the video."""
 HOLD_S = 2
 """How long the last picture stays [s]."""
-_TAKEN = ("picked", "lifted")
+_TAKEN = (Picked, Lifted)
 _SHIFT = 4  # cv2 draws at 1/16 pixel
 _WIDE, _HIGH, _DPI = 9.6, 8.0, 100
 _PLAN = (0.01, 0.165, 0.98, 0.755)
@@ -113,7 +114,7 @@ class _Stage:
         """The frame of logged pose number ``index``."""
         frame = self.empty.copy()
         tick = index * rules.LOG_EVERY_TICKS
-        taken = {event.data["object"] for event in log.events if event.kind in _TAKEN and event.tick <= tick}
+        taken = {event.object for event in log.events if isinstance(event, _TAKEN) and event.tick <= tick}
         for object_, place in self.targets.items():
             if object_ not in taken:
                 cv2.drawMarker(frame, self._pixel(place), _bgr(trial_trace.TARGET), cv2.MARKER_STAR, 18, 2, cv2.LINE_AA)
@@ -122,12 +123,12 @@ class _Stage:
         self._draw_message(frame, log, tick)
         said = [(f"{tick * rules.TICK_S:5.1f} s", trial_trace.INK)]
         if log.progress is not None:
-            steps = [event.data["value"] for event in log.events if event.kind == "progress" and event.tick <= tick]
+            steps = [event.value for event in log.events if isinstance(event, Progress) and event.tick <= tick]
             said.append((f"{100.0 * (steps or [0.0])[-1]:.0f} %", trial_trace.TARGET))
         if log.ticks <= tick:
             said.append(("done" if log.met else "time is up", trial_trace.TARGET if log.met else trial_trace.FAILED))
         for event in log.events:
-            if event.kind in ("accepted", "declined") and 0 <= tick - event.tick <= 3.0 / rules.TICK_S:
+            if isinstance(event, (Accepted, Declined)) and 0 <= tick - event.tick <= 3.0 / rules.TICK_S:
                 said.append((f"person: {event.kind}", trial_trace.PERSON))
         for fault in log.faults:
             if fault.tick <= tick:
@@ -160,19 +161,19 @@ class _Stage:
 
     def _draw_message(self, frame: Any, log: EpisodeLog, tick: int) -> None:
         """Write the newest message; it stays for five seconds."""
-        recent = [event for event in trial_trace.messages(log) if 0 <= tick - event.tick <= 5.0 / rules.TICK_S]
+        recent = [sent for sent in trial_trace.messages(log) if 0 <= tick - sent.tick <= 5.0 / rules.TICK_S]
         if not recent:
             return
-        event = recent[-1]
-        text = f"{event.seat}: “{event.data['text']}”"
+        message = recent[-1]
+        text = f"{message.seat}: “{message.text}”"
         _write(
             frame,
             text if len(text) <= _WORDS_MAX else f"{text[: _WORDS_MAX - 1]}…",
             (16, _MESSAGE_Y),
             trial_trace.MESSAGE,
         )
-        if event.data.get("position") is not None:
-            claim = self._pixel(event.data["position"][:2])
+        if message.position is not None:
+            claim = self._pixel(message.position[:2])
             cv2.circle(frame, claim, 14, _bgr(trial_trace.MESSAGE), 2, cv2.LINE_AA)
 
     def _pixels(self, way: np.ndarray) -> np.ndarray:

@@ -19,7 +19,8 @@ from hthor.eval.replay import session_history
 from hthor.eval.replay.session_history import RunFiles
 from hthor.eval.runner import trial_runner
 from hthor.guest import AgentInputs, GuestConfig
-from hthor.types import Event, TaskSpec
+from hthor.types import TaskSpec
+from hthor.types.events import Event
 
 SIZE = (400, 300)
 _FINER = 2

@@ -9,7 +9,8 @@ from hthor import rules
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.geometry import plane
 from hthor.report.drawing import trial_trace
-from hthor.types import HUMAN, Event, HouseSpec
+from hthor.types import HUMAN, HouseSpec
+from hthor.types.events import Accepted, Declined, Sent
 
 MANY = 4
 _APART_S = 1.0
@@ -47,7 +48,7 @@ def _candidates(record: TrialRecord) -> Iterator[Moment]:
     """Events of the trial as moments, the most important first."""
     sent = trial_trace.messages(record.log)
     if sent:
-        fates = [trial_trace.outcome_of(record.log, event.data["message"]) for event in sent]
+        fates = [trial_trace.outcome_of(record.log, message.message) for message in sent]
         number = next((fates.index(fate) for fate in _ANSWERS if fate in fates), 0)
         yield Moment(tick=sent[number].tick, words=f"{sent[number].seat}, message {number + 1}")
         yield from _answer(record, sent[number])
@@ -58,9 +59,9 @@ def _candidates(record: TrialRecord) -> Iterator[Moment]:
             yield Moment(tick=event.tick, words=f"person {trial_trace.ACTS[kind][1]}")
 
 
-def _answer(record: TrialRecord, message: Event) -> Iterator[Moment]:
+def _answer(record: TrialRecord, message: Sent) -> Iterator[Moment]:
     for event in record.events:
-        if event.kind in _ANSWERS and event.data.get("message") == message.data["message"]:
+        if isinstance(event, (Accepted, Declined)) and event.message == message.message:
             yield Moment(tick=event.tick, words=_ANSWERS[event.kind])
             return
 

@@ -30,7 +30,6 @@ of 0.40 m radius has room.
 
 import math
 from collections.abc import Iterable, Sequence
-from typing import Any
 
 import msgspec
 import numpy as np
@@ -40,7 +39,8 @@ from hthor.geometry import plane
 from hthor.geometry.plane import wrap
 from hthor.geometry.ray_casting import Floats
 from hthor.houses.space import free_space
-from hthor.types import Event, HouseSpec, Outcome, Vec2, Vec3
+from hthor.types import HouseSpec, Outcome, Vec2, Vec3
+from hthor.types.events import Blocked, Event, Held, InWay, Lifted, Lowered, Released
 from hthor.world.carrying.load import LIFT_M
 from hthor.world.carrying.trailer import TrailerLoad
 from hthor.world.motion.driving import LOAD
@@ -60,8 +60,6 @@ _STANDING_ON_M = 0.05
 """[m] How far a body's disc may overlap a thing on the floor when it takes hold of a handle."""
 _CARRY_HEIGHT_M = 1.0
 """[m] Obstacles that begin higher above the floor are not in the way of a carried thing."""
-EventList = tuple[tuple[str, dict[str, Any]], ...]
-"""Kinds of events with their data."""
 
 
 class JointCarrying:
@@ -136,25 +134,25 @@ class JointCarrying:
         assert load is not None, "asked before"
         return go_with_load(seat, load, step, length, tick) if load.up else (LOAD, True)
 
-    def hold(self, seat: BodyState, item: MovableObject) -> EventList:
+    def hold(self, seat: BodyState, item: MovableObject, tick: int) -> tuple[Event, ...]:
         """Take hold of the nearest free handle; the thing rises if its bearers are strong enough."""
         load = self._loads[item.id] = self.load(item.id)
         load.ends[seat.name] = self._handle(seat, item)[0]
         seat.holding = item.id
         self._objects.grip(item.id, tuple(load.ends))
-        held = ("held", {"object": item.id})
+        held = Held(tick=tick, seat=seat.name, object=item.id)
         if load.up or load.lifted < item.mass:
             return (held,)
         load.up, load.z = True, LIFT_M + item.size[2] / 2
         self._objects.take(item.id, next(iter(load.ends)), load.pose)
-        return (held, ("lifted", {"object": item.id, "bearers": list(load.ends)}))
+        return held, Lifted(tick=tick, seat=seat.name, object=item.id, bearers=tuple(load.ends))
 
-    def release(self, seat: BodyState) -> EventList:
+    def release(self, seat: BodyState, tick: int) -> tuple[Event, ...]:
         """Let go; if the other bearers are too weak, the thing is put down."""
         load = self.of(seat)
         if load is None:
             return ()
-        names = list(load.ends)
+        names, name, object_ = tuple(load.ends), seat.name, load.item.id
         del load.ends[seat.name]
         seat.holding = ""
         if load.up and load.lifted < load.item.mass:
@@ -162,13 +160,13 @@ class JointCarrying:
                 other.holding = ""
             load.ends.clear()
             self._lower(load)
-            news: EventList = (("lowered", {"object": load.item.id, "bearers": names}),)
+            news: Event = Lowered(tick=tick, seat=name, object=object_, bearers=names)
         else:
-            news = (("released", {"object": load.item.id}),)
+            news = Released(tick=tick, seat=name, object=object_)
         if not load.ends:
-            del self._loads[load.item.id]
-        self._objects.grip(load.item.id, tuple(load.ends))
-        return news
+            del self._loads[object_]
+        self._objects.grip(object_, tuple(load.ends))
+        return (news,)
 
     def _obstacles(self) -> Floats:
         """Rectangles (N, 5) that are in the way of a carried thing now, see `hthor.world.carrying.trailer_kernel`."""
@@ -231,8 +229,8 @@ class CarryMotion:
         by = self._culprit(self._seat, step) if met == HOUSE else met
         reason = "blocked" if met == HOUSE else f"{met} is in the way"
         outcome = Outcome(motion="move", ok=False, reason=reason, by=by)
-        kind = "blocked" if met == HOUSE else "in_way"
-        return outcome, (Event(tick=tick, seat=self._seat.name, kind=kind, data={"by": by}),)
+        kind = Blocked if met == HOUSE else InWay
+        return outcome, (kind(tick=tick, seat=self._seat.name, by=by),)
 
 
 def go_with_load(seat: BodyState, load: TrailerLoad, step: Vec2, length: float, tick: int) -> tuple[str, bool]:

@@ -11,9 +11,10 @@ import math
 from collections.abc import Iterator
 
 from hthor import catalog, rules
-from hthor.types import Close, Drop, Event, HouseSpec, Open, Outcome, Pick, Place, Vec3
+from hthor.types import Close, Drop, HouseSpec, Open, Outcome, Pick, Place, Vec3
+from hthor.types.events import Closed, Dropped, Event, Opened, Picked, Placed, Refused
 from hthor.world import numbers
-from hthor.world.carrying.joint_carrying import EventList, JointCarrying
+from hthor.world.carrying.joint_carrying import JointCarrying
 from hthor.world.interaction.opening import DoorHandling
 from hthor.world.model.composer_env import QPose
 from hthor.world.model.geom_index import GeomIndex
@@ -30,7 +31,6 @@ from hthor.world.state.objects import Objects
 from hthor.world.state.overlap_test import FLOOR, OverlapTest
 from hthor.world.state.support_surfaces import SupportSurfaces
 
-_EVENT_KINDS = {"pick": "picked", "place": "placed", "drop": "dropped", "open": "opened", "close": "closed"}
 _SPOT_TRIES = 60
 """How many free spots of one surface are tried before the surface counts as out of sight."""
 _NO_POSE: QPose = (0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
@@ -55,12 +55,12 @@ class HandMotion:
             return None, ()
         name, verb = self._seat.name, motion_name(self._motion)
         held = self._seat.holding
-        reason = self._hands.finish(self._seat, self._motion)
+        reason = self._hands.finish(self._seat, self._motion, tick)
         news = self._hands.news()
-        done = news or ((_EVENT_KINDS[verb], _event_data(self._motion, held)),)
-        told = (("refused", {"motion": verb, "reason": reason}),) if reason else done
-        events = tuple(Event(tick=tick, seat=name, kind=kind, data=data) for kind, data in told)
-        return Outcome(motion=verb, ok=not reason, reason=reason), events
+        if reason:
+            refused = Refused(tick=tick, seat=name, motion=verb, reason=reason)
+            return Outcome(motion=verb, ok=False, reason=reason), (refused,)
+        return Outcome(motion=verb, ok=True), news or (_event(self._motion, held, tick, name),)
 
     def state(self) -> Handling:
         """All that it needs to go on later."""
@@ -84,9 +84,9 @@ class Manipulation:
         self._things = {thing.id: thing for thing in house.things}
         self._geoms, self._objects, self._doors, self._surfaces = geoms, objects, doors, surfaces
         self._overlap, self._door_handling, self.joint_carrying = overlap, door_handling, joint_carrying
-        self._news: EventList = ()
+        self._news: tuple[Event, ...] = ()
 
-    def news(self) -> EventList:
+    def news(self) -> tuple[Event, ...]:
         """The additional events of the motion that ended last, if any; each is returned only once."""
         news, self._news = self._news, ()
         return news
@@ -111,14 +111,14 @@ class Manipulation:
         if isinstance(motion, (Open, Close)):
             self._door_handling.during(motion, share)
 
-    def finish(self, seat: BodyState, motion: HandAction) -> str:
-        """Let the motion take effect, or return the reason if a rule now forbids it."""
+    def finish(self, seat: BodyState, motion: HandAction, tick: int) -> str:
+        """Let the motion take effect at ``tick``, or return the reason if a rule now forbids it."""
         if isinstance(motion, (Open, Close)):
             return self._door_handling.finish(motion)
         if isinstance(motion, Pick):
-            return self._pick(seat, motion) or self._take(seat, motion.object)
+            return self._pick(seat, motion) or self._take(seat, motion.object, tick)
         if self.joint_carrying.of(seat) is not None:
-            return self._refused(seat, motion) or self._let_go(seat)
+            return self._refused(seat, motion) or self._let_go(seat, tick)
         if isinstance(motion, Drop):
             return self._drop(seat) or self._put(seat, held_pose(seat, self._held(seat).size), "")
         reason, spot = self._place(seat, motion)
@@ -154,10 +154,10 @@ class Manipulation:
             out_of_reach(seat, item.id, item.position) or out_of_sight(seat, item, self._geoms) or too_heavy(seat, item)
         )
 
-    def _take(self, seat: BodyState, id: str) -> str:
+    def _take(self, seat: BodyState, id: str, tick: int) -> str:
         item = self._objects.get(id)
         if item is not None and self.joint_carrying.takes(seat, item):
-            self._news = self.joint_carrying.hold(seat, item)
+            self._news = self.joint_carrying.hold(seat, item, tick)
             return ""
         seat.holding = id
         size = self._held(seat).size
@@ -178,8 +178,8 @@ class Manipulation:
             return ""
         return f"{seat.holding} is held by its handles; drop it, or place it on '{FLOOR}': it is put down where it is"
 
-    def _let_go(self, seat: BodyState) -> str:
-        self._news = self.joint_carrying.release(seat)
+    def _let_go(self, seat: BodyState, tick: int) -> str:
+        self._news = self.joint_carrying.release(seat, tick)
         return ""
 
     # ------------------------------------------------------------------------------------------------------- drop
@@ -275,12 +275,19 @@ def motion_name(motion: object) -> str:
     return type(motion).__name__.lower()
 
 
-def _event_data(motion: HandAction, held: str) -> dict[str, str]:
-    if isinstance(motion, Place):
-        return {"object": held, "on": motion.on}
-    if isinstance(motion, Drop):
-        return {"object": held}
-    return {"object": motion.object} if isinstance(motion, Pick) else {"thing": motion.thing}
+def _event(motion: HandAction, held: str, tick: int, seat: str) -> Event:
+    """The event of a motion that took effect; ``held``: the object in hand before it."""
+    match motion:
+        case Pick():
+            return Picked(tick=tick, seat=seat, object=motion.object)
+        case Place():
+            return Placed(tick=tick, seat=seat, object=held, on=motion.on)
+        case Drop():
+            return Dropped(tick=tick, seat=seat, object=held)
+        case Open():
+            return Opened(tick=tick, seat=seat, thing=motion.thing)
+        case Close():
+            return Closed(tick=tick, seat=seat, thing=motion.thing)
 
 
 def _is_point(position: object) -> bool:

@@ -22,7 +22,8 @@ from msgspec import UNSET
 
 from hthor import rules
 from hthor.geometry.plane import turn, wrap
-from hthor.types import SUBTICKS, Drive, Event, Outcome, Pose, Vec2
+from hthor.types import SUBTICKS, Drive, Outcome, Pose, Vec2
+from hthor.types.events import Blocked, Event, InWay
 from hthor.world import numbers
 from hthor.world.motion.locomotion import Culprit, clip
 from hthor.world.motion.steps import FREE, HOUSE, go_or_slide
@@ -156,8 +157,9 @@ class DriveMotion:
             seat.outcome = Outcome(motion="drive", ok=False, reason=reason, by=by)
         if not new or met == LOAD:
             return ()
-        kind, when = ("blocked", tick) if met == HOUSE else ("in_way", tick - 1)
-        return (Event(tick=when, seat=seat.name, kind=kind, data={"by": by}),)
+        if met == HOUSE:
+            return (Blocked(tick=tick, seat=seat.name, by=by),)
+        return (InWay(tick=tick - 1, seat=seat.name, by=by),)
 
     def _part(self) -> None:
         """End the contact."""

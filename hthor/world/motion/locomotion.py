@@ -12,7 +12,8 @@ from hthor.geometry import plane
 from hthor.geometry.plane import turn, wrap
 from hthor.houses.space import solids
 from hthor.houses.space.free_space import STEP_M
-from hthor.types import BodySpec, Event, HouseSpec, Move, Opening, Outcome, Pose, Rotate, Vec2, Wait
+from hthor.types import BodySpec, HouseSpec, Move, Opening, Outcome, Pose, Rotate, Vec2, Wait
+from hthor.types.events import Blocked, Event, InWay
 from hthor.world import numbers
 from hthor.world.motion.steps import EPS, FREE, HOUSE, go_or_slide
 from hthor.world.records import Moving, Rotating, Waiting
@@ -159,7 +160,7 @@ class MoveMotion:
         if met in (FREE, HOUSE) or self._hindered:
             return ()
         self._hindered = True
-        return (Event(tick=tick - 1, seat=self._seat.name, kind="in_way", data={"by": met}),)
+        return (InWay(tick=tick - 1, seat=self._seat.name, by=met),)
 
     def _stop(self, tick: int, met: str, step: Vec2, events: tuple[Event, ...]) -> TickResult:
         name = self._seat.name
@@ -167,7 +168,7 @@ class MoveMotion:
             return Outcome(motion="move", ok=False, reason=f"{met} is in the way", by=met), events
         by = self._culprit(self._seat, step)
         outcome = Outcome(motion="move", ok=False, reason="blocked", by=by)
-        return outcome, (*events, Event(tick=tick, seat=name, kind="blocked", data={"by": by}))
+        return outcome, (*events, Blocked(tick=tick, seat=name, by=by))
 
 
 def length_and_direction(seat: BodyState, motion: Move) -> tuple[float, Vec2]:

@@ -7,7 +7,8 @@ from typing import Protocol
 from hthor.errors import UnknownName
 from hthor.geometry import plane
 from hthor.houses.space.free_space import FreeSpace
-from hthor.types import BodySpec, Drive, Event, HouseSpec, Outcome, Pose, Vec3, is_person
+from hthor.types import BodySpec, Drive, HouseSpec, Outcome, Pose, Vec3, is_person
+from hthor.types.events import Event
 from hthor.world.records import ActivityState, Driving
 
 _ROUNDING_M = 1e-9

@@ -10,6 +10,7 @@ from msgspec import Struct
 from hthor import rules
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.types import HUMAN
+from hthor.types.events import Accepted, Attempt, Covered, Declined, Head, Picked, Shown, Stick
 
 Array = Any
 """A numpy array."""
@@ -50,8 +51,9 @@ def walk_features(record: TrialRecord) -> Walk | None:
     pushed = stick_deflection(record)
     if pushed is None:
         return None
-    entries = {event.kind: event.data for event in record.journal if event.kind in ("stick", "head")}
-    full, on = float(entries["stick"]["full"]), pushed > 0
+    full = next(entry.full for entry in record.journal if isinstance(entry, Stick))
+    fastest = next((entry.fastest for entry in record.journal if isinstance(entry, Head)), math.inf)
+    on = pushed > 0
     reading, guided = _reading(record), _guided(record)
     plain = pushed[on & ~reading & ~guided]
     pace = full * float(np.median(plain)) / 1000.0 if len(plain) >= _ENOUGH_TICKS else math.nan
@@ -60,7 +62,7 @@ def walk_features(record: TrialRecord) -> Walk | None:
     turns = _turns(turned)
     return Walk(
         full=full,
-        fastest=float(entries.get("head", {}).get("fastest", math.inf)),
+        fastest=fastest,
         pace=pace,
         guided=() if math.isnan(pace) or pace >= 0.99 * full else _slower(record, pushed, reading, pace / full),
         turns=turns,
@@ -72,7 +74,7 @@ def walk_features(record: TrialRecord) -> Walk | None:
 
 def stick_deflection(record: TrialRecord) -> Array | None:
     """(ticks,) deflection in thousandths at each tick; None if the log has no joystick data."""
-    runs = next((event.data["runs"] for event in record.journal if event.kind == "stick"), None)
+    runs = next((entry.runs for entry in record.journal if isinstance(entry, Stick)), None)
     if runs is None:
         return None
     at, value = np.array(runs[::2]), np.array(runs[1::2])
@@ -83,12 +85,9 @@ def _reading(record: TrialRecord) -> Array:
     """(ticks,) bool, whether a message was shown and not yet answered; an ignored one counts for 12 s."""
     mask = np.zeros(record.ticks, dtype=bool)
     for event in record.events:
-        if event.kind == "shown":
-            ends = [
-                other.tick
-                for other in record.events
-                if other.kind in ("accepted", "declined", "covered") and other.data["message"] == event.data["message"]
-            ]
+        if isinstance(event, Shown):
+            ended = (other for other in record.events if isinstance(other, (Accepted, Declined, Covered)))
+            ends = [other.tick for other in ended if other.message == event.message]
             mask[event.tick : min([*ends, event.tick + _READ_TICKS])] = True
     return mask
 
@@ -97,9 +96,9 @@ def _guided(record: TrialRecord) -> Array:
     """(ticks,) bool, whether a message was accepted and the person has picked up nothing since."""
     mask, since = np.zeros(record.ticks, dtype=bool), -1
     for event in record.events:
-        if event.kind == "accepted" and since < 0:
+        if isinstance(event, Accepted) and since < 0:
             since = event.tick
-        elif event.kind == "picked" and event.seat == HUMAN and since >= 0:
+        elif isinstance(event, Picked) and event.seat == HUMAN and since >= 0:
             mask[since : event.tick] = True
             since = -1
     if since >= 0:
@@ -111,7 +110,7 @@ def _slower(record: TrialRecord, pushed: Array, reading: Array, usual: float) ->
     """The factor by which each walk after an accepted message was slower, from its most frequent deflection."""
     found = []
     for event in record.events:
-        if event.kind == "accepted":
+        if isinstance(event, Accepted):
             piece = slice(event.tick, event.tick + _GUIDED_TICKS)
             walked = pushed[piece][(pushed[piece] > 0) & ~reading[piece]]
             if len(walked) >= _ENOUGH_TICKS // 2:
@@ -148,7 +147,7 @@ def _stops(record: TrialRecord, on: Array, yaw: Array, turned: Array, rate: floa
 
     Time spent turning is subtracted, at the ``rate`` of the trial's turns [rad/s].
     """
-    busy = [event.tick for event in record.journal if event.kind == "attempt"]
+    busy = [entry.tick for entry in record.journal if isinstance(entry, Attempt)]
     edges, found = np.flatnonzero(np.diff(on.astype(int))), []
     for off, again in pairwise(edges):
         if not on[off] or again - off > _STOP_TICKS or any(off <= tick <= again for tick in busy):

@@ -1,6 +1,5 @@
 """How a person handled messages in a trial, from events, joystick and journal."""
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -10,9 +9,9 @@ from hthor import rules
 from hthor.calibration.from_logs.features import locomotion
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.humans.communication.message_reading import is_same_message
-from hthor.types import Event, Message
+from hthor.types import Message, events
+from hthor.types.events import Accepted, Covered, Declined, Sent, Shown
 
-_ANSWERS = ("accepted", "declined")
 _BEFORE_TICKS = round(1.5 / rules.TICK_S)
 _SLOWER = 0.75
 """A person who slows down to this share of their pace, while still walking, has noticed a message."""
@@ -46,13 +45,13 @@ def message_readings(record: TrialRecord) -> tuple[Reading, ...]:
     shown: list[Message] = []
     begun: tuple[int, Message, bool] | None = None
     for event in record.events:
-        if event.kind == "shown":
-            message = sent[event.data["message"]]
+        if isinstance(event, Shown):
+            message = sent[event.message]
             if begun is None or not is_same_message(message, begun[1]):
                 found += _left(begun, event.tick)
                 begun = event.tick, message, any(is_same_message(message, old) for old in shown)
             shown.append(message)
-        elif event.kind in _ANSWERS and begun is not None:
+        elif isinstance(event, (Accepted, Declined)) and begun is not None:
             found.append(_reading(begun, event.tick, answered=True))
             begun = None
     return (*found, *_left(begun, record.ticks))
@@ -65,7 +64,7 @@ def message_noticings(record: TrialRecord) -> tuple[tuple[float, bool], ...]:
     if stick is None:
         return ()
     for event in record.events:
-        if event.kind != "shown":
+        if not isinstance(event, Shown):
             continue
         before = stick[max(0, event.tick - _BEFORE_TICKS) : event.tick]
         after = stick[event.tick : _answer(record, event)]
@@ -83,13 +82,13 @@ def message_offers(record: TrialRecord) -> tuple[Offer, ...]:
     """The messages about the task that were read, in order."""
     return tuple(
         Offer(
-            gain=float(event.data["gain"]),
-            load=float(event.data["load"]),
-            again=float(event.data["again"]),
-            accepted=event.data["answer"] == "accept",
+            gain=entry.gain,
+            load=entry.load,
+            again=float(entry.again),
+            accepted=entry.answer == "accept",
         )
-        for event in record.journal
-        if event.kind == "offer" and event.data["relevant"]
+        for entry in record.journal
+        if isinstance(entry, events.Offer) and entry.relevant
     )
 
 
@@ -99,27 +98,24 @@ def _kept(stick: Any) -> Any:
     return np.abs(follows - stick) <= 0.02 * stick
 
 
-def _answer(record: TrialRecord, shown: Event) -> int:
-    number = shown.data["message"]
-    ends = (e.tick for e in record.events if e.kind in (*_ANSWERS, "covered") and e.data["message"] == number)
+def _answer(record: TrialRecord, shown: Shown) -> int:
+    ended = (event for event in record.events if isinstance(event, (Accepted, Declined, Covered)))
+    ends = (event.tick for event in ended if event.message == shown.message)
     return min(next(ends, record.ticks), record.ticks)
 
 
 def _messages(record: TrialRecord) -> dict[int, Message]:
-    return {event.data["message"]: _message(event) for event in record.events if event.kind == "sent"}
+    return {event.message: _message(event) for event in record.events if isinstance(event, Sent)}
 
 
-def _message(event: Event) -> Message:
-    place: Sequence[float] | None = event.data["position"]
-    position = None if place is None else (place[0], place[1], place[2])
-    data = event.data
+def _message(sent: Sent) -> Message:
     return Message(
-        id=data["message"],
-        sender=event.seat,
-        tick=event.tick,
-        text=data["text"],
-        object=data["object"],
-        position=position,
+        id=sent.message,
+        sender=sent.seat,
+        tick=sent.tick,
+        text=sent.text,
+        object=sent.object,
+        position=sent.position,
     )
 
 

@@ -7,13 +7,17 @@ people it is for, with the best of its ends: accepted by anybody, else declined,
 import functools
 import statistics
 
+from msgspec import UNSET
+
 from hthor import rules
 from hthor.comms import claims
 from hthor.episode import EpisodeLog
 from hthor.eval.metrics.metric import HIGHER, LOWER, SECONDS, SHARE, Metric, Trial
-from hthor.types import Event, is_person
+from hthor.types import is_person
+from hthor.types.events import Accepted, Covered, Declined, Offer, Sent, Shown
 
-_ENDS = ("accepted", "declined", "covered")
+_End = Accepted | Declined | Covered
+_ENDS: tuple[type[_End], ...] = (Accepted, Declined, Covered)
 """The ends of a suggestion, the best first."""
 
 
@@ -25,7 +29,7 @@ def adoption(trial: Trial) -> float:
 
 def adoption_by_person(trial: Trial) -> dict[str, float]:
     """1 for each person who accepted at least one robot message, else 0; only with several people."""
-    suggestions, answers = _suggestions(trial.log), _answers(trial.log, "accepted")
+    suggestions, answers = _suggestions(trial.log), _answers(trial.log, Accepted)
     accepting = {seat for seat, message in answers if message in suggestions}
     return {seat: float(seat in accepting) for seat in trial.people}
 
@@ -37,17 +41,17 @@ def sent(trial: Trial) -> int:
 
 def accepted(trial: Trial) -> int:
     """Messages that the human accepted; with several people, that any of them accepted."""
-    return len(_ended(trial.log, "accepted"))
+    return len(_ended(trial.log, Accepted))
 
 
 def declined(trial: Trial) -> int:
     """Messages that the human declined; with several people, that some declined and nobody accepted."""
-    return len(_ended(trial.log, "declined"))
+    return len(_ended(trial.log, Declined))
 
 
 def covered(trial: Trial) -> int:
     """Messages that a newer one covered before anybody had answered."""
-    return len(_ended(trial.log, "covered"))
+    return len(_ended(trial.log, Covered))
 
 
 def unanswered(trial: Trial) -> int:
@@ -57,7 +61,7 @@ def unanswered(trial: Trial) -> int:
 
 def false_claims(trial: Trial) -> int:
     """Messages that were wrong when they were sent."""
-    return sum(claims.is_false(event.data) for event in _statements(trial.log))
+    return sum(claims.is_false(message) for message in _statements(trial.log))
 
 
 def precision(trial: Trial) -> float | None:
@@ -66,13 +70,13 @@ def precision(trial: Trial) -> float | None:
     What a robot says about where it, another robot or a person is, is not counted as a claim.
     """
     made = _claims(trial.log)
-    return sum(not claims.is_false(event.data) for event in made) / len(made) if made else None
+    return sum(not claims.is_false(message) for message in made) / len(made) if made else None
 
 
 def first_useful(trial: Trial) -> float | None:
     """Seconds until a robot sent the first true claim that a person accepted; only trials with such a claim."""
-    accepted = _true_claims(trial.log) & _ended(trial.log, "accepted")
-    ticks = [event.tick for event in _statements(trial.log) if event.data.get("message") in accepted]
+    accepted = _true_claims(trial.log) & _ended(trial.log, Accepted)
+    ticks = [message.tick for message in _statements(trial.log) if message.message in accepted]
     return min(ticks) * rules.TICK_S if ticks else None
 
 
@@ -81,7 +85,7 @@ def interruptions(trial: Trial) -> float | None:
 
     An answer to a person's question does not count.
     """
-    messages = {event.data.get("message") for event in _sent(trial.log) if event.data.get("answers") is None}
+    messages = {message.message for message in _sent(trial.log) if message.answers is None}
     shown = sum(message in messages for _, message in _shown(trial.log))
     minutes = trial.log.ticks * rules.TICK_S / 60.0
     return shown / len(trial.people) / minutes if trial.log.ticks else None
@@ -89,59 +93,55 @@ def interruptions(trial: Trial) -> float | None:
 
 def useful(trial: Trial) -> int:
     """Accepted messages that were true when they were sent and new to who accepted them and could still help."""
-    new = {
-        (event.seat, event.data.get("message"))
-        for event in trial.log.journal
-        if event.kind == "offer" and event.data.get("useful")
-    }
-    taken = {message for seat, message in _answers(trial.log, "accepted") if (seat, message) in new}
+    new = {(entry.seat, entry.message) for entry in trial.log.journal if isinstance(entry, Offer) and entry.useful}
+    taken = {message for seat, message in _answers(trial.log, Accepted) if (seat, message) in new}
     return len(taken & _true_claims(trial.log) & set(_suggestions(trial.log)))
 
 
 def usefulness(trial: Trial) -> float | None:
     """Share of the accepted messages that were `useful`; only trials with an accepted message."""
-    accepted = len(_ended(trial.log, "accepted"))
+    accepted = len(_ended(trial.log, Accepted))
     return useful(trial) / accepted if accepted else None
 
 
-def _sent(log: EpisodeLog) -> list[Event]:
-    """The events that robots sent messages."""
-    return [event for event in log.events if event.kind == "sent" and not is_person(event.seat)]
+def _sent(log: EpisodeLog) -> list[Sent]:
+    """The messages that robots sent."""
+    return [event for event in log.events if isinstance(event, Sent) and not is_person(event.seat)]
 
 
-def _statements(log: EpisodeLog) -> list[Event]:
+def _statements(log: EpisodeLog) -> list[Sent]:
     """The messages in which robots said something: all but questions."""
-    return [event for event in _sent(log) if not event.data.get("question")]
+    return [message for message in _sent(log) if not message.question]
 
 
-def _suggestions(log: EpisodeLog) -> dict[object, Event]:
+def _suggestions(log: EpisodeLog) -> dict[int, Sent]:
     """The robots' suggestions, by number."""
-    return {event.data.get("message"): event for event in _statements(log) if event.data.get("answers") is None}
+    return {message.message: message for message in _statements(log) if message.answers is None}
 
 
-def _answers(log: EpisodeLog, kind: str) -> set[tuple[str, object]]:
+def _answers(log: EpisodeLog, kind: type[_End]) -> set[tuple[str, int]]:
     """Who ended which message by an event of this kind; a message is covered by its sender or another."""
-    return {(event.seat, event.data.get("message")) for event in log.events if event.kind == kind}
+    return {(event.seat, event.message) for event in log.events if isinstance(event, kind)}
 
 
-def _shown(log: EpisodeLog) -> list[tuple[str, object]]:
+def _shown(log: EpisodeLog) -> list[tuple[str, int]]:
     """Who was shown which message."""
-    return [(event.seat, event.data.get("message")) for event in log.events if event.kind == "shown"]
+    return [(event.seat, event.message) for event in log.events if isinstance(event, Shown)]
 
 
-def _ended(log: EpisodeLog, kind: str) -> set[object]:
+def _ended(log: EpisodeLog, kind: type[_End]) -> set[int]:
     """The suggestions that ended with an event of this kind, and for nobody with a better one."""
     better = {message for end in _ENDS[: _ENDS.index(kind)] for _, message in _answers(log, end)}
     return ({message for _, message in _answers(log, kind)} - better) & set(_suggestions(log))
 
 
-def _claims(log: EpisodeLog) -> list[Event]:
+def _claims(log: EpisodeLog) -> list[Sent]:
     """The messages that claim where a thing is; claims about bodies do not count."""
-    return [event for event in _statements(log) if "off" in event.data and event.data.get("object") not in log.paths]
+    return [message for message in _statements(log) if message.off is not UNSET and message.object not in log.paths]
 
 
-def _true_claims(log: EpisodeLog) -> set[object]:
-    return {event.data.get("message") for event in _claims(log) if not claims.is_false(event.data)}
+def _true_claims(log: EpisodeLog) -> set[int]:
+    return {message.message for message in _claims(log) if not claims.is_false(message)}
 
 
 _message = functools.partial(Metric, section="messages", needs_robot=True)

@@ -4,10 +4,11 @@ from collections.abc import Iterator, Sequence
 
 from hthor.episode import EpisodeLog
 from hthor.eval.metrics.metric import SHARE, Metric, Trial
-from hthor.types import Event, TrialSpec
+from hthor.types import TrialSpec
+from hthor.types.events import Closed, Dropped, Event, Lifted, Lowered, Opened, Picked, Placed, Progress, Success
 
-_FINISH = ("placed", "dropped", "lifted", "lowered", "opened", "closed")
-_TAKE = ("picked", "lifted")
+_FINISH = (Placed, Dropped, Lifted, Lowered, Opened, Closed)
+_TAKE = (Picked, Lifted)
 _EPS = 1e-9
 
 Credit = dict[str, float]
@@ -50,13 +51,13 @@ def _steps(spec: TrialSpec, log: EpisodeLog) -> Iterator[tuple[int, float, str]]
     """Ticks at which the progress changed, by how much, and the person who saw it; it starts to count after tick 0."""
     if log.progress is None:
         if log.met:
-            ends = (event.seat for event in reversed(log.events) if event.kind == "success")
+            ends = (event.seat for event in reversed(log.events) if isinstance(event, Success))
             yield log.ticks, 1.0, next(ends, spec.humans[0].seat)
         return
     value = 0.0
     for event in log.events:
-        if event.kind == "progress":
-            rise, value = float(event.data["value"]) - value, float(event.data["value"])
+        if isinstance(event, Progress):
+            rise, value = event.value - value, event.value
             if event.tick > 0:
                 yield event.tick, rise, event.seat
 
@@ -85,30 +86,29 @@ def _credit(spec: TrialSpec, log: EpisodeLog, tick: int, seer: str) -> Credit:
 
 def _chain(spec: TrialSpec, past: Sequence[Event]) -> list[tuple[str, ...]]:
     """The seats that did the last action, and each earlier action that it needed."""
-    load = next((event for event in reversed(past) if event.kind in ("lifted", "lowered")), None)
-    last = next((event for kinds in (_FINISH, _TAKE) for event in reversed(past) if event.kind in kinds), None)
-    if load is not None and load.kind == "lifted":
+    load = next((event for event in reversed(past) if isinstance(event, (Lifted, Lowered))), None)
+    last = next((event for kinds in (_FINISH, _TAKE) for event in reversed(past) if isinstance(event, kinds)), None)
+    if isinstance(load, Lifted):
         last = load
     if last is None:
         return []
-    object_ = last.data.get("object", "")
-    if not object_:
+    if isinstance(last, (Opened, Closed)):
         return [_doers(last)]
     before = list(past[: past.index(last)])
     parts = [_doers(last)]
-    take = next((event for event in reversed(before) if event.kind in _TAKE and _is_of(event, object_)), None)
-    origin = _start(spec, object_)
-    if take is not None and last.kind not in _TAKE:
+    taken = (event for event in reversed(before) if isinstance(event, _TAKE))
+    take = next((event for event in taken if event.object == last.object), None)
+    origin = _start(spec, last.object)
+    if take is not None and not isinstance(last, _TAKE):
         parts.append(_doers(take))
-        earlier = before[: before.index(take)]
-        put = next((event for event in reversed(earlier) if event.kind == "placed" and _is_of(event, object_)), None)
-        origin = put.data["on"] if put is not None else origin
-    return parts + _openers(before, [origin, last.data.get("on", "")])
+        placed = (event for event in reversed(before[: before.index(take)]) if isinstance(event, Placed))
+        origin = next((event.on for event in placed if event.object == last.object), origin)
+    return parts + _openers(before, [origin, last.on if isinstance(last, Placed) else ""])
 
 
 def _openers(past: Sequence[Event], things: Sequence[str]) -> list[tuple[str, ...]]:
     """The seats that last opened each of the things."""
-    opened = {event.data.get("thing"): _doers(event) for event in past if event.kind == "opened"}
+    opened = {event.thing: _doers(event) for event in past if isinstance(event, Opened)}
     return [opened[thing] for thing in dict.fromkeys(things) if thing in opened]
 
 
@@ -118,11 +118,7 @@ def _start(spec: TrialSpec, object_: str) -> str:
 
 
 def _doers(event: Event) -> tuple[str, ...]:
-    return tuple(event.data.get("bearers", ())) or (event.seat,)
-
-
-def _is_of(event: Event, object_: str) -> bool:
-    return bool(event.data.get("object") == object_)
+    return event.bearers if isinstance(event, (Lifted, Lowered)) and event.bearers else (event.seat,)
 
 
 METRICS = (Metric("work", "share of the work", work, unit=SHARE, rank=900, by_seat=True, needs_robot=True),)

@@ -9,6 +9,7 @@ from hthor import rules
 from hthor.episode import EpisodeLog
 from hthor.eval.metrics.metric import LOWER, SECONDS, Metric, Trial
 from hthor.types import is_person
+from hthor.types.events import InWay
 
 FREED_M = 0.3
 """A body this far from where it was hindered is free again [m]."""
@@ -21,7 +22,7 @@ Span = tuple[int, int]
 
 def encounters(trial: Trial) -> int:
     """How often a body met another in its way."""
-    return sum(event.kind == "in_way" for event in trial.log.events)
+    return sum(isinstance(event, InWay) for event in trial.log.events)
 
 
 def human_hindered(trial: Trial) -> float:
@@ -42,7 +43,7 @@ def hindered_by_pair(trial: Trial) -> dict[str, float]:
 def _spans(log: EpisodeLog, seat: str, counts: Callable[[str], bool]) -> Iterator[Span]:
     """The spans from each time that the seat was hindered, by a seat that ``counts``, until it was free again."""
     for event in log.events:
-        if event.kind == "in_way" and event.seat == seat and counts(event.data["by"]):
+        if isinstance(event, InWay) and event.seat == seat and counts(event.by):
             yield event.tick, _freed(log, seat, event.tick)
 
 

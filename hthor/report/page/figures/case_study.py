@@ -167,10 +167,9 @@ def _headline(row: Row) -> str:
         if (fault := trial_trace.first_fault(record.log, seat)) is not None
     ]
     said = [
-        f"message {number} of {len(sent)} ({trial_trace.outcome_of(record.log, event.data['message'])}): "
-        f"“{event.data['text']}”"
-        for number, event in enumerate(sent, 1)
-        if any(moment.tick == event.tick for moment in row.moments)
+        f"message {number} of {len(sent)} ({trial_trace.outcome_of(record.log, message.message)}): “{message.text}”"
+        for number, message in enumerate(sent, 1)
+        if any(moment.tick == message.tick for moment in row.moments)
     ]
     return "; ".join([f"{row.label}: {end}", *failed, *said[:1]])
 

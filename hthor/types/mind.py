@@ -1,38 +1,9 @@
-"""Events of a trial, snapshots of its true state, and the contract of agents and human models."""
+"""The contract of agents and human models: the program that controls the body in a seat."""
 
-from collections.abc import Mapping
-from typing import Any, Protocol
-
-from msgspec import Struct
+from typing import Protocol
 
 from hthor.types.actions import Action
-from hthor.types.house import Pose
-from hthor.types.observations import Briefing, Observation, ThingState
-
-
-class Event(Struct, frozen=True, kw_only=True):
-    """Something that a ``seat`` did at a ``tick``; ``kind`` names it, and its ``data`` depend on the kind."""
-
-    tick: int
-    seat: str
-    kind: str
-    data: dict[str, Any] = {}
-
-
-class Snapshot(Struct, frozen=True, kw_only=True):
-    """The true state at one tick, for judging and logging; never given to an agent or a human model.
-
-    Attributes:
-        poses: seat -> pose of its body. holding: seat -> id of the object in its hand, empty for none.
-        things: id -> state of every object and every thing that opens.
-        in_view: every person's seat -> ids of the objects in view within `rules.FIND_RANGE_M`.
-    """
-
-    tick: int
-    poses: Mapping[str, Pose]
-    things: Mapping[str, ThingState]
-    in_view: Mapping[str, tuple[str, ...]]
-    holding: Mapping[str, str]
+from hthor.types.observations import Briefing, Observation
 
 
 class Mind(Protocol):

@@ -1,0 +1,112 @@
+"""Events of a trial's log, one class for each kind; docs/logs.md lists them with their fields.
+
+`Event` is what the log's ``events`` may have, `JournalEntry` what its ``journal`` may have. Code that reads a log asks
+for a class: ``isinstance(event, Sent)``.
+"""
+
+from hthor.types.events.bodies import (
+    Blocked,
+    Closed,
+    Dropped,
+    Held,
+    InWay,
+    Lifted,
+    Lowered,
+    Opened,
+    Picked,
+    Placed,
+    Refused,
+    Released,
+)
+from hthor.types.events.entry import LogEntry
+from hthor.types.events.journal import (
+    Attempt,
+    Choice,
+    Exposure,
+    ExposureRow,
+    Head,
+    Inputs,
+    Misled,
+    Note,
+    Offer,
+    OptionRow,
+    Stick,
+)
+from hthor.types.events.messages import Accepted, Answered, Covered, Declined, MessageEvent, Sent, Shown
+from hthor.types.events.trial import AgentFault, Paused, Progress, Resumed, Success, Thought, Timeout, Voided
+
+Event = (
+    Sent
+    | Shown
+    | Accepted
+    | Declined
+    | Covered
+    | Answered
+    | Picked
+    | Placed
+    | Dropped
+    | Opened
+    | Closed
+    | Held
+    | Lifted
+    | Lowered
+    | Released
+    | Blocked
+    | InWay
+    | Refused
+    | Thought
+    | Progress
+    | AgentFault
+    | Paused
+    | Resumed
+    | Voided
+    | Success
+    | Timeout
+)
+"""An event of the trial."""
+JournalEntry = Stick | Head | Inputs | Attempt | Exposure | Choice | Offer | Misled | Note
+"""An entry of the journal."""
+
+__all__ = [
+    "Accepted",
+    "AgentFault",
+    "Answered",
+    "Attempt",
+    "Blocked",
+    "Choice",
+    "Closed",
+    "Covered",
+    "Declined",
+    "Dropped",
+    "Event",
+    "Exposure",
+    "ExposureRow",
+    "Head",
+    "Held",
+    "InWay",
+    "Inputs",
+    "JournalEntry",
+    "Lifted",
+    "LogEntry",
+    "Lowered",
+    "MessageEvent",
+    "Misled",
+    "Note",
+    "Offer",
+    "Opened",
+    "OptionRow",
+    "Paused",
+    "Picked",
+    "Placed",
+    "Progress",
+    "Refused",
+    "Released",
+    "Resumed",
+    "Sent",
+    "Shown",
+    "Stick",
+    "Success",
+    "Thought",
+    "Timeout",
+    "Voided",
+]

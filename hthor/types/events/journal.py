@@ -1,0 +1,144 @@
+"""Entries of the journal: what a headset's recorder stores of a person in addition to the log.
+
+The trial's log has what the system sees: poses (x, y and yaw at 5 Hz), messages, picks and places, the rating. The
+journal adds the person's inputs, what they saw, and what they chose. The episode records `Stick` and `Head` for every
+human model, and `Inputs` of every body that is driven; only some human models record the other kinds.
+"""
+
+from typing import Literal
+
+from msgspec import UNSET, UnsetType, field
+
+from hthor.types.events.entry import LogEntry
+from hthor.types.house import Vec3
+
+ExposureRow = tuple[float, float, float, float, int, int]
+"""Glimpses that were alike, added up: seconds [s], visual angle [rad], eccentricity [rad], share in view (0 to 1), how
+many small things were beside it, and whether the person was searching there (0 or 1)."""
+OptionRow = tuple[float, float, float, float, int, int]
+"""One option of a `Choice`: probability by common knowledge and without it (0 to 1), path length [m], exposure so far,
+whether it must be opened first, and whether it is a doorway (0 or 1); see `hthor.humans.core.policy`."""
+
+
+class Stick(LogEntry, frozen=True, kw_only=True, tag="stick"):
+    """How far the person's stick was pushed, once per trial; the direction is in the path.
+
+    Attributes:
+        full: [m/s] the speed at full deflection.
+        runs: flat pairs of a tick and the deflection from that tick on, in thousandths of ``full``.
+    """
+
+    full: float
+    runs: tuple[int, ...]
+
+
+class Head(LogEntry, frozen=True, kw_only=True, tag="head"):
+    """How the person's head was tilted, once per trial.
+
+    Attributes:
+        fastest: [rad/s] the fastest that the body can turn.
+        pitch: flat pairs of a tick and the pitch from that tick on [mrad], up positive.
+    """
+
+    fastest: float
+    pitch: tuple[int, ...]
+
+
+class Inputs(LogEntry, frozen=True, kw_only=True, tag="inputs"):
+    """Everything that the person's body was told to `Drive`, once per trial in which it was.
+
+    Attributes:
+        runs: flat groups of six: the tick, and the step of the tick (0 to `hthor.types.SUBTICKS` - 1), from which on
+            they hold; forward and left [0.1 mm/s] in the frame of the head's yaw; the head's yaw, house frame, and
+            pitch [0.1 mrad].
+    """
+
+    runs: tuple[int, ...]
+
+
+class Attempt(LogEntry, frozen=True, kw_only=True, tag="attempt"):
+    """The hands tried something; the tick is when they began. One that the trial's end cut off has no outcome.
+
+    Attributes:
+        what: "pick", "place", "open", "close" or "drop".
+        seconds: [s] how long it took; absent if it was cut off.
+        ok: whether it succeeded; absent if it was cut off.
+        why: "missed" when the hand closed on nothing, else the world's reason; empty if it succeeded.
+        at: [m], house frame, where an object was to be put; only for a "place" that says so.
+    """
+
+    what: str
+    seconds: float | UnsetType = UNSET
+    ok: bool | UnsetType = UNSET
+    why: str = ""
+    at: Vec3 | None = None
+
+
+class Exposure(LogEntry, frozen=True, kw_only=True, tag="exposure"):
+    """The glimpses at one object until it was noticed, or until the trial ended.
+
+    Attributes:
+        object: its id. noticed: whether it was noticed at the last glimpse.
+        seconds: [s] how long it was in view.
+        gathered: rows of like glimpses, see `ExposureRow`; the last row is the last glimpse alone.
+    """
+
+    object: str
+    noticed: bool
+    seconds: float
+    gathered: tuple[ExposureRow, ...]
+
+
+class Choice(LogEntry, frozen=True, kw_only=True, tag="choice"):
+    """A decision where to search next.
+
+    Attributes:
+        aim: what is searched for: "target", "destination" or "room".
+        options: a row for each option, see `OptionRow`; of many options a sample is kept.
+        chosen: the index of the chosen option.
+    """
+
+    aim: str
+    options: tuple[OptionRow, ...]
+    chosen: int
+
+
+class Offer(LogEntry, frozen=True, kw_only=True, tag="offer"):
+    """A message that the person read and decided on; see `hthor.humans.core.policy.Offer`.
+
+    Attributes:
+        message: its number in the trial. number: counts the messages read in the trial, from 1.
+        trust: the proxy's mean trust, 0 to 1; a live person's log does not have it.
+        useful: whether following it could still help. relevant: whether it was about the task.
+        gain: [s] the time that following it was expected to save.
+        load: work in hand, 0 to 1. again: how often the same offer was refused before.
+        words: length of the text in words. read_s: [s] from when it was shown to the answer.
+        answer: what the person did with it.
+    """
+
+    message: int
+    number: int
+    trust: float | UnsetType = UNSET
+    useful: bool
+    relevant: bool
+    gain: float
+    load: float
+    again: int
+    words: int
+    read_s: float
+    answer: Literal["accept", "decline", "ignore"]
+
+
+class Misled(LogEntry, frozen=True, kw_only=True, tag="misled"):
+    """The person left the place that an accepted message had named without having found the object there."""
+
+
+class Note(LogEntry, frozen=True, kw_only=True, tag="note"):
+    """What a human model of one's own records in addition, such as how often a language model was asked.
+
+    Attributes:
+        topic: what the note is about. values: plain values by name.
+    """
+
+    topic: str
+    values: dict[str, bool | int | float | str] = field(default_factory=dict)

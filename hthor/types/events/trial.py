@@ -1,0 +1,65 @@
+"""Events of the trial as a whole and of its clock."""
+
+from hthor.types.events.entry import LogEntry
+
+
+class Thought(LogEntry, frozen=True, kw_only=True, tag="thought"):
+    """The seat's action took effect late, because deciding took time; until then its body stood still.
+
+    Attributes:
+        ticks: by how many ticks.
+    """
+
+    ticks: int
+
+
+class Progress(LogEntry, frozen=True, kw_only=True, tag="progress"):
+    """The share of the goal that is met has changed.
+
+    Attributes:
+        value: the share, 0 to 1.
+    """
+
+    value: float
+
+
+class AgentFault(LogEntry, frozen=True, kw_only=True, tag="fault"):
+    """The agent in the seat failed and takes no further part; the log's ``faults`` have its error.
+
+    Attributes:
+        fault: the kind of fault, such as "raised" or "timeout".
+    """
+
+    fault: str
+
+
+class Paused(LogEntry, frozen=True, kw_only=True, tag="paused"):
+    """The trial was paused; no tick passes until it is `Resumed`.
+
+    Attributes:
+        reason: why, empty for no reason given.
+    """
+
+    reason: str = ""
+
+
+class Resumed(LogEntry, frozen=True, kw_only=True, tag="resumed"):
+    """A paused trial went on."""
+
+
+class Voided(LogEntry, frozen=True, kw_only=True, tag="voided"):
+    """The trial was ended as void, and does not count; always the last event.
+
+    Attributes:
+        reason: why.
+    """
+
+    reason: str
+
+
+class Success(LogEntry, frozen=True, kw_only=True, tag="success"):
+    """The goal was met; always the last event."""
+
+
+class Timeout(LogEntry, frozen=True, kw_only=True, tag="timeout"):
+    """Time ran out before the goal was met; always the last event."""
