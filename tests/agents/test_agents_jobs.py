@@ -137,7 +137,7 @@ def starting(made: TaskSpec, robot: Pose) -> TaskSpec:
 
 
 def said(log: EpisodeLog, seat: str = "robot") -> list[str]:
-    return [event.data["text"] for event in log.events if event.kind == "sent" and event.seat == seat]
+    return [event.text for event in log.events if event.kind == "sent" and event.seat == seat]
 
 
 def apples(*places: tuple[str, int]) -> tuple[tuple[Placement, ...], tuple[Job, ...]]:
@@ -170,7 +170,7 @@ def a_task(kind: str, limit: float) -> TaskSpec:
 def test_every_agent_takes_part_in_every_kind_with_every_body(kind: str, agent: str) -> None:
     log, _ = run(a_task(kind, 8.0), f"tender:{agent}", f"puck:{agent}", f"porter:{agent}")
     assert not log.faults
-    reasons = [event.data["reason"] for event in log.events if event.kind == "refused"]
+    reasons = [event.reason for event in log.events if event.kind == "refused"]
     assert not [reason for reason in reasons if "cannot" in reason or "at most" in reason or "no object" in reason]
 
 
@@ -188,14 +188,14 @@ def test_the_same_trial_goes_the_same_way() -> None:
 def test_the_oracle_gathers_what_lies_about_and_opens_the_fridge_for_it() -> None:
     log, share = run(task("multi_robot_collection", *apples(("fridge", 1), ("desk", 0))), "tender:oracle")
     assert (log.met, share) == (True, 1.0)
-    assert [event.data["thing"] for event in log.events if event.kind == "opened"] == ["fridge"]
+    assert [event.thing for event in log.events if event.kind == "opened"] == ["fridge"]
     assert said(log)[0].startswith("I put the apple on the dining table"), "so that nobody looks for it any longer"
 
 
 @pytest.mark.slow
 def test_two_oracles_do_not_fetch_the_same_thing() -> None:
     log, _ = run(task("multi_robot_collection", *apples(("fridge", 1), ("desk", 0))), "tender:oracle", "tender:oracle")
-    picked = {event.seat: event.data["object"] for event in log.events if event.kind == "picked"}
+    picked = {event.seat: event.object for event in log.events if event.kind == "picked"}
     assert log.met
     assert sorted(picked.values()) == ["apple", "apple_2"], "each has fetched one"
 
@@ -236,7 +236,7 @@ def test_what_lies_well_is_left_alone() -> None:
         Job(target="apple", relation="on", destinations=("dining_table",)),
     )
     log, _ = run(task("tidying_up", (mug, apple), jobs), "tender:oracle")
-    assert [event.data["object"] for event in log.events if event.kind == "picked"] == ["mug"]
+    assert [event.object for event in log.events if event.kind == "picked"] == ["mug"]
 
 
 @pytest.mark.slow
@@ -265,7 +265,7 @@ def test_who_cannot_open_the_fridge_asks_the_person_to_look_inside() -> None:
     log, _ = run(made, "puck:oracle")
     assert said(log)[0] == "I cannot open the fridge in front of me. Please look inside for the apple."
     event = next(event for event in log.events if event.kind == "sent")
-    assert event.data["object"] == "apple"
+    assert event.object == "apple"
 
 
 @pytest.mark.slow
@@ -285,7 +285,7 @@ def test_the_frontier_robot_asks_for_what_it_has_not_seen() -> None:
     log, _ = run(made, "puck:frontier")
     assert look_inside_text("fridge", ("apple",)) in said(log)
     event = next(event for event in log.events if event.kind == "sent")
-    assert event.data["object"] == "fridge", "it does not claim that the apple is there"
+    assert event.object == "fridge", "it does not claim that the apple is there"
 
 
 @pytest.mark.slow

@@ -40,13 +40,13 @@ def test_any_robot_covers_the_open_message_and_the_covered_one_cannot_be_answere
     box = Mailbox(ROBOTS)
     box.send(0, "robot", Send(text="a"))
     events = box.send(1, "robot2", Send(text="b"))
-    assert [(event.kind, event.seat, event.data["message"]) for event in events] == [
+    assert [(event.kind, event.seat, event.message) for event in events] == [
         ("covered", "robot2", 0),
         ("sent", "robot2", 1),
     ]
     (refused,) = box.reply(2, HUMAN, Reply(message=0, accept=True))
     assert refused.kind == "refused"
-    assert "covered" in refused.data["reason"]
+    assert "covered" in refused.reason
     assert box.receipt("robot").status == "covered"
     assert box.receipt("robot2").status == "sent"
 
@@ -99,7 +99,7 @@ def test_a_long_text_costs_no_more_than_a_short_one(monkeypatch: pytest.MonkeyPa
 def test_long_text_is_cut_and_the_event_says_so():
     box = Mailbox(ROBOTS)
     (event,) = box.send(0, "robot", Send(text="x" * (rules.TEXT_MAX + 7)))
-    assert event.data["cut"] == 7
+    assert event.cut == 7
     assert len(box.inbox(HUMAN)[0].text) == rules.TEXT_MAX
 
 
@@ -107,7 +107,7 @@ def test_long_text_is_cut_and_the_event_says_so():
 def test_positions_that_are_no_positions_are_refused(position):
     (event,) = Mailbox(ROBOTS).send(0, "robot", Send(text="a", position=position))
     assert event.kind == "refused"
-    assert "finite" in event.data["reason"]
+    assert "finite" in event.reason
 
 
 def test_array_positions_become_plain_floats():
@@ -179,7 +179,7 @@ def test_laws_of_every_history(history):
         else:
             events = box.reply(tick, HUMAN, Reply(message=a, accept=b))
         jsonio.canonical(events)
-        ends += [event.data["message"] for event in events if event.kind in ("accepted", "declined", "covered")]
+        ends += [event.message for event in events if event.kind in ("accepted", "declined", "covered")]
         after = {message.id: receipt.status for message, receipt in box.messages}
         assert sum(status in ("sent", "shown") for status in after.values()) <= 1
         assert len(box.inbox(HUMAN)) == sum(status in ("sent", "shown") for status in after.values())
@@ -206,7 +206,8 @@ def test_a_message_to_one_leaves_the_other_panel_alone():
     box = Mailbox(ROBOTS, PEOPLE)
     box.send(0, "robot", Send(text="both"))
     events = box.send(1, "robot2", Send(text="one", to="human2"))
-    assert [(event.kind, event.data.get("reader")) for event in events] == [("covered", "human2"), ("sent", None)]
+    assert [event.kind for event in events] == ["covered", "sent"]
+    assert events[0].reader == "human2"
     assert [message.text for message in box.inbox(HUMAN)] == ["both"]
     assert [message.text for message in box.inbox("human2")] == ["one"]
 
@@ -224,7 +225,7 @@ def test_a_question_to_a_person_is_answered_by_yes_or_no():
     box = Mailbox(ROBOTS)
     box.send(0, "robot", Send(text="Did you find it?", question=True))
     (event,) = box.reply(4, HUMAN, Reply(message=0, accept=False))
-    assert (event.kind, event.data["yes"]) == ("answered", False)
+    assert (event.kind, event.yes) == ("answered", False)
     assert (box.receipt("robot").status, box.receipt("robot").yes) == ("answered", False)
 
 

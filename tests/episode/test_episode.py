@@ -4,24 +4,13 @@ from __future__ import annotations
 
 import pytest
 from episode_fakes import Mind, Stage, trial
+from msgspec import UNSET
 
 from hthor import plugins
 from hthor.episode import EpisodeLog, play
 from hthor.tasks.kinds.object_goal_navigation import ObjectGoalNavigation
-from hthor.types import (
-    HUMAN,
-    Action,
-    Briefing,
-    Event,
-    Motion,
-    Move,
-    Observation,
-    Reply,
-    Send,
-    Snapshot,
-    TaskSpec,
-    Wait,
-)
+from hthor.types import HUMAN, Action, Briefing, Motion, Move, Observation, Reply, Send, Snapshot, TaskSpec, Wait
+from hthor.types.events import Event, Placed
 
 
 def run(stage: Stage, human: Mind, robot: Mind | None, *privileges: str) -> EpisodeLog:
@@ -144,7 +133,7 @@ def counting(monkeypatch: pytest.MonkeyPatch) -> Counting:
 
 def test_progress_is_noticed_within_a_second_and_whole_in_the_end(counting: Counting) -> None:
     log = run(Stage(seen=47), Mind(), Mind())
-    steps = [(event.tick, event.data["value"]) for event in log.events if event.kind == "progress"]
+    steps = [(event.tick, event.value) for event in log.events if event.kind == "progress"]
     assert steps == [(20, 0.1), (30, 0.2), (40, 0.3), (47, 1.0)]
     assert log.progress == 1.0
     assert counting.asked == 5, "at the start and once a second, for no thing has changed"
@@ -155,7 +144,7 @@ def test_progress_is_noticed_at_once_when_a_thing_changes(counting: Counting) ->
         def advance(self) -> tuple[Event, ...]:
             self.tick += 1
             self.things = dict(self.things)
-            return (Event(tick=self.tick, seat="robot", kind="placed"),) if self.tick == 13 else ()
+            return (Placed(tick=self.tick, seat="robot", object="apple", on="table"),) if self.tick == 13 else ()
 
     stage = Restless(seen=30)
     assert [event.tick for event in run(stage, Mind(), Mind()).events if event.kind == "progress"] == [12, 24, 30]
@@ -205,8 +194,8 @@ def test_the_log_knows_how_far_a_claim_is_off_and_nobody_else_does() -> None:
 
     human, robot = Mind(), Mind(script)
     log = run(Stage(seen=9), human, robot)
-    sent = [event.data for event in log.events if event.kind == "sent"]
-    assert [data.get("off", "nothing") for data in sent] == [0.5, 9.0, "nothing", None]
+    sent = [event for event in log.events if event.kind == "sent"]
+    assert [event.off for event in sent] == [0.5, 9.0, UNSET, None]
     assert not any(hasattr(message, "off") for seen in human.observed for message in seen.inbox)
 
 

@@ -150,7 +150,7 @@ def test_a_late_answer_is_logged_with_its_delay_and_the_world_goes_on_meanwhile(
         Concurrent(pace=lambda tick: gate.set() or time.sleep(0.05) if tick == 7 else None),
     )
     thoughts = [event for event in log.events if event.kind == "thought" and event.seat == "robot"]
-    assert (thoughts[0].tick, thoughts[0].data["ticks"]) == (7, 7)
+    assert (thoughts[0].tick, thoughts[0].ticks) == (7, 7)
     assert next(event.tick for event in log.events if event.kind == "sent" and event.seat == "robot") == 7
 
 
@@ -182,7 +182,7 @@ def test_a_voided_trial_ends_there_with_its_reason() -> None:
     with pytest.raises(HthorError, match="over"):
         episode.advance()
     log = episode.log()
-    assert (log.events[-1].kind, log.events[-1].data["reason"], log.ticks) == ("voided", "the headset slipped", 7)
+    assert (log.events[-1].kind, log.events[-1].reason, log.ticks) == ("voided", "the headset slipped", 7)
     assert log.ratings == {}
 
 

@@ -58,7 +58,7 @@ def test_an_action_comes_as_late_as_it_was_decided_on() -> None:
     assert [look.tick for look in robot.observed[:3]] == [0, 8, 16], "asked when free, not again while at it"
     assert starts(stage, HUMAN)[:3] == [0, 5, 10], "the person waits for nobody"
     thoughts = [event for event in log.events if event.kind == "thought"]
-    assert [(event.tick, event.data["ticks"]) for event in thoughts[:2]] == [(3, 3), (11, 3)]
+    assert [(event.tick, event.ticks) for event in thoughts[:2]] == [(3, 3), (11, 3)]
     assert log.idle["robot"] == 3 * len(thoughts), "a body that waits for its mind does nothing"
 
 
@@ -76,7 +76,7 @@ def test_no_thinking_is_rounded_away(seconds: float, busy: int) -> None:
     robot = Thinker(clock, seconds)
     log = run(stage, robot)
     most = seconds / rules.TICK_S  # of the last thought, which may not have come to its end
-    late = sum(event.data["ticks"] for event in log.events if event.kind == "thought")
+    late = sum(event.ticks for event in log.events if event.kind == "thought")
     assert late == pytest.approx(seconds * len(robot.observed) / rules.TICK_S, abs=1.001 + most)
 
 

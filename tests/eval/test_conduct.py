@@ -8,7 +8,8 @@ import pytest
 from hthor.episode import EpisodeLog
 from hthor.eval.agent_check import criteria
 from hthor.eval.agent_check.probe_trials import ProbeResult, count_repeated_messages, longest_on_one_spot_s
-from hthor.types import HUMAN, Event
+from hthor.types import HUMAN
+from hthor.types.events import Accepted, Declined, Event, Sent
 
 NOTES = ProbeResult(
     line=b"", faults=(), asked=300, actions=(), thought_s=(0.0004,) * 300, begin_s=0.0, memory_mb=0.0, lasted_s=30.0,
@@ -21,11 +22,11 @@ def log(path: list[tuple[int, int, int]], *events: Event) -> EpisodeLog:
 
 
 def sent(text: str, tick: int = 0) -> Event:
-    return Event(tick=tick, seat="robot", kind="sent", data={"message": tick, "text": text, "object": "mug"})
+    return Sent(tick=tick, seat="robot", message=tick, text=text, object="mug")
 
 
-def answered(kind: str, tick: int) -> Event:
-    return Event(tick=tick, seat=HUMAN, kind=kind, data={"message": 0})
+def answered(kind: type[Accepted | Declined], tick: int) -> Event:
+    return kind(tick=tick, seat=HUMAN, message=0, sender="robot")
 
 
 def test_turning_is_standing_and_driving_is_not():
@@ -36,14 +37,14 @@ def test_turning_is_standing_and_driving_is_not():
     assert longest_on_one_spot_s(log(driving[:50] + [driving[50]] * 100), "robot") == pytest.approx(19.8, abs=0.5)
 
 
-def test_after_a_accepted_message_it_may_wait():
+def test_after_an_accepted_message_it_may_wait():
     path = [(100 * step, 2000, 0) for step in range(50)] + [(5000, 2000, 0)] * 100
-    assert longest_on_one_spot_s(log(path, answered("accepted", 100)), "robot") < 1.0
+    assert longest_on_one_spot_s(log(path, answered(Accepted, 100)), "robot") < 1.0
 
 
 def test_the_same_again_is_a_repetition_unless_it_was_declined():
     assert count_repeated_messages(log([], sent("a"), sent("a", 1), sent("a", 2), sent("b", 3)), "robot") == 2
-    assert count_repeated_messages(log([], sent("a"), answered("declined", 5), sent("a", 100)), "robot") == 0
+    assert count_repeated_messages(log([], sent("a"), answered(Declined, 5), sent("a", 100)), "robot") == 0
 
 
 @pytest.mark.parametrize(

@@ -22,10 +22,12 @@ from hthor.eval.replay.human_trace import HumanTrace
 from hthor.eval.replay.session_history import RunFiles
 from hthor.eval.runner import experiment, progress, run_options
 from hthor.guest.host.info import GuestConfig
+from hthor.humans.core.thoughts import Aim, Forgot, Noticed
 from hthor.report.drawing import human_trace_figure, human_trace_timeline, render_trial
 from hthor.report.page import camera_frames
 from hthor.tasks.suite import encode_suite, make_suite
-from hthor.types import HUMAN, Event
+from hthor.types import HUMAN
+from hthor.types.events import Attempt
 
 PNG = b"\x89PNG\r\n"
 
@@ -72,12 +74,12 @@ def test_a_trial_is_the_same_while_it_is_filmed_and_another_one_is_not_shown(run
 @pytest.mark.slow
 def test_the_stream_tells_what_the_log_has_and_more(heard: list[tuple[TrialRecord, HumanTrace]]) -> None:
     for record, stream in heard:
-        logged = [event.tick for event in record.journal if event.kind == "choice" and event.data["aim"] == "target"]
-        thought = [event.tick for event in stream.events if event.kind == "choice" and event.data["aim"] == "target"]
+        logged = [event.tick for event in record.journal if event.kind == "choice" and event.aim == "target"]
+        thought = [event.tick for event in stream.events if event.kind == "choice" and event.aim == "target"]
         assert thought == logged
         for kind in ("attempt", "exposure", "offer"):
             assert [e for e in stream.events if e.kind == kind] == [e for e in record.journal if e.kind == kind]
-        aims = [event.data["about"] for event in stream.events if event.kind == "aim"]
+        aims = [event.about for event in stream.events if event.kind == "aim"]
         assert aims[0] == "begin"
         assert all(a != b for a, b in pairwise(aims))
     kinds = {event.kind for _, stream in heard for event in stream.events}
@@ -95,23 +97,23 @@ def test_beliefs_and_chances_add_up(heard: list[tuple[TrialRecord, HumanTrace]])
             elif event.kind == "choice":
                 shares = human_trace_timeline.option_chances(event, stream.traits["beta"])
                 assert sum(shares.values()) == pytest.approx(1.0)
-                assert event.data["chosen"] in shares
+                assert event.chosen in shares
                 seen += 1
     assert seen
 
 
 @pytest.mark.slow
 def test_the_terms_of_an_answer_are_its_chance(heard: list[tuple[TrialRecord, HumanTrace]]) -> None:
-    weighed = [event.data for _, stream in heard for event in stream.events if event.kind == "weighed"]
+    weighed = [event for _, stream in heard for event in stream.events if event.kind == "weighed"]
     assert weighed
-    for data in weighed:
-        logit = sum(data[name] for name in ("a0", "trust", "gain", "load", "again"))
-        share = 1.0 / (1.0 + math.exp(-logit)) if data["relevant"] else 0.0
-        assert data["share"] == pytest.approx(share, abs=1e-3)
+    for event in weighed:
+        logit = sum(event.terms[name] for name in ("a0", "trust", "gain", "load", "again"))
+        share = 1.0 / (1.0 + math.exp(-logit)) if event.relevant else 0.0
+        assert event.share == pytest.approx(share, abs=1e-3)
 
 
 def test_trust_at_the_end_is_what_the_next_trial_begins_with(heard: list[tuple[TrialRecord, HumanTrace]]) -> None:
-    courses = [[e.data["mean"] for e in stream.events if e.kind == "trust"] for _, stream in heard]
+    courses = [[e.mean for e in stream.events if e.kind == "trust"] for _, stream in heard]
     for before, after in pairwise(courses):
         assert before[-1] == after[0]
 
@@ -184,10 +186,10 @@ def test_a_trial_with_a_fault_repeats_itself_too(run: Path, tmp_path: Path) -> N
 
 def test_forgetting_and_misses_have_their_marks() -> None:
     events = (
-        Event(tick=0, seat=HUMAN, kind="aim", data={"about": "begin"}),
-        Event(tick=5, seat=HUMAN, kind="noticed", data={"object": "sofa"}),
-        Event(tick=9, seat=HUMAN, kind="forgot", data={"object": "sofa"}),
-        Event(tick=20, seat=HUMAN, kind="attempt", data={"what": "pick", "ok": False, "seconds": 1.0}),
+        Aim(tick=0, seat=HUMAN, about="begin"),
+        Noticed(tick=5, seat=HUMAN, object="sofa", position=(1.0, 2.0, 0.4)),
+        Forgot(tick=9, seat=HUMAN, object="sofa"),
+        Attempt(tick=20, seat=HUMAN, what="pick", ok=False, seconds=1.0),
     )
     stream = HumanTrace(key="", same=True, traits={"beta": 1.0}, events=events)
     assert human_trace_timeline.row_names(stream) == ["hands", "noticed", "is about"]

@@ -111,7 +111,7 @@ def events(log, kind, seat=HUMAN):
 def test_collects_one_apple_after_the_other(world):
     log, progress, _ = run(world, suite_task("collect", time_limit=600.0))
     assert progress >= 2 / 3
-    assert len({event.data["object"] for event in events(log, "placed")}) >= 2
+    assert len({event.object for event in events(log, "placed")}) >= 2
 
 
 @pytest.mark.slow
@@ -120,7 +120,7 @@ def test_restores_what_was_shuffled(world):
     assert progress > 0.0
     jobs = {job.target: job for job in suite_task("rearrange").goal.jobs}
     for event in events(log, "placed"):
-        assert event.data["on"] in jobs[event.data["object"]].destinations
+        assert event.on in jobs[event.object].destinations
 
 
 @pytest.mark.slow
@@ -131,7 +131,7 @@ def test_tidies_up(world):
     kinds = {thing.id: thing.kind for thing in world.house.things}
     homes = {job.target: job.destinations for job in task.goal.jobs}
     for event in events(log, "placed"):
-        assert kinds[event.data["on"]] in homes[event.data["object"]]
+        assert kinds[event.on] in homes[event.object]
 
 
 @pytest.mark.slow
@@ -143,7 +143,7 @@ def test_lets_lie_what_lies_well(world):
     assert well
     for participant in range(3):
         log, _, _ = run(world, task, participant)
-        assert not well & {event.data["object"] for event in events(log, "picked")}
+        assert not well & {event.object for event in events(log, "picked")}
 
 
 @pytest.mark.slow
@@ -156,7 +156,7 @@ def test_looks_into_the_fridge_when_asked(world):
         log, _, model = run(world, task, participant, Scripted(ask))
         if events(log, "accepted"):
             break
-    opened = [event.data["thing"] for event in events(log, "opened")]
+    opened = [event.thing for event in events(log, "opened")]
     assert fridge.id in opened
     assert not model._dialogue.experience.misled
 

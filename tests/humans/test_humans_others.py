@@ -8,6 +8,7 @@ from pathlib import Path
 import msgspec
 import pytest
 import world_house as tiny
+from event_fakes import fields
 from fake_flat import Flat, play
 from world_house import COFFEE, COUNTER, on
 
@@ -314,7 +315,9 @@ def paths(done):
 def deeds(done):
     kinds = ("picked", "placed", "opened", "accepted", "declined", "success")
     return [
-        (event.tick, event.kind, event.data) for event in done.events if event.seat == "human" and event.kind in kinds
+        (event.tick, event.kind, fields(event))
+        for event in done.events
+        if event.seat == "human" and event.kind in kinds
     ]
 
 
@@ -326,7 +329,7 @@ def test_a_replay_does_the_same_whatever_the_robot_says(robot, world, log):
         says = [Send(text="Here.", object="apple", position=at(support))] if robot == "same" else []
         done = umpire.play(one.spec, world, {"human": person}, {"robot": Teller(*says)})
         assert paths(done) == one.paths["human"]
-        wanted = [(e.tick, e.kind, e.data) for e in one.events if e.seat == "human"]
+        wanted = [(e.tick, e.kind, fields(e)) for e in one.events if e.seat == "human"]
         answered = {"accepted", "shown"} if robot == "silent" else set()
         assert [deed for deed in wanted if deed[1] not in answered | {"shown"}] == deeds(done)
         assert done.ratings == one.ratings

@@ -336,7 +336,7 @@ def test_what_stays_in_view_is_not_forgotten_and_what_comes_back_must_be_noticed
         assert one.knows
         assert one.memory.places["fridge|1"].recalled
         assert one.objects.changes > news
-        kinds = [(event.kind, event.data["object"]) for event in one.told]
+        kinds = [(event.kind, event.object) for event in one.told]
         assert [name for kind, name in kinds if kind == "noticed"].count("apple") == 2
         assert {("forgot", "apple"), ("forgot", "fridge|1")} <= set(kinds)
 
@@ -374,7 +374,7 @@ def test_a_destination_that_was_forgotten_is_found_again():
         model._human.listener = told.append
         play(model, flat, ticks=3000, until=lambda flat=flat: flat.support == "Fridge|1" and not flat.held)
         assert flat.support == "Fridge|1"
-        forgot += ("forgot", "Fridge|1") in [(event.kind, event.data.get("object")) for event in told]
+        forgot += "Fridge|1" in [event.object for event in told if event.kind == "forgot"]
     assert forgot >= 2
 
 
@@ -382,7 +382,7 @@ def test_a_destination_that_was_forgotten_is_found_again():
 
 
 def exposures(looker):
-    return [event.data for event in looker.me.journal if event.kind == "exposure"]
+    return [entry for entry in looker.me.journal if entry.kind == "exposure"]
 
 
 @settings(max_examples=30, deadline=None)
@@ -397,13 +397,13 @@ def test_the_journal_holds_all_that_led_to_noticing(root, glances):
         if looker.knows:
             break
     looker.eyes.end()
-    (data,) = exposures(looker)
-    assert data["noticed"] == looker.knows
-    assert data["seconds"] == pytest.approx(sum(row[0] for row in data["gathered"]))
-    summed = [detection_rate(TRAITS, row[1], row[2], row[3], row[4]) * row[0] for row in data["gathered"]]
+    (entry,) = exposures(looker)
+    assert entry.noticed == looker.knows
+    assert entry.seconds == pytest.approx(sum(row[0] for row in entry.gathered))
+    summed = [detection_rate(TRAITS, row[1], row[2], row[3], row[4]) * row[0] for row in entry.gathered]
     assert sum(summed) == pytest.approx(total, rel=0.02, abs=1e-3)
     assert summed[-1] == pytest.approx(last, rel=0.01, abs=1e-4)
-    assert not any(row[5] for row in data["gathered"])
+    assert not any(row[5] for row in entry.gathered)
 
 
 def test_an_object_that_is_looked_for_just_there_is_noticed_sooner_and_the_journal_says_so():
@@ -411,8 +411,8 @@ def test_an_object_that_is_looked_for_just_there_is_noticed_sooner_and_the_journ
     looker.eyes.attention = (2.0, 0.0, 1.0)
     looker.see(apple())
     looker.eyes.end()
-    (data,) = exposures(looker)
-    assert data["gathered"][-1][5] == 1
+    (entry,) = exposures(looker)
+    assert entry.gathered[-1][5] == 1
     counts = [0, 0]
     for attended in (0, 1):
         for k in range(200):
@@ -432,10 +432,10 @@ def test_glimpses_that_are_alike_share_a_row_and_no_more_is_written_at_the_end()
         book.add("apple", Glimpse(0.3, 0.04 + 1e-5 * k, 0.2 + 1e-4 * k, 1.0, 0, False))
     book.end()
     book.end()
-    (data,) = exposures(looker)
-    assert len(data["gathered"]) < 10
-    assert data["seconds"] == pytest.approx(150.0)
-    assert not data["noticed"]
+    (entry,) = exposures(looker)
+    assert len(entry.gathered) < 10
+    assert entry.seconds == pytest.approx(150.0)
+    assert not entry.noticed
 
 
 @pytest.mark.slow

@@ -211,8 +211,8 @@ def test_the_mind_tells_what_it_weighed():
     me.listener = told.append
     said = accept_decision.decide_answer(me, offer(gain=10.0))
     (event,) = told
-    assert event.data["answer"] == said
-    assert event.data["gain"] == pytest.approx(TRAITS.a_gain * math.log(11.0), abs=1e-3)
+    assert event.answer == said
+    assert event.terms["gain"] == pytest.approx(TRAITS.a_gain * math.log(11.0), abs=1e-3)
 
 
 # ---------------------------------------------------------------------------------------------------------------- gain
@@ -285,7 +285,7 @@ def test_walls_hide_and_furniture_does_not():
 
 
 def journal(model, kind):
-    return [event.data for event in model.journal if event.kind == kind]
+    return [entry for entry in model.journal if entry.kind == kind]
 
 
 def heard(person, position, support="Fridge|1", ticks=300, traits=TRAITS, thing="apple"):
@@ -306,13 +306,13 @@ def heard(person, position, support="Fridge|1", ticks=300, traits=TRAITS, thing=
 def test_every_answer_is_in_the_journal():
     model, _, answered = heard(0, Flat("Fridge|1").apple, ticks=150)
     (entry,) = journal(model, "offer")
-    assert entry["message"] == 0
-    assert entry["words"] == 12
-    assert entry["answer"] == ("accept" if answered and answered[0][1].accept else entry["answer"])
-    assert entry["useful"]
-    assert entry["relevant"]
-    assert entry["gain"] > 0.0
-    assert 0.5 < entry["read_s"] < 15.0
+    assert entry.message == 0
+    assert entry.words == 12
+    assert entry.answer == ("accept" if answered and answered[0][1].accept else entry.answer)
+    assert entry.useful
+    assert entry.relevant
+    assert entry.gain > 0.0
+    assert 0.5 < entry.read_s < 15.0
 
 
 def test_what_one_sees_oneself_may_still_be_accepted():
@@ -328,10 +328,10 @@ def test_what_one_sees_oneself_may_still_be_accepted():
         play(model, flat, ticks=80, say=lambda tick, flat=flat: (message(0, flat.apple),))
         entries = journal(model, "offer")
         if entries and not flat.held:
-            assert not entries[0]["useful"]
-            assert entries[0]["load"] == 1.0
-            assert entries[0]["gain"] == 0.0
-            assert entries[0]["answer"] == "accept"
+            assert not entries[0].useful
+            assert entries[0].load == 1.0
+            assert entries[0].gain == 0.0
+            assert entries[0].answer == "accept"
             return
     raise AssertionError("nobody was asked on the way")
 
@@ -343,7 +343,7 @@ def test_words_that_name_neither_a_thing_nor_a_place_are_about_nothing():
     for name, place, relevant in (("", None, False), ("", (9.0, 2.5, 0.6), True), ("apple", None, True)):
         model, _, _ = heard(0, place, ticks=150, traits=willing, thing=name)
         (entry,) = journal(model, "offer")
-        assert (entry["relevant"], entry["answer"] == "accept") == (relevant, relevant), name
+        assert (entry.relevant, entry.answer == "accept") == (relevant, relevant), name
         assert (model._dialogue.experience.helped is not None) == relevant, "it earns no trust"
 
 
@@ -359,8 +359,8 @@ def test_a_place_without_a_name_matters_only_while_something_is_missing():
         play(model, flat, ticks=80, say=lambda tick: (message(0, (9.0, 2.5, 0.6), ""),))
         entries = journal(model, "offer")
         if entries and not flat.held:
-            assert not entries[0]["relevant"]
-            assert entries[0]["answer"] != "accept"
+            assert not entries[0].relevant
+            assert entries[0].answer != "accept"
             return
     raise AssertionError("nobody was asked on the way")
 

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 from itertools import pairwise
+from typing import Any
 
 import pytest
+from event_fakes import fields
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -18,17 +20,18 @@ from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner import trial_runner
 from hthor.humans.core.behaviour_log import BehaviourRecorder
 from hthor.tasks.suite import make_suite
-from hthor.types import HUMAN, Event, Move, Rotate, Wait
+from hthor.types import HUMAN, Move, Rotate, Wait
+from hthor.types.events import Attempt, Event, JournalEntry, Picked
 from hthor.world.model.bodies.avatar import HUMAN as BODY
 
 STEP_M = BODY.speed * rules.TICK_S
 
 
 def recorder() -> BehaviourRecorder:
-    return BehaviourRecorder(BODY, rules.TICK_S)
+    return BehaviourRecorder(HUMAN, BODY, rules.TICK_S)
 
 
-def entries(made: BehaviourRecorder, *own: Event, events: tuple[Event, ...] = ()) -> dict[str, Event]:
+def entries(made: BehaviourRecorder, *own: JournalEntry, events: tuple[Event, ...] = ()) -> dict[str, Any]:
     return {event.kind: event for event in made.journal(own, events)}
 
 
@@ -38,9 +41,9 @@ def test_stick_unfolds_to_what_was_pushed(shares: list[float]) -> None:
     made = recorder()
     for tick, share in enumerate(shares):
         made.motion(tick, Move(forward=share * STEP_M))
-    runs = entries(made)["stick"].data["runs"]
+    runs = entries(made)["stick"].runs
     at, value = runs[::2], runs[1::2]
-    assert at == sorted(at)
+    assert list(at) == sorted(at)
     assert all(a != b for a, b in pairwise(value)), "a run that does not change is one run"
     held = [max((t, v) for t, v in zip(at, value, strict=True) if t <= tick)[1] for tick in range(len(shares))]
     assert held == pytest.approx([1000 * share for share in shares], abs=0.51)
@@ -52,37 +55,37 @@ def test_a_long_move_is_the_stick_pushed_all_the_way_and_other_motions_are_none(
     made.motion(8, Rotate(yaw=1.0))
     made.motion(9, Move(forward=math.nan))
     made.motion(12, Wait(seconds=1.0))
-    assert entries(made)["stick"].data == {"full": BODY.speed, "runs": [0, 0, 3, 1000, 8, 0]}
+    assert fields(entries(made)["stick"]) == {"full": BODY.speed, "runs": (0, 0, 3, 1000, 8, 0)}
 
 
 def test_pitch_is_written_when_it_changes() -> None:
     made = recorder()
     for tick, pitch in ((0, 0.0), (2, -0.2504), (4, -0.25), (6, 0.1)):
         made.head(tick, pitch)
-    assert entries(made)["head"].data["pitch"] == [0, 0, 2, -250, 6, 100]
+    assert entries(made)["head"].pitch == (0, 0, 2, -250, 6, 100)
 
 
-def attempt(tick: int, what: str = "pick", **data: object) -> Event:
-    return Event(tick=tick, seat=HUMAN, kind="attempt", data={"what": what, **data})
+def attempt(tick: int, what: str = "pick", **data: Any) -> Attempt:
+    return Attempt(tick=tick, seat=HUMAN, what=what, **data)
 
 
 def test_an_attempt_that_worked_while_nobody_wrote_it_down_gets_its_end() -> None:
-    picked = Event(tick=31, seat=HUMAN, kind="picked", data={"object": "mug"})
-    theirs = Event(tick=20, seat="robot", kind="picked", data={"object": "mug"})
+    picked = Picked(tick=31, seat=HUMAN, object="mug")
+    theirs = Picked(tick=20, seat="robot", object="mug")
     *_, one = recorder().journal([attempt(10)], [theirs, picked])
-    assert one.data == {"what": "pick", "seconds": 2.1, "ok": True}
+    assert fields(one) == {"what": "pick", "seconds": 2.1, "ok": True}
 
 
 def test_an_attempt_that_was_given_up_does_not_get_the_end_of_a_later_one() -> None:
-    picked = Event(tick=60, seat=HUMAN, kind="picked", data={"object": "mug"})
+    picked = Picked(tick=60, seat=HUMAN, object="mug")
     *_, first, second = recorder().journal([attempt(10), attempt(40)], [picked])
-    assert first.data == {"what": "pick"}
-    assert second.data["ok"]
+    assert fields(first) == {"what": "pick"}
+    assert second.ok is True
 
 
 def test_what_was_written_down_stands() -> None:
     written = attempt(10, seconds=1.5, ok=False, why="missed")
-    *_, one = recorder().journal([written], [Event(tick=11, seat=HUMAN, kind="picked")])
+    *_, one = recorder().journal([written], [Picked(tick=11, seat=HUMAN, object="mug")])
     assert one == written
 
 

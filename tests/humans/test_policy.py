@@ -144,10 +144,10 @@ def test_listening_to_the_mind_changes_nothing_and_tells_every_choice():
     told = [event for event in heard if event.kind == "choice"]
     assert len(told) == sum(event.kind == "choice" for event in model.journal) > 0
     for event in told:
-        assert event.data["chosen"] in event.data["options"]
-        assert event.data["values"] == sorted(event.data["values"], reverse=True)
+        assert event.chosen in event.options
+        assert list(event.values) == sorted(event.values, reverse=True)
     assert {event.kind for event in heard} >= {"beliefs", "choice"}
-    assert all(place["belief"] <= 1.0 for event in heard if event.kind == "beliefs" for place in event.data["places"])
+    assert all(place.belief <= 1.0 for event in heard if event.kind == "beliefs" for place in event.places)
 
 
 # --------------------------------------------------------------------------------------------------------- the journal
@@ -159,18 +159,18 @@ def test_the_journal_holds_what_the_law_made_of_each_option():
     heard = []
     model, _, _ = played(listener=heard.append)
     traits = model._human.traits
-    choices = [event.data for event in model.journal if event.kind == "choice"]
-    told = [event.data for event in heard if event.kind == "choice"]
+    choices = [entry for entry in model.journal if entry.kind == "choice"]
+    told = [event for event in heard if event.kind == "choice"]
     assert len(choices) >= 2
     for choice, mind in zip(choices, told, strict=True):
         values = []
-        for knowledge, uniform, metres, exposure, closed, is_door in choice["options"]:
+        for knowledge, uniform, metres, exposure, closed, is_door in choice.options:
             belief = traits.w_prior * knowledge + (1 - traits.w_prior) * uniform
             seconds = metres / traits.v_pace + (2.0 if is_door else traits.t_dwell + 1.0 + closed * traits.t_manip)
             values.append(belief * math.exp(-exposure) / seconds**traits.kappa)
-        assert sorted(values, reverse=True) == pytest.approx(mind["values"], rel=0.02, abs=1e-5)
-        assert values[choice["chosen"]] == pytest.approx(
-            dict(zip(mind["options"], mind["values"], strict=True))[mind["chosen"]], rel=0.02
+        assert sorted(values, reverse=True) == pytest.approx(mind.values, rel=0.02, abs=1e-5)
+        assert values[choice.chosen] == pytest.approx(
+            dict(zip(mind.options, mind.values, strict=True))[mind.chosen], rel=0.02
         )
 
 
@@ -199,7 +199,7 @@ def test_of_many_options_chance_keeps_some_all_as_likely():
     counts: Counter[int] = Counter()
     for root in range(1500):
         kept = crowded(root, 7)
-        metres = [row[2] for row in kept["options"]]
+        metres = [row[2] for row in kept.options]
         assert len(metres) == option_description.MAX_RECORDED
         assert metres == sorted(metres)
         assert metres[kept["chosen"]] == 7.0
@@ -499,16 +499,14 @@ def test_a_clone_chooses_as_often_as_its_weights_say():
 def test_what_the_journal_has_and_what_a_policy_is_told_are_the_same_numbers():
     policy = Recording()
     model, _, _ = played(policy, messages=True)
-    choices = [event.data for event in model.journal if event.kind == "choice"]
+    choices = [entry for entry in model.journal if entry.kind == "choice"]
     for told, kept in zip([one for one in policy.situations if one.aim == "target"], choices, strict=True):
         rows = [cloned_person.row(choice) for choice in told.options]
-        for row, logged in zip(rows, kept["options"], strict=True):
+        for row, logged in zip(rows, kept.options, strict=True):
             assert row == pytest.approx(logged, abs=0.006)
-    offers = [event.data for event in model.journal if event.kind == "offer"]
+    offers = [entry for entry in model.journal if entry.kind == "offer"]
     assert len(offers) == len(policy.offers) == 1
-    assert cloned_person.reasons(offers[0]) == pytest.approx(
-        cloned_person.reasons(cloned_person.as_recorded(policy.offers[0])), abs=0.01
-    )
+    assert cloned_person.reasons(offers[0]) == pytest.approx(cloned_person.reasons(policy.offers[0]), abs=0.01)
 
 
 def test_the_clone_that_ships_is_better_than_chance_on_people_it_never_saw():

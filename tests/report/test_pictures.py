@@ -20,7 +20,8 @@ from hthor.eval.records import trial_record
 from hthor.report.drawing import floor_plan, lettering, trial_figure, trial_trace, trial_video
 from hthor.report.html import matplotlib_svg
 from hthor.report.page.figures import trial_map
-from hthor.types import AgentRef, Event, HumanSeat, RobotSeat, TrialSpec
+from hthor.types import AgentRef, HumanSeat, RobotSeat, TrialSpec
+from hthor.types.events import Accepted, Declined, Picked, Placed, Sent, Success
 
 TASK = next(task for task in tasks.load_suite("smoke").tasks if task.kind == "mobile_manipulation")
 
@@ -45,13 +46,13 @@ def spec() -> TrialSpec:
 def log() -> EpisodeLog:
     claim = [round(part, 3) for part in TASK.objects[0].position]
     events = [
-        Event(tick=40, seat="robot", kind="sent", data={"message": 0, "text": "Here.", "position": claim}),
-        Event(tick=60, seat="human", kind="declined", data={"message": 0}),
-        Event(tick=80, seat="robot", kind="sent", data={"message": 1, "text": "Here!", "position": None}),
-        Event(tick=95, seat="human", kind="accepted", data={"message": 1}),
-        Event(tick=120, seat="human", kind="picked", data={"object": TASK.goal.target}),
-        Event(tick=140, seat="human", kind="placed", data={"object": TASK.goal.target, "on": "x"}),
-        Event(tick=141, seat="human", kind="success"),
+        Sent(tick=40, seat="robot", message=0, text="Here.", position=claim),
+        Declined(tick=60, seat="human", message=0, sender="robot"),
+        Sent(tick=80, seat="robot", message=1, text="Here!"),
+        Accepted(tick=95, seat="human", message=1, sender="robot"),
+        Picked(tick=120, seat="human", object=TASK.goal.target),
+        Placed(tick=140, seat="human", object=TASK.goal.target, on="x"),
+        Success(tick=141, seat="human"),
     ]
     walk = [(1000 + 20 * step, 2000 + 10 * step, 400) for step in range(71)]
     paths = {"human": walk, "robot": [(x + 500, y, yaw) for x, y, yaw in walk]}
@@ -96,10 +97,7 @@ HOSTILE = r"$\frac{1}{$ <b>x</b> & a_b^2 $x$ 😀 \u202e"
 @pytest.fixture
 def failed(log: EpisodeLog) -> EpisodeLog:
     """The robot's agent failed after 3.3 s; before, it sent a message at every tick that no formula is."""
-    sent = [
-        Event(tick=n, seat="robot", kind="sent", data={"message": n, "text": HOSTILE, "position": (1.0, 2.0, 0.5)})
-        for n in range(30)
-    ]
+    sent = [Sent(tick=n, seat="robot", message=n, text=HOSTILE, position=(1.0, 2.0, 0.5)) for n in range(30)]
     fault = Fault(seat="robot", kind="raised", tick=33, detail=HOSTILE)
     return msgspec.structs.replace(log, events=(*sent, *log.events[-4:]), faults=(fault,))
 

@@ -36,7 +36,8 @@ from hthor.humans.population.population import Population, Validity
 from hthor.humans.population.resolve import ParticipantSource
 from hthor.tasks import Suite
 from hthor.tasks.suite import make_suite
-from hthor.types import AgentRef, Event, Goal, Placement, Pose, TaskSpec, TrialSpec
+from hthor.types import AgentRef, Goal, Placement, Pose, TaskSpec, TrialSpec
+from hthor.types.events import Accepted, Sent, Success, Timeout
 
 HOUSES = ("attic", "barn", "cottage")
 
@@ -116,13 +117,13 @@ def episode(trial: TrialSpec, memory: int = 0) -> EpisodeLog:
     for robot in trial.robots:
         paths[robot.seat] = [(0, 0, i) for i in range(ticks // 2)]
     if trial.robots:
-        claim = [seeds.draw(trial.seed, "claim", *names), 1.0 / 3.0, 0.5]
-        events.append(Event(tick=40, seat="robot", kind="sent", data={"message": 0, "text": "here", "position": claim}))
+        claim = (seeds.draw(trial.seed, "claim", *names), 1.0 / 3.0, 0.5)
+        events.append(Sent(tick=40, seat="robot", message=0, text="here", position=claim))
         if seeds.draw(trial.seed, "accepts", *names) < 0.6:
-            events.append(Event(tick=60, seat="human", kind="accepted", data={"message": 0, "sender": "robot"}))
+            events.append(Accepted(tick=60, seat="human", message=0, sender="robot"))
         if trial.robots[0].agent.name == "clumsy" and trial.index == 3:
             faults = (Fault(seat="robot", kind="raised", tick=70, detail="Traceback\n  ...\nValueError: no"),)
-    events.append(Event(tick=ticks, seat="human", kind="success" if met else "timeout"))
+    events.append((Success if met else Timeout)(tick=ticks, seat="human"))
     return EpisodeLog(
         events=tuple(events),
         paths=paths,
@@ -163,7 +164,7 @@ def leaning_player(sources: Sources | None = None) -> Callable[[Session], Iterat
             log = episode(trial)
             ticks = 300 if met else 900
             paths = {seat: path[:1] * (ticks // 2) for seat, path in log.paths.items()}
-            last = Event(tick=ticks, seat="human", kind="success" if met else "timeout")
+            last = (Success if met else Timeout)(tick=ticks, seat="human")
             events = (*(event for event in log.events[:-1] if event.tick < ticks), last)
             yield outcome(trial, msgspec.structs.replace(log, met=met, ticks=ticks, paths=paths, events=events))
 

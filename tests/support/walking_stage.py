@@ -8,21 +8,8 @@ from typing import Any
 from episode_fakes import Mind, Stage
 
 from hthor import seeds
-from hthor.types import (
-    HUMAN,
-    Action,
-    Drive,
-    Event,
-    Motion,
-    Move,
-    Observation,
-    Outcome,
-    Pose,
-    Reply,
-    Send,
-    Snapshot,
-    Wait,
-)
+from hthor.types import HUMAN, Action, Drive, Motion, Move, Observation, Outcome, Pose, Reply, Send, Snapshot, Wait
+from hthor.types.events import Blocked, Event
 
 SEATS = (HUMAN, "human2", "robot", "robot2")
 TICK_S = 0.1
@@ -76,7 +63,7 @@ class WalkingStage(Stage):
             self.motion[seat] = (motion, left - 1) if left > 1 else None
             if left == 1:
                 self.last[seat] = Outcome(motion="move", ok=True)
-                events.append(Event(tick=self.tick, seat=seat, kind="blocked", data={"by": "wall"}))
+                events.append(Blocked(tick=self.tick, seat=seat, by="wall"))
         return tuple(events)
 
     def outcome(self, seat: str) -> Outcome | None:

@@ -7,6 +7,7 @@ import math
 import msgspec
 import pytest
 import world_house as tiny
+from event_fakes import fields
 from world_house import COFFEE, COUNTER, FRIDGE, TABLE, do, on, reason, task, wait
 
 from hthor import catalog
@@ -41,7 +42,7 @@ def state(world: World, id: str):
 def test_pick_carry_place_conserves_the_object(world: World) -> None:
     before = [thing.id for thing in world.truth()]
     events = do(world, "human", Pick(object="apple"))
-    assert [(event.kind, event.data) for event in events] == [("picked", {"object": "apple"})]
+    assert [(event.kind, fields(event)) for event in events] == [("picked", {"object": "apple"})]
     assert world.tick == 5  # half a second of handling
     assert world.holding("human") == "apple" == world.snapshot().holding["human"]
     assert state(world, "apple").held_by == "human"
@@ -55,7 +56,7 @@ def test_pick_carry_place_conserves_the_object(world: World) -> None:
     do(world, "human", Rotate(yaw=math.pi / 2))
     events = do(world, "human", Place(on=TABLE, position=(2.2, 2.8, 0.7)))
     assert events[-1].kind == "placed"
-    assert events[-1].data["on"] == TABLE
+    assert events[-1].on == TABLE
     assert state(world, "apple").support == TABLE
     wait(world, 50)
     apple = state(world, "apple")
@@ -113,7 +114,7 @@ def test_a_closed_fridge_keeps_its_things_until_it_is_opened(world: World) -> No
     world.teleport("human", AT_FRIDGE)
     assert reason(world, "human", Pick(object="tomato")) == "tomato is out of sight"
     events = do(world, "human", Open(thing=FRIDGE))
-    assert [(event.kind, event.data) for event in events] == [("opened", {"thing": FRIDGE})]
+    assert [(event.kind, fields(event)) for event in events] == [("opened", {"thing": FRIDGE})]
     assert state(world, FRIDGE).open
     assert reason(world, "human", Open(thing=FRIDGE)) == f"{FRIDGE} is already open"
     assert reason(world, "human", Pick(object="tomato")) == ""

@@ -14,6 +14,7 @@ import msgspec
 import numpy as np
 import pytest
 import world_house as tiny
+from event_fakes import fields
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from world_house import COFFEE, COUNTER, FRIDGE, TABLE, do, reason, task, wait
@@ -230,7 +231,7 @@ def test_dropping_falls_settles_and_collides_again() -> None:
     do(one, "human", Pick(object="my book"))
     assert "robot cannot drop" not in reason(one, "robot", Drop())
     events = do(one, "human", Drop())
-    assert [(event.kind, event.data) for event in events] == [("dropped", {"object": "my book"})]
+    assert [(event.kind, fields(event)) for event in events] == [("dropped", {"object": "my book"})]
     assert one.holding("human") == ""
     wait(one, 60)
     assert one.still

@@ -6,11 +6,13 @@ import math
 
 import pytest
 import world_house as tiny
+from event_fakes import fields
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from world_house import do, on, reason, task, wait
 
-from hthor.types import Event, Move, Outcome, Pose, Rotate, Wait
+from hthor.types import Move, Outcome, Pose, Rotate, Wait
+from hthor.types.events import Refused
 from hthor.world import World
 
 
@@ -74,13 +76,13 @@ def test_impossible_motions_are_refused_with_a_reason(world: World, motion, expe
 def test_a_refusal_is_an_event(world: World) -> None:
     events = do(world, "human", Move(forward=0.8))
     verb, why = "move", "move is 0.80 m long; at most 0.50 m"
-    assert events == [Event(tick=0, seat="human", kind="refused", data={"motion": verb, "reason": why})]
+    assert events == [Refused(tick=0, seat="human", motion=verb, reason=why)]
 
 
 def test_furniture_and_walls_block_and_are_named(world: World) -> None:
     world.teleport("human", Pose(x=4.0, y=1.1, yaw=-math.pi / 2))
     events = do(world, "human", Move(forward=0.5))
-    assert (events[-1].kind, events[-1].data) == ("blocked", {"by": "counter_top|1"})
+    assert (events[-1].kind, fields(events[-1])) == ("blocked", {"by": "counter_top|1"})
     assert world.outcome("human") == Outcome(motion="move", ok=False, reason="blocked", by="counter_top|1")
     world.teleport("human", Pose(x=4.6, y=3.0))
     do(world, "human", Move(forward=0.5))
@@ -100,7 +102,7 @@ def test_bodies_block_each_other_and_may_part(world: World) -> None:
     world.teleport("human", Pose(x=6.0, y=2.5))
     world.teleport("robot", Pose(x=6.6, y=2.5, yaw=math.pi))
     events = do(world, "human", Move(forward=0.5))
-    assert [(event.seat, event.kind, event.data) for event in events] == [("human", "in_way", {"by": "robot"})]
+    assert [(event.seat, event.kind, fields(event)) for event in events] == [("human", "in_way", {"by": "robot"})]
     outcome = Outcome(motion="move", ok=False, reason="robot is in the way", by="robot")
     assert world.outcome("human") == outcome
     world._seats["robot"].pose = Pose(x=6.25, y=2.5)  # inside the person's disc

@@ -9,6 +9,7 @@ import msgspec
 import numpy as np
 import pytest
 import world_house as tiny
+from event_fakes import fields
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from world_house import do, reason, wait
@@ -95,7 +96,7 @@ def test_a_trunk_is_too_heavy_for_anybody_alone_and_not_for_two() -> None:
 
 def test_one_holds_on_two_lift(world: World) -> None:
     events = do(world, "human", Pick(object="trunk"))
-    assert [(event.kind, event.data) for event in events] == [("held", {"object": "trunk"})]
+    assert [(event.kind, fields(event)) for event in events] == [("held", {"object": "trunk"})]
     assert world.holding("human") == "trunk"
     assert (state(world).bearers, state(world).held_by) == (("human",), "")
     assert state(world).position[2] == pytest.approx(0.2, abs=0.01)
@@ -107,7 +108,7 @@ def test_one_holds_on_two_lift(world: World) -> None:
         world.remove_object("trunk")
     events = do(world, "robot", Pick(object="trunk"))
     assert [event.kind for event in events] == ["held", "lifted"]
-    assert events[-1].data == {"object": "trunk", "bearers": ["human", "robot"]}
+    assert fields(events[-1]) == {"object": "trunk", "bearers": ["human", "robot"]}
     assert (state(world).bearers, state(world).held_by) == (("human", "robot"), "human")
     assert state(world).position[2] == pytest.approx(0.5)
     assert world.snapshot().holding["robot"] == "trunk"
@@ -144,7 +145,7 @@ def test_who_cannot_take_hold_is_told_why(world: World) -> None:
 def test_letting_go_before_it_is_up_frees_one_hand_only(world: World) -> None:
     do(world, "human", Pick(object="trunk"))
     events = do(world, "human", Drop())
-    assert [(event.kind, event.data) for event in events] == [("released", {"object": "trunk"})]
+    assert [(event.kind, fields(event)) for event in events] == [("released", {"object": "trunk"})]
     assert (state(world).bearers, world.holding("human")) == ((), "")
     lift(world)
 
@@ -153,7 +154,7 @@ def test_letting_go_before_it_is_up_frees_one_hand_only(world: World) -> None:
 def test_whoever_lets_go_puts_it_down_for_both(world: World, way: Any) -> None:
     lift(world)
     events = do(world, "robot", way)
-    assert [(event.kind, event.data["bearers"]) for event in events] == [("lowered", ["human", "robot"])]
+    assert [(event.kind, event.bearers) for event in events] == [("lowered", ["human", "robot"])]
     assert (world.holding("human"), world.holding("robot"), state(world).bearers) == ("", "", ())
     wait(world, 20)
     before = state(world).position

@@ -82,7 +82,12 @@ def make_record(spec: TrialSpec, log: EpisodeLog) -> TrialRecord:
 
 def encode(record: TrialRecord) -> bytes:
     """The record's line, with its checksum as the last field and a newline."""
-    body = _encoder.encode(record)[:-1]
+    return sealed(_encoder.encode(record))
+
+
+def sealed(document: bytes) -> bytes:
+    """A JSON object as a line: with its checksum as the last field and a newline."""
+    body = document[:-1]
     return body + _CHECK % zlib.crc32(body)
 
 

@@ -133,7 +133,7 @@ def played(robots: str, count: int = 1, config: GuestConfig | None = None) -> li
 
 
 def said(record_: TrialRecord, seat: str) -> list[str]:
-    return [event.data["text"] for event in record_.events if event.kind == "sent" and event.seat == seat]
+    return [event.text for event in record_.events if event.kind == "sent" and event.seat == seat]
 
 
 @pytest.mark.slow

@@ -5,8 +5,10 @@ from __future__ import annotations
 import eval_fakes as fakes
 import msgspec
 import pytest
+from event_fakes import make_event
 from hypothesis import given
 from hypothesis import strategies as st
+from msgspec import UNSET
 
 from hthor.comms import claims
 from hthor.episode import EpisodeLog
@@ -15,21 +17,8 @@ from hthor.eval.metrics.definitions import contribution, interference
 from hthor.eval.metrics.metric import Trial
 from hthor.eval.records.trial_record import make_record
 from hthor.eval.results import aggregate
-from hthor.types import (
-    HUMAN,
-    Event,
-    Goal,
-    HouseSpec,
-    HumanSeat,
-    Job,
-    Placement,
-    Pose,
-    Room,
-    Send,
-    Snapshot,
-    Thing,
-    ThingState,
-)
+from hthor.types import HUMAN, Goal, HouseSpec, HumanSeat, Job, Placement, Pose, Room, Snapshot, Thing, ThingState
+from hthor.types.events import LogEntry, Sent
 
 TRIAL = fakes.run_of(10, name="tall+small")[1][0].trials[0]
 ALONE = fakes.run_of(10, absent=True)[1][0].trials[0]
@@ -51,7 +40,7 @@ def log(*events: tuple, ticks: int = 900, met: bool = False, progress: float | N
     """A log of (tick, seat, kind, data) in which nobody moves unless ``paths`` says so."""
     still = [(0, 0, 0)] * (ticks // 2 + 1)
     known = {"paths": dict.fromkeys((HUMAN, "robot", "robot2"), still), "ratings": {HUMAN: 4}, "faults": (), **more}
-    made = tuple(Event(tick=tick, seat=seat, kind=kind, data=data) for tick, seat, kind, data in events)
+    made = tuple(make_event(tick, seat, kind, **data) for tick, seat, kind, data in events)
     return EpisodeLog(events=made, ticks=ticks, met=met, progress=progress, **known)
 
 
@@ -247,24 +236,24 @@ NOW = Snapshot(tick=5, poses={HUMAN: Pose(x=2.0, y=2.0)}, things={"apple_2": APP
 @pytest.mark.parametrize(
     ("name", "position", "off"),
     [
-        ("apple_2", (1.0, 1.0, 0.4), {"off": 0.5}),
-        ("apple", (1.0, 4.0, 0.9), {"off": 3.0}),
-        ("table", (2.1, 1.0, 0.8), {"off": 0.0}),
-        ("dining_table", (0.0, 1.0, 0.8), {"off": 2.0}),
-        ("r1", (1.0, 1.0, 0.0), {"off": 0.0}),
-        ("kitchen", (6.0, 1.0, 0.0), {"off": 2.0}),
-        (HUMAN, (2.0, 3.0, 1.5), {"off": 1.0}),
-        ("unicorn", (0.0, 0.0, 0.0), {"off": None}),
-        ("unicorn", None, {"off": None}),
-        ("apple_2", None, {}),
-        ("", (1.0, 1.0, 1.0), {}),
-        (5, (1.0, 1.0, 1.0), {}),
+        ("apple_2", (1.0, 1.0, 0.4), 0.5),
+        ("apple", (1.0, 4.0, 0.9), 3.0),
+        ("table", (2.1, 1.0, 0.8), 0.0),
+        ("dining_table", (0.0, 1.0, 0.8), 2.0),
+        ("r1", (1.0, 1.0, 0.0), 0.0),
+        ("kitchen", (6.0, 1.0, 0.0), 2.0),
+        (HUMAN, (2.0, 3.0, 1.5), 1.0),
+        ("unicorn", (0.0, 0.0, 0.0), None),
+        ("unicorn", None, None),
+        ("apple_2", None, UNSET),
+        ("", (1.0, 1.0, 1.0), UNSET),
     ],
 )
 def test_how_far_a_claim_is_off(name, position, off):
-    found = claims.claim_error(Send(text="", object=name, position=position), position, NOW, HOME)
+    found = claims.claim_error(name, position, NOW, HOME)
     assert found == off
-    assert claims.is_false(found) == (off.get("off", 0.0) is None or off.get("off", 0.0) > 1.0)
+    sent = Sent(tick=0, seat="robot", message=0, text="", off=found)
+    assert claims.is_false(sent) == (off is None or (off is not UNSET and off > 1.0))
 
 
 # ----------------------------------------------------------------------------------------------------------- all of it
@@ -331,7 +320,7 @@ def test_what_a_robot_says_of_bodies_is_no_claim_that_counts():
 
 def test_usefulness_is_of_the_confirmed_what_was_true_and_new():
     def offer(number, useful):
-        return Event(tick=1, seat=HUMAN, kind="offer", data={"message": number, "useful": useful})
+        return make_event(1, HUMAN, "offer", message=number, useful=useful)
 
     rows = [
         (100, "robot", "sent", {"message": 0, "object": "apple", "off": 3.0}),  # false
@@ -372,9 +361,9 @@ def shared(*events: tuple, journal: tuple[Event, ...] = (), **more) -> EpisodeLo
 def mirrored(made: EpisodeLog) -> EpisodeLog:
     """The log as it would be if the two people had each other's seats."""
 
-    def event(one: Event) -> Event:
-        data = {name: MIRROR.get(value, value) if isinstance(value, str) else value for name, value in one.data.items()}
-        return msgspec.structs.replace(one, seat=MIRROR.get(one.seat, one.seat), data=data)
+    def event(one: LogEntry) -> LogEntry:
+        texts = {name: value for name, value in msgspec.structs.asdict(one).items() if isinstance(value, str)}
+        return msgspec.structs.replace(one, **{name: MIRROR.get(value, value) for name, value in texts.items()})
 
     changed = {
         name: {MIRROR.get(seat, seat): value for seat, value in getattr(made, name).items()}
@@ -410,7 +399,7 @@ HINDERED = (
     (500, SECOND, "in_way", {"by": "robot2"}),
     (580, SECOND, "in_way", {"by": "robot"}),
 )
-NEW = (Event(tick=20, seat=HUMAN, kind="offer", data={"message": 0, "useful": True}),)
+NEW = (make_event(20, HUMAN, "offer", message=0),)
 
 
 def test_a_message_to_several_people_counts_once_with_its_best_end():

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from pathlib import Path
+
 import eval_fakes as fakes
 import msgspec
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hthor.eval.records import trial_record
-from hthor.types import Event
+from hthor import activity, jsonio
+from hthor.errors import RunError
+from hthor.eval.records import trial_log, trial_record
+from hthor.log_format import SCHEMA
+from hthor.types.events import Note, Sent
 
 
 def _trial(index: int = 0, seed: int = 0):
@@ -77,12 +83,22 @@ def test_floats_in_events_are_rounded_once(value: float, text: str):
     trial = _trial()
     log = msgspec.structs.replace(
         fakes.episode(trial),
-        events=(Event(tick=1, seat="robot", kind="sent", data={"message": 0, "text": "", "p": (value, text)}),),
+        events=(Sent(tick=1, seat="robot", message=0, text="", position=(value, 0.0, -0.0)),),
+        journal=(Note(tick=1, seat="human", topic=text, values={"value": value, "text": text, "is": True}),),
     )
     line = trial_record.encode(trial_record.make_record(trial, log))
     back = trial_record.decode(line)
-    assert back.events[0].data["p"][0] == pytest.approx(value, abs=1e-4)
+    assert back.events[0].position[0] == pytest.approx(value, abs=1e-4)
+    assert back.journal[0].values == {"value": pytest.approx(value, abs=1e-4), "text": text, "is": True}
     assert trial_record.encode(trial_record.make_record(trial, back.log)) == line
+
+
+def _with_events(*more: dict[str, object], schema: str = SCHEMA) -> bytes:
+    """A line with the right checksum and key that has these events too."""
+    whole = msgspec.json.decode(_LINE) | {"schema": schema}
+    del whole["check"]
+    whole["events"] += more
+    return trial_record.sealed(msgspec.json.encode(whole))
 
 
 @pytest.mark.parametrize(
@@ -91,15 +107,67 @@ def test_floats_in_events_are_rounded_once(value: float, text: str):
         ("sent", {"message": 0, "text": "here", "off": [1.0]}, "off"),
         ("sent", {"message": [], "text": "here"}, "message"),
         ("sent", {"text": "here"}, "message"),
-        ("accepted", {}, "message"),
+        ("sent", {"message": 0, "text": "here", "position": [1.0, 2.0, "up"]}, "position[2]"),
+        ("accepted", {"sender": "robot"}, "message"),
         ("progress", {"value": "half"}, "value"),
-        ("placed", {"on": {}}, "on"),
+        ("placed", {"object": "mug", "on": {}}, "on"),
     ],
 )
-def test_what_is_scored_of_an_event_has_its_type(kind: str, data: dict[str, object], field: str):
-    """Such a line has the right checksum and key, and its record could not be scored or drawn."""
-    whole = trial_record.decode(_LINE)
-    bad = msgspec.structs.replace(whole, events=(*whole.events, Event(tick=1, seat="robot", kind=kind, data=data)))
-    with pytest.raises(trial_record.Damaged) as caught:
-        trial_record.decode(trial_record.encode(bad))
-    assert caught.value.field == f"events[{len(whole.events)}].data.{field}"
+def test_every_field_of_an_event_has_its_type(kind: str, data: dict[str, object], field: str):
+    event = {"tick": 1, "seat": "robot", "kind": kind, **data}
+    strange = {"tick": 1, "seat": "robot", "kind": "waved"}
+    number = len(trial_record.decode(_LINE).events)
+    for line in (_with_events(event), _with_events(strange, event)):
+        with pytest.raises(trial_record.Damaged) as caught:
+            trial_record.decode(line)
+        assert caught.value.field == f"events[{number}].{field}"
+        number += 1
+
+
+def test_events_of_a_later_version_are_left_out_and_counted():
+    whole, skipped = trial_record.decode(_LINE), Counter()
+    waved = {"tick": 1, "seat": "robot", "kind": "waved", "hands": 2}
+    line = _with_events(waved, {"kind": "bowed", "tick": 2, "seat": "human"}, waved, schema="hthor.trial/1.7")
+    back = trial_record.decode(line, skipped)
+    assert skipped == {"waved": 2, "bowed": 1}
+    assert back == msgspec.structs.replace(whole, schema="hthor.trial/1.7")
+
+
+def test_a_field_that_a_later_version_has_added_is_left_out():
+    line = msgspec.json.decode(_LINE)
+    del line["check"]
+    line["spec"]["weather"] = "fine"
+    line["key"] = jsonio.sha256(line["spec"])[:16]
+    back = trial_record.decode(trial_record.sealed(msgspec.json.encode(line)))
+    assert back.spec == trial_record.decode(_LINE).spec
+    assert back.key == line["key"]
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda line: line.update(schema="hthor.trial/2.0"), "schema is 'hthor.trial/2.0', this version reads"),
+        (lambda line: line.pop("schema"), "was written by an older version of hthor; 'hthor migrate"),
+    ],
+)
+def test_a_log_of_another_major_version_is_refused_in_one_sentence(change, words: str, tmp_path: Path):
+    line = msgspec.json.decode(_LINE)
+    change(line)
+    (tmp_path / "trials.jsonl").write_bytes(msgspec.json.encode(line) + b"\n")
+    with pytest.raises(RunError) as caught:
+        list(trial_log.read(tmp_path / "trials.jsonl"))
+    assert words in str(caught.value)
+    assert str(caught.value).count(". ") <= 1
+
+
+def test_a_log_says_once_which_events_were_left_out(tmp_path: Path):
+    line = _with_events({"tick": 1, "seat": "robot", "kind": "waved"})
+    (tmp_path / "trials.jsonl").write_bytes(line * 3)
+    with pytest.warns(UserWarning, match=r"has 3 events of kinds that .* \(3 waved\); they were left out") as told:
+        assert len(list(trial_log.read(tmp_path / "trials.jsonl"))) == 3
+    assert len(told) == 1
+    heard = []
+    with activity.read_by(heard.append):
+        for _ in range(2):
+            assert [one for one, _ in trial_log.read(tmp_path / "trials.jsonl")] == [line] * 3, "the bytes stay"
+    assert len(heard) == 1

@@ -19,7 +19,7 @@ from hthor.eval.records import trial_record
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.results import aggregate
 from hthor.eval.runner import progress, run
-from hthor.types import Event
+from hthor.types.events import Accepted, Declined, Event, Sent
 
 
 def _log(ticks: int, met: bool, events: tuple[Event, ...] = (), trust: int | None = 4) -> EpisodeLog:
@@ -27,11 +27,11 @@ def _log(ticks: int, met: bool, events: tuple[Event, ...] = (), trust: int | Non
 
 
 def _sent(message: int, seat: str = "robot") -> Event:
-    return Event(tick=1, seat=seat, kind="sent", data={"message": message, "text": "here"})
+    return Sent(tick=1, seat=seat, message=message, text="here")
 
 
-def _answer(message: int, kind: str = "accepted") -> Event:
-    return Event(tick=9, seat="human", kind=kind, data={"message": message, "sender": "robot"})
+def _answer(message: int, kind: type[Accepted | Declined] = Accepted) -> Event:
+    return kind(tick=9, seat="human", message=message, sender="robot")
 
 
 TRIALS = fakes.run_of(10)[1][0].trials
@@ -39,7 +39,7 @@ ALONE = fakes.run_of(10, absent=True)[1][0].trials
 GOLDEN = (
     # ticks, met, events, trust: what the trial is worth, with T* = 8 s + task number % 7
     (160, True, (_sent(0), _answer(0)), 6),
-    (900, False, (_sent(0), _sent(1), _answer(1, "declined")), 2),
+    (900, False, (_sent(0), _sent(1), _answer(1, Declined)), 2),
     (40, True, (), 4),
 )
 
@@ -82,7 +82,7 @@ def test_only_a_robots_confirmed_message_is_adopted():
     cases = (
         ((), 0),
         ((_sent(0),), 0),
-        ((_sent(0), _answer(0, "declined")), 0),
+        ((_sent(0), _answer(0, Declined)), 0),
         ((_sent(0), _answer(0)), 1),
         ((_sent(0), _sent(1, "robot2"), _answer(1)), 1),
         ((_sent(0, "human"), _answer(0)), 0),
