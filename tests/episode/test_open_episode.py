@@ -19,8 +19,9 @@ from hthor import tasks
 from hthor.episode import Charged, Concurrent, DecisionClock, Episode, EpisodeLog, play
 from hthor.errors import HthorError
 from hthor.humans.core.behaviour_log import INPUT_UNIT
-from hthor.types import HUMAN, SUBTICKS, Action, Drive, Event, Observation, Reply, Send, TrialSpec, Wait
+from hthor.types import HUMAN, SUBTICKS, Action, Drive, Observation, Reply, Send, TrialSpec, Wait
 from hthor.world import World
+from hthor.types.events import Event
 
 roots = st.integers(0, 10**6)
 
@@ -259,7 +260,7 @@ def test_a_trial_is_repeated_from_the_inputs_in_its_log(house: World, data: st.D
     points = st.tuples(st.integers(0, 85), st.integers(0, SUBTICKS - 1), numbers, numbers, numbers, numbers)
     given_inputs = sorted(data.draw(st.lists(points, min_size=3, max_size=12)), key=lambda point: point[:2])
     log = driven(house, [number for point in given_inputs for number in point], live=True)
-    (inputs,) = [event.data["runs"] for event in log.journal if event.kind == "inputs"]
+    (inputs,) = [list(entry.runs) for entry in log.journal if entry.kind == "inputs"]
     assert driven(house, inputs, live=True) == log
 
 

@@ -12,7 +12,8 @@ from hthor.episode import EpisodeLog, play
 from hthor.eval.config.sessions import make_sessions
 from hthor.eval.runner import trial_runner
 from hthor.tasks.suite import make_suite
-from hthor.types import Action, Briefing, Event, Observation, TrialSpec
+from hthor.types import Action, Briefing, Observation, TrialSpec
+from hthor.types.events import Event
 
 PERCEIVED = ("detections", "scan", "sighting")
 """What a headset's wearer has of the senses: what is in view and how much of it, and what stops a walker."""

@@ -12,7 +12,6 @@ from hthor.types import (
     AgentRef,
     BodySpec,
     Briefing,
-    Event,
     HumanSeat,
     Motion,
     Observation,
@@ -24,6 +23,7 @@ from hthor.types import (
     ThingState,
     TrialSpec,
 )
+from hthor.types.events import Event
 
 TASK = next(task for task in tasks.load_suite("smoke").tasks if task.kind == "object_goal_navigation")
 BODY = BodySpec(

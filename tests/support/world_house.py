@@ -6,7 +6,8 @@ import math
 from typing import Any
 
 from hthor import catalog
-from hthor.types import Event, Goal, HouseSpec, Motion, Opening, Placement, Pose, Room, TaskSpec, Thing, Vec3, Wall
+from hthor.types import Goal, HouseSpec, Motion, Opening, Placement, Pose, Room, TaskSpec, Thing, Vec3, Wall
+from hthor.types.events import Event
 from hthor.world import World
 
 KITCHEN = ((0.0, 0.0), (5.0, 0.0), (5.0, 4.0), (0.0, 4.0))

@@ -108,7 +108,7 @@ def test_one_holds_on_two_lift(world: World) -> None:
         world.remove_object("trunk")
     events = do(world, "robot", Pick(object="trunk"))
     assert [event.kind for event in events] == ["held", "lifted"]
-    assert fields(events[-1]) == {"object": "trunk", "bearers": ["human", "robot"]}
+    assert fields(events[-1]) == {"object": "trunk", "bearers": ("human", "robot")}
     assert (state(world).bearers, state(world).held_by) == (("human", "robot"), "human")
     assert state(world).position[2] == pytest.approx(0.5)
     assert world.snapshot().holding["robot"] == "trunk"
@@ -154,7 +154,7 @@ def test_letting_go_before_it_is_up_frees_one_hand_only(world: World) -> None:
 def test_whoever_lets_go_puts_it_down_for_both(world: World, way: Any) -> None:
     lift(world)
     events = do(world, "robot", way)
-    assert [(event.kind, event.bearers) for event in events] == [("lowered", ["human", "robot"])]
+    assert [(event.kind, event.bearers) for event in events] == [("lowered", ("human", "robot"))]
     assert (world.holding("human"), world.holding("robot"), state(world).bearers) == ("", "", ())
     wait(world, 20)
     before = state(world).position

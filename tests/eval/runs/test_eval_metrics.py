@@ -18,7 +18,7 @@ from hthor.eval.metrics.metric import Trial
 from hthor.eval.records.trial_record import make_record
 from hthor.eval.results import aggregate
 from hthor.types import HUMAN, Goal, HouseSpec, HumanSeat, Job, Placement, Pose, Room, Snapshot, Thing, ThingState
-from hthor.types.events import LogEntry, Sent
+from hthor.types.events import JournalEntry, LogEntry, Sent
 
 TRIAL = fakes.run_of(10, name="tall+small")[1][0].trials[0]
 ALONE = fakes.run_of(10, absent=True)[1][0].trials[0]
@@ -350,7 +350,7 @@ TWO = msgspec.structs.replace(
 MIRROR = {HUMAN: SECOND, SECOND: HUMAN}
 
 
-def shared(*events: tuple, journal: tuple[Event, ...] = (), **more) -> EpisodeLog:
+def shared(*events: tuple, journal: tuple[JournalEntry, ...] = (), **more) -> EpisodeLog:
     """A log of two people and two robots."""
     still = [(0, 0, 0)] * 451
     seats = (HUMAN, SECOND, "robot", "robot2")
