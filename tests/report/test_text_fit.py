@@ -122,7 +122,9 @@ def test_a_picture_and_a_case_have_their_words_whole(long_trial: TrialRecord) ->
     house, spec = houses.load("hazel"), long_trial.spec
     event = msgspec.structs.replace(
         next(one for one in long_trial.log.events if one.kind == "sent"),
-        data={"message": 0, "text": WIDE * 4, "position": None},
+        message=0,
+        text=WIDE * 4,
+        position=None,
     )
     others = [one for one in long_trial.log.events if one.kind != "sent"]
     fault = Fault(seat="robot", kind="raised", tick=33, detail="no")
@@ -223,10 +225,7 @@ document.body.append(out);
 def test_hundreds_of_messages_share_few_badges_that_do_not_touch(long_trial: TrialRecord) -> None:
     """Joining them pair by pair, again from the start after each, took minutes."""
     sent = next(one for one in long_trial.log.events if one.kind == "sent")
-    events = [
-        msgspec.structs.replace(sent, tick=n, data={"message": n, "text": "x", "position": (2.0, 2.0, 0.5)})
-        for n in range(900)
-    ]
+    events = [msgspec.structs.replace(sent, tick=n, message=n, text="x", position=(2.0, 2.0, 0.5)) for n in range(900)]
     log = msgspec.structs.replace(long_trial.log, events=tuple(events))
     marked = [(n + 1, event, (0.01 * n, 0.0)) for n, event in enumerate(events)]
     groups = trial_trace.group_messages(log, marked, 0.05, 0.2)
