@@ -20,8 +20,8 @@ from hthor.episode import Charged, Concurrent, DecisionClock, Episode, EpisodeLo
 from hthor.errors import HthorError
 from hthor.humans.core.behaviour_log import INPUT_UNIT
 from hthor.types import HUMAN, SUBTICKS, Action, Drive, Observation, Reply, Send, TrialSpec, Wait
-from hthor.world import World
 from hthor.types.events import Event
+from hthor.world import World
 
 roots = st.integers(0, 10**6)
 
