@@ -225,14 +225,12 @@ def find_action_fault(action: Action) -> tuple[str, str] | None:
         if part is None:
             continue
         for name in part.__struct_fields__:
-            value = getattr(part, name)
-            field = f"{type(part).__name__}.{name}"
-            values = value if isinstance(value, tuple) else (value,)
-            numbers = [number for number in values if isinstance(number, (float, int))]
-            if not all(math.isfinite(number) for number in numbers):
-                return "not_finite", f"{field} must be finite, got {value}"
-            if any(abs(number) > NUMBER_MAX for number in numbers):
-                return "garbage", f"{field} must lie within {NUMBER_MAX:g} of zero, got {value}"
+            value, field = getattr(part, name), f"{type(part).__name__}.{name}"
+            for number in value if isinstance(value, tuple) else (value,):
+                if isinstance(number, (float, int)) and not abs(number) <= NUMBER_MAX:
+                    if not math.isfinite(number):
+                        return "not_finite", f"{field} must be finite, got {value}"
+                    return "garbage", f"{field} must lie within {NUMBER_MAX:g} of zero, got {value}"
             if isinstance(value, str) and name != "text" and len(value) > NAME_MAX:
                 return "oversized", f"{field} has {len(value)} characters, at most {NAME_MAX} are taken"
     return None
