@@ -19,6 +19,7 @@ from tests.support.guest_agents import (
     HEAD,
     PROCESS_CHAINS,
     agent,
+    expect_gone,
     look,
     needs_bwrap,
     process_chain,
@@ -38,21 +39,7 @@ def test_a_process_killed_from_outside_is_told_as_such(level: str, size: int, tm
             with pytest.raises(GuestFault, match="killed by SIGKILL") as caught:
                 guest.act(look())
             assert caught.value.kind == KILLED
-            _expect_gone(line)
-
-
-def _expect_gone(pids: list[int]) -> None:
-    end = time.monotonic() + 10
-    while any(_alive(pid) for pid in pids) and time.monotonic() < end:
-        time.sleep(0.005)
-    assert not any(_alive(pid) for pid in pids)
-
-
-def _alive(pid: int) -> bool:
-    try:
-        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
-    except OSError:
-        return False
+            expect_gone(line)
 
 
 @pytest.mark.slow

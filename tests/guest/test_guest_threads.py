@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import subprocess
 import sys
 import threading
 import time
@@ -19,9 +20,10 @@ import pytest
 from hthor.guest import Guest, GuestConfig, GuestFault, GuestPool, TrialStopped
 from hthor.guest.process_tools import lasting_thread
 from hthor.types import Action, Detection, Scan, Send, Wait
-from tests.support.guest_agents import BRIEFING, HEAD, Sensors, agent, living, look
+from tests.support.guest_agents import BRIEFING, HEAD, Sensors, agent, expect_gone, living, look
 
 _T = TypeVar("_T")
+ROOT = Path(__file__).resolve().parents[2]
 LEVELS = ["L1", "L2", "L3"]
 SAYS_TICK = "return Action(motion=Wait(seconds=observation.tick + 1.0))"
 SLEEPS = "time.sleep(30.0 if observation.tick else 0.0)\n" + SAYS_TICK
@@ -116,6 +118,36 @@ class Frozen(Sensors):
 
     def depth(self) -> Any:
         return np.full((2, 2), self.tick, np.float32)
+
+
+HOST = """
+import os, signal, sys, threading, time
+from hthor.guest import Guest, GuestConfig
+from tests.support.guest_agents import BRIEFING, look, process_chain
+guest = Guest(sys.argv[1], config=GuestConfig(isolation=sys.argv[2]))
+thread = threading.Thread(target=lambda: guest.begin(BRIEFING))
+thread.start()
+thread.join()
+threading.Thread(target=lambda: guest.act(look(1)), daemon=True).start()
+time.sleep(0.1)
+print(*process_chain(guest.pid), flush=True)
+if sys.argv[3] == "killed":
+    os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("level", LEVELS)
+@pytest.mark.parametrize("how", ["killed", "done"])
+def test_it_ends_with_the_evaluation_though_a_thread_started_it(level: str, how: str, tmp_path: Path) -> None:
+    levels.need(level)
+    path = tmp_path / "my_agent.py"
+    path.write_text(HEAD + agent(SLEEPS))
+    words = [sys.executable, "-c", HOST, str(path), level, how]
+    found = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, timeout=60, check=False)
+    pids = [int(word) for word in found.stdout.split()]
+    assert len(pids) >= 3, found.stderr
+    expect_gone(pids)
 
 
 @pytest.mark.slow

@@ -94,6 +94,21 @@ def living(group: int) -> list[str]:
     return found
 
 
+def expect_gone(pids: list[int]) -> None:
+    """All these processes have ended, or end after a moment."""
+    end = time.monotonic() + 10
+    while any(map(_alive, pids)) and time.monotonic() < end:
+        time.sleep(0.005)
+    assert not any(map(_alive, pids))
+
+
+def _alive(pid: int) -> bool:
+    try:
+        return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] not in "ZX"
+    except OSError:
+        return False
+
+
 needs_bwrap = pytest.mark.skipif(not shutil.which("bwrap"), reason="needs bubblewrap")
 PROCESS_CHAINS = [("L1", 3), ("L2", 3), pytest.param("L3", 4, marks=needs_bwrap)]
 """How many processes a guest is at each level: guard or bubblewrap's two, supervisor, and the trial's own."""
