@@ -1,4 +1,4 @@
-"""How a participant notices and reads robots' messages, one after the other."""
+"""How a participant notices and reads messages, one after the other."""
 
 import math
 
@@ -6,7 +6,7 @@ from msgspec import Struct
 
 from hthor import seeds
 from hthor.humans.population.parameters import Parameters
-from hthor.types import Message
+from hthor.types import Message, is_person
 
 REFERENCE_WORDS = 12
 """[words] Length of a message that takes ``t_read`` to read. Our choice."""
@@ -45,7 +45,8 @@ class MessageReader:
     The times of noticing and reading are log-normal, drawn for each message. When an equal message replaces a message,
     reading goes on; a message that was read before is read faster.
 
-    ``now`` is the message on display, None when there is none; ``offered`` says whether any message came.
+    ``now`` is the message on display, None when there is none; ``offered`` says whether any robot's message came that
+    is an offer.
     """
 
     def __init__(self, traits: Parameters, root: int, tick_s: float) -> None:
@@ -62,7 +63,7 @@ class MessageReader:
         if message is None:
             self.now = None
         elif now is None or message.id != now.message.id:
-            self.offered = True
+            self.offered = self.offered or is_offer(message)
             if now is not None and not now.answered and is_same_message(message, now.message):
                 now.message = message
             else:
@@ -80,10 +81,14 @@ class MessageReader:
 
     def mark_answered(self, reading: Reading, accepted: bool) -> None:
         """Note that a message was answered or ignored, so that it is not new any more."""
-        reading.answered = True
-        self._read.append(reading.message)
+        self.mark_read(reading)
         if not accepted:
             self._refused.append(reading.message)
+
+    def mark_read(self, reading: Reading) -> None:
+        """Note that a message was read that is not accepted or declined, so that it is not new any more."""
+        reading.answered = True
+        self._read.append(reading.message)
 
     def _begin(self, tick: int, message: Message) -> Reading:
         self._count += 1
@@ -100,6 +105,16 @@ class MessageReader:
 
     def _spread(self, what: str, number: int) -> float:
         return math.exp(self.traits.read_sd * seeds.normal(self.root, what, number))
+
+
+def is_remark(message: Message) -> bool:
+    """Whether a message only tells something: from a person, or in answer to a question, and without a place."""
+    return message.position is None and (is_person(message.sender) or message.answers is not None)
+
+
+def is_offer(message: Message) -> bool:
+    """Whether a message is a robot's offer of help, not a question or a remark."""
+    return not (message.question or is_person(message.sender) or is_remark(message))
 
 
 def is_same_message(a: Message, b: Message) -> bool:

@@ -25,6 +25,7 @@ class KnownObject(Struct, kw_only=True):
     """One object: ``seen`` is its last detection, at tick ``at`` and from ``spot`` [m]; None while it is not known.
 
     ``views`` counts how often it came into view, ``lost`` how often it was forgotten or was not where it had been seen.
+    ``owner`` is the participant's own seat.
     """
 
     id: str
@@ -33,23 +34,27 @@ class KnownObject(Struct, kw_only=True):
     spot: Vec2 = (0.0, 0.0)
     lost: int = 0
     views: int = 0
+    owner: str = HUMAN
 
     @property
     def taken(self) -> bool:
-        """Whether a robot was seen holding it."""
-        return self.seen is not None and self.seen.held_by not in ("", HUMAN)
+        """Whether somebody else was seen holding it."""
+        return self.seen is not None and self.seen.held_by not in ("", self.owner)
 
     @property
     def lies(self) -> Detection | None:
-        """The object as last seen, None when it is not known or a robot has it."""
+        """The object as last seen, None when it is not known or somebody else has it."""
         return None if self.taken else self.seen
 
 
 class ObjectMemory:
-    """All objects of the task. ``changes`` counts changes of what is known about them."""
+    """All objects of the task, as the participant at the seat ``owner`` knows them.
 
-    def __init__(self, ids: Iterable[str]) -> None:
-        self.known = {id: KnownObject(id=id) for id in ids}
+    ``changes`` counts changes of what is known about them.
+    """
+
+    def __init__(self, ids: Iterable[str], owner: str = HUMAN) -> None:
+        self.known = {id: KnownObject(id=id, owner=owner) for id in ids}
         self.changes = 0
 
     def see(self, known: KnownObject, seen: Detection, tick: int, spot: Vec2) -> None:

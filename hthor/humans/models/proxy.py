@@ -18,7 +18,7 @@ from hthor.humans.models._goal_arbitration import BEGIN, REST, SEARCH, Goal, Goa
 from hthor.humans.motor.locomotion import Walker
 from hthor.humans.perception.perception import GLIMPSE_TICKS, Eyes
 from hthor.humans.population.participant import Participant, with_practice
-from hthor.types import Action, Briefing, Motion, Observation, Reply, Vec2, Wait, is_person
+from hthor.types import Action, Briefing, Motion, Observation, Reply, Send, Vec2, Wait, is_person
 from hthor.types.events import JournalEntry
 
 _RESTARTS = 2
@@ -59,7 +59,7 @@ class Model:
         human = self._human = HumanContext(traits, self.participant.trial_root(self.trials), briefing, self.policy)
         human.listener = self.listener
         self._memory = SpatialMemory(tau=traits.tau_mem / briefing.tick_s)
-        self._objects = ObjectMemory(job.target for job in briefing.todo)
+        self._objects = ObjectMemory((job.target for job in briefing.todo), briefing.seat)
         self._eyes = self.eyes(human, self._objects, self._memory)
         self._subgoals = SubgoalTracker(human, self._memory, self._objects.known)
         self._advice = AdviceTracker(human, self._memory, self._subgoals)
@@ -72,12 +72,14 @@ class Model:
         self._goal = BEGIN
 
     def act(self, observation: Observation) -> Action:
-        """The next motion, and an answer when a message was read."""
+        """The next motion, and what is said: an answer when a message was read."""
         human = self._human
         human.now = observation
-        reply = self._read_messages() if observation.inbox or self._dialogue.reader.now is not None else None
+        dialogue = self._dialogue
+        engaged = observation.inbox or dialogue.reader.now is not None or dialogue.speech.now is not None
+        say = self._read_messages() if engaged else None
         if not observation.idle:
-            return Action(motion=Wait(), say=reply)
+            return Action(motion=Wait(), say=say)
         walker = self._walker or self._start_walking(observation)
         if self._memory.visit(human.here, observation.room) and self._goal is not BEGIN:
             self._behaviours.exploration.fresh = human.here
@@ -85,7 +87,7 @@ class Model:
             walker.sense()
             self._eyes.look(observation)
         walker.haste, walker.looking = self._haste(), self._is_looking()
-        return Action(motion=self._next_motion(), say=reply)
+        return Action(motion=self._next_motion(), say=say)
 
     def rate(self, met: bool, tick: int) -> int | None:  # noqa: ARG002  the time of help counts, not the end
         """Update trust by the trial's outcome, and report it."""
@@ -169,7 +171,7 @@ class Model:
         self._behaviour, advice = None, self._goal.advice
         if advice is not None:
             self._advice.drop(advice)
-            if advice.request != "look":
+            if advice.request != "look" and self._dialogue.is_from_robot(advice):
                 self._dialogue.record_misled()
                 self.trust = self.trust.after(0.0, self.traits)
         goal = self._wanted_goal()
@@ -177,10 +179,10 @@ class Model:
             self._turn_to(goal)
         self._goal = goal
 
-    # ---------------------------------------------------------------------------------------------------------- robots
+    # --------------------------------------------------------------------------------------------------------- messages
 
-    def _read_messages(self) -> Reply | None:
-        """Read new messages, answer those that were read, and keep accepted advice."""
+    def _read_messages(self) -> Reply | Send | None:
+        """Read new messages, answer those that were read, keep accepted advice, and say what is due."""
         now = self._human.now
         busy = bool(now.holding) or self._goal.activity in _BUSY
         decision = self._dialogue.read(now, self.trust.mean, busy, self._time_saved)
@@ -190,7 +192,7 @@ class Model:
             self._advice.accept(decision.advice)
             if decision.advice.request == "bring":
                 self._behaviour = None  # deliver again, this time to the advised place
-        return decision.reply
+        return decision.say
 
     def _time_saved(self, advice: Advice) -> tuple[float, float | None]:
         """Seconds that advice saves and metres to its place; nothing before the first look at the house."""
@@ -200,8 +202,8 @@ class Model:
         return time_saved(self._human, self._walker, search, advice.position)
 
     def _haste(self) -> float:
-        """Factor of the pace, below 1 while reading or while following the map to an unknown place."""
-        if self._dialogue.reader.is_reading(self._human.now.tick):
+        """Factor of the pace, below 1 while reading or speaking, or while following the map to an unknown place."""
+        if self._dialogue.is_slowing(self._human.now.tick):
             return 1.0 / self._human.traits.k_read
         by_map = self._advice.destination is not None and self._lacks_destination()
         return 1.0 / self._human.traits.k_map if by_map or self._goal.activity == "follow" else 1.0

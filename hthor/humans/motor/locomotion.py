@@ -42,9 +42,9 @@ _GIVE_UP = 12
 _REPLANS = 100
 """[count] Plans of a path after which a walk is given up. Our choice."""
 _POLITE_S = 0.5
-"""[s] How long people wait for a robot in their way. Our choice."""
+"""[s] How long people wait for a robot or another person in their way. Our choice."""
 _AVOID_S = 6.0
-"""[s] How long people plan around a robot that did not move. Our choice."""
+"""[s] How long people plan around a robot or another person who did not move. Our choice."""
 _TRUSTED_S = 10.0
 """[s] A map younger than this is not thrown away even if it shows no path. Our choice."""
 _ASIDE_RAD = math.radians(60.0)
@@ -232,11 +232,11 @@ class Walker:
         return motion
 
     def _give_way(self, ahead: Vec2) -> Behaviour:
-        """Put furniture that was bumped into on the map; wait for a robot, then plan around it."""
+        """Put furniture that was bumped into on the map; wait for a robot or another person, then plan around them."""
         self._bumps += 1
         outcome = self.human.now.outcome
         bumped = outcome is not None and outcome.motion == "move" and not outcome.ok
-        if bumped and outcome is not None and not outcome.by.startswith("robot"):
+        if bumped and outcome is not None and not outcome.by.startswith(("robot", "human")):
             self._mark(ahead)
             return True
         obstacle = self._felt(ahead)

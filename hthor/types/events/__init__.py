@@ -20,6 +20,7 @@ from hthor.types.events.bodies import (
 )
 from hthor.types.events.entry import LogEntry
 from hthor.types.events.journal import (
+    Asked,
     Attempt,
     Choice,
     Exposure,
@@ -30,6 +31,7 @@ from hthor.types.events.journal import (
     Note,
     Offer,
     OptionRow,
+    Replied,
     Stick,
 )
 from hthor.types.events.messages import Accepted, Answered, Covered, Declined, MessageEvent, Sent, Shown
@@ -64,13 +66,14 @@ Event = (
     | Timeout
 )
 """An event of the trial."""
-JournalEntry = Stick | Head | Inputs | Attempt | Exposure | Choice | Offer | Misled | Note
+JournalEntry = Stick | Head | Inputs | Attempt | Exposure | Choice | Offer | Misled | Asked | Replied | Note
 """An entry of the journal."""
 
 __all__ = [
     "Accepted",
     "AgentFault",
     "Answered",
+    "Asked",
     "Attempt",
     "Blocked",
     "Choice",
@@ -101,6 +104,7 @@ __all__ = [
     "Progress",
     "Refused",
     "Released",
+    "Replied",
     "Resumed",
     "Sent",
     "Shown",

@@ -133,6 +133,36 @@ class Misled(LogEntry, frozen=True, kw_only=True, tag="misled"):
     """The person left the place that an accepted message had named without having found the object there."""
 
 
+class Asked(LogEntry, frozen=True, kw_only=True, tag="asked"):
+    """The person began to ask a question; the event `Sent` follows when it was said.
+
+    Attributes:
+        object: id or kind of what it is about. words: its length in words.
+        seconds: [s] how long it takes to think of it and to say it.
+    """
+
+    object: str
+    words: int
+    seconds: float
+
+
+class Replied(LogEntry, frozen=True, kw_only=True, tag="replied"):
+    """The person read a question, and began to answer it.
+
+    Attributes:
+        message: its number in the trial. words: its length in words.
+        read_s: [s] from when it was shown until it was read.
+        answer: "yes" or "no" on a button, "told" by a message of their own, or "ignore" for none.
+        seconds: [s] how long it takes to think of the answer and to press or say it.
+    """
+
+    message: int
+    words: int
+    read_s: float
+    answer: Literal["yes", "no", "told", "ignore"]
+    seconds: float = 0.0
+
+
 class Note(LogEntry, frozen=True, kw_only=True, tag="note"):
     """What a human model of one's own records in addition, such as how often a language model was asked.
 
