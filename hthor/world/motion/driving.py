@@ -9,9 +9,9 @@ rate. A robot has no neck: its body turns to the heading and its camera tilts to
 the hands are busy a body stands, and only its head moves.
 
 What the body meets is told once for each contact, not in every step: the event ``in_way`` names another body, also one
-that it slides past; ``blocked`` names what stops it. A contact ends when the body has gone `CLEAR_M` without meeting
-anything of the kind, or when it is steered elsewhere by more than `AWAY_RAD`, or stands. While a contact stops the
-body, its outcome says so; when the contact has ended, the outcome is ok.
+that it slides past; ``blocked`` names what stops it. A contact ends when the body has gone `CLEAR_M` without sliding
+along anything, or when it is steered elsewhere by more than `AWAY_RAD`, or stands. Its outcome says what stops it, and
+is ok as soon as it goes on.
 """
 
 import math
@@ -95,19 +95,21 @@ class DriveMotion:
             return ()
         pace = self._loads.pace(seat) if seat.holding else None
         if pace is None:
-            length, here = self._speed * _STEP_S, seat.pose
+            length = self._speed * _STEP_S
             step = (self._along[0] * length, self._along[1] * length)
             met, stuck = go_or_slide(seat, self._others, step, length)
         elif last:
-            length, here = min(self._speed, pace) * rules.TICK_S, seat.pose
+            length = min(self._speed, pace) * rules.TICK_S
             step = (self._along[0] * length, self._along[1] * length)
             met, stuck = self._loads.go(seat, step, length, tick)
         else:
             return ()
+        if not stuck and _is_stopped(seat):
+            seat.outcome = _DROVE
         if stuck or met not in (FREE, HOUSE):
             return self._touch(tick, met, stuck, step)
-        if self._met:
-            self._clear += math.hypot(seat.pose.x - here.x, seat.pose.y - here.y)
+        if self._met and met == FREE:
+            self._clear += length
             if self._clear >= CLEAR_M:
                 self._part()
         return ()
