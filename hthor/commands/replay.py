@@ -29,6 +29,13 @@ def replay(
             "--mind", help="Show what the simulated person believed, saw and chose; the session is played again."
         ),
     ] = False,
+    seat: Annotated[
+        str,
+        typer.Option(
+            help="With --mind, in a trial of several people: whose mind, such as human2.",
+            show_default="the first person's",
+        ),
+    ] = "",
     agent: Annotated[
         list[str] | None,
         typer.Option(help="The file of an agent that is not built in.", show_default=False),
@@ -54,7 +61,8 @@ def replay(
         from hthor.guest.agent import inputs
 
         files = RunFiles(agents=tuple(agent or ()), robots=tuple(robot or ()), kind=kind, humans=humans)
-        _replay_mind(run, trial, out, files, inputs.parse_inputs(agent_args or (), readable or ()), json)
+        given = inputs.parse_inputs(agent_args or (), readable or ())
+        _replay_mind(run, trial, seat, out, files, given, json)
         return
     from hthor.eval.records import find
     from hthor.eval.records.run_folder import RunFolder
@@ -66,7 +74,9 @@ def replay(
     output.put_files([path], json, key=record.key, task=record.spec.task.id)
 
 
-def _replay_mind(run: Path, trial: str, out: Path | None, files: RunFiles, given: AgentInputs, json: bool) -> None:
+def _replay_mind(
+    run: Path, trial: str, seat: str, out: Path | None, files: RunFiles, given: AgentInputs, json: bool
+) -> None:
     """Play a session again up to one trial, and draw or print the trace of the human model."""
     from hthor.eval.records import find
     from hthor.eval.records.run_folder import RunFolder
@@ -75,7 +85,7 @@ def _replay_mind(run: Path, trial: str, out: Path | None, files: RunFiles, given
 
     record = find.find_trial(RunFolder(run), trial)
     house = render_trial.load_house(run, record)
-    stream = human_trace.trace_human(RunFolder(run), record, files, inputs=given)
+    stream = human_trace.trace_human(RunFolder(run), record, files, seat=seat, inputs=given)
     if not stream.same:
         output.say(
             "the replayed trial differs from the log, so something here is not reproducible. What follows is the "
@@ -84,7 +94,12 @@ def _replay_mind(run: Path, trial: str, out: Path | None, files: RunFiles, given
     if json:
         output.put_json(stream)
         return
-    path = out or run / "replays" / f"{record.spec.task.id.replace('/', '-')}-{record.key}-mind.png"
+    path = (
+        out
+        or run
+        / "replays"
+        / f"{record.spec.task.id.replace('/', '-')}-{record.key}-mind{f'-{seat}' if seat else ''}.png"
+    )
     path.parent.mkdir(parents=True, exist_ok=True)
     render_trial.check_file_name(path, video=False)
     lettering.save_figure(human_trace_figure.figure(record, house, stream), path)

@@ -98,7 +98,7 @@ def view_run(
         output.put_records([formats.flat(line) for line in found.trials])
         return
     if trials := trials or wanted != browse.TrialFilter():
-        headings = ("no.", "task", "house", "person", "outcome", "time [s]", "sent", "accepted", "trust", "fault")
+        headings = ("no.", "task", "house", "session", "outcome", "time [s]", "sent", "accepted", "trust", "fault")
         output.put_table(headings, map(_trial, found.trials), shape)
         output.put_line(f"{len(found.trials)} of {found.done} trials", shape)
     if result is not None and (not trials or shape is Format.TABLE):

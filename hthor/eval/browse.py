@@ -19,7 +19,7 @@ from hthor.eval.results import aggregate, result_file
 from hthor.eval.results.result_file import RunResult
 from hthor.eval.runner import fault_report
 
-LIST_SCHEMA, VIEW_SCHEMA = "hthor.runs/1", "hthor.run-view/1"
+LIST_SCHEMA, VIEW_SCHEMA = "hthor.runs/1", "hthor.run-view/2"
 _DEPTH = 6
 
 

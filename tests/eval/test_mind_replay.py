@@ -191,6 +191,6 @@ def test_forgetting_and_misses_have_their_marks() -> None:
         Forgot(tick=9, seat=HUMAN, object="sofa"),
         Attempt(tick=20, seat=HUMAN, what="pick", ok=False, seconds=1.0),
     )
-    stream = HumanTrace(key="", same=True, traits={"beta": 1.0}, events=events)
+    stream = HumanTrace(key="", seat=HUMAN, same=True, traits={"beta": 1.0}, events=events)
     assert human_trace_timeline.row_names(stream) == ["hands", "noticed", "is about"]
     assert human_trace_timeline.offers(stream) == []

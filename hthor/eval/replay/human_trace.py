@@ -11,7 +11,7 @@ from typing import Any
 from msgspec import Struct
 
 from hthor import activity, code_identity
-from hthor.errors import HthorError
+from hthor.errors import HthorError, UnknownName
 from hthor.eval.config.sessions import Session
 from hthor.eval.records import trial_record
 from hthor.eval.records.run_folder import RunFolder
@@ -21,7 +21,7 @@ from hthor.eval.replay.session_history import RunFiles
 from hthor.eval.runner.trial_runner import TrialRunner
 from hthor.guest import AgentInputs, GuestConfig
 from hthor.humans.core.thoughts import Aim, HumanThought, TrustNow
-from hthor.types import HUMAN, Action, Briefing, Observation
+from hthor.types import Action, Briefing, HumanSeat, Observation, TrialSpec
 from hthor.types.events import (
     Accepted,
     Answered,
@@ -30,6 +30,7 @@ from hthor.types.events import (
     Declined,
     Exposure,
     JournalEntry,
+    MessageEvent,
     Offer,
     Shown,
 )
@@ -42,13 +43,14 @@ TraceEvent = HumanThought | Attempt | Exposure | Offer | Shown | Accepted | Decl
 
 
 class HumanTrace(Struct, frozen=True, kw_only=True):
-    """The thoughts of one trial, as docs/logs.md lists them, and the participant's parameters.
+    """The thoughts of one person in a trial, as docs/logs.md lists them, and the participant's parameters.
 
-    ``same`` says whether the trial went as logged.
+    ``seat`` is the person's; ``same`` says whether the trial went as logged.
     """
 
     schema: str = SCHEMA
     key: str
+    seat: str
     same: bool
     traits: dict[str, float]
     events: tuple[TraceEvent, ...]
@@ -57,8 +59,8 @@ class HumanTrace(Struct, frozen=True, kw_only=True):
 class TracedHuman:
     """A human model whose thoughts are recorded in the trials that begin while ``recording``."""
 
-    def __init__(self, human: Any) -> None:
-        self.human, self.recording = human, False
+    def __init__(self, seat: str, human: Any) -> None:
+        self.seat, self.human, self.recording = seat, human, False
         self.thoughts: list[HumanThought] = []
         self._goal: object = None
         self._trust: float | None = None
@@ -93,31 +95,33 @@ class TracedHuman:
         goal, trust = self.human.about, self.human.trust.mean
         if goal != self._goal:
             self._goal = goal
-            self.thoughts.append(Aim(tick=tick, seat=HUMAN, about=goal))
+            self.thoughts.append(Aim(tick=tick, seat=self.seat, about=goal))
         if trust != self._trust:
             self._trust = trust
-            self.thoughts.append(TrustNow(tick=tick, seat=HUMAN, mean=round(trust, 4)))
+            self.thoughts.append(TrustNow(tick=tick, seat=self.seat, mean=round(trust, 4)))
 
 
 def trace_human(
-    folder: RunFolder, trial: TrialRecord, files: RunFiles, *, inputs: AgentInputs | None = None
+    folder: RunFolder, trial: TrialRecord, files: RunFiles, *, seat: str = "", inputs: AgentInputs | None = None
 ) -> HumanTrace:
-    """Run a trial of a run again and record the human's thoughts.
+    """Run a trial of a run again and record the thoughts of the person in a seat, by default the first one.
 
     Raises:
+        UnknownName: when nobody sits there.
         RunError: when trials before it are missing, or another version of hthor ran them.
         HthorError: when a file of the user's is missing, or the human model does not report its thoughts.
     """
     code_identity.keep_compiled()
     spec = trial.spec
+    human = _person(spec, seat)
     session = Session(number=spec.session, trials=session_history.session_before(folder, trial))
     guests = GuestConfig(hidden=(str(folder.path.resolve()),), inputs=inputs or AgentInputs())
     runner = TrialRunner(session_history.replay_sources(folder, spec, files, guests))
     with runner.enter(session) as participants:
-        participants.humans[HUMAN] = person = TracedHuman(participants.humans[HUMAN])
+        participants.humans[human.seat] = person = TracedHuman(human.seat, participants.humans[human.seat])
         if not all(hasattr(type(person.human), name) for name in ("about", "listener")):
             raise HthorError(
-                f"the people of this run, '{spec.humans[0].model}', record no decisions. --mind works with runs whose "
+                f"the people of this run, '{human.model}', record no decisions. --mind works with runs whose "
                 "people are the proxy, or a model based on it."
             )
         for number, one in enumerate(session.trials, 1):
@@ -125,8 +129,20 @@ def trace_human(
             person.recording = one == spec
             record = runner.run(participants, one).record
         traits = {name: getattr(person.human.traits, name) for name in person.human.traits.__struct_fields__}
-    journal = [entry for entry in record.journal if isinstance(entry, _JOURNAL)]
-    messages = [event for event in record.events if isinstance(event, _MESSAGES)]
+    journal = [entry for entry in record.journal if isinstance(entry, _JOURNAL) and entry.seat == human.seat]
+    messages = [event for event in record.events if isinstance(event, _MESSAGES) and _reader(event) in ("", human.seat)]
     events: list[TraceEvent] = sorted([*person.thoughts, *journal, *messages], key=lambda event: event.tick)
     same = trial_record.encode(record) == trial_record.encode(trial)
-    return HumanTrace(key=trial.key, same=same, traits=traits, events=tuple(events))
+    return HumanTrace(key=trial.key, seat=human.seat, same=same, traits=traits, events=tuple(events))
+
+
+def _person(spec: TrialSpec, seat: str) -> HumanSeat:
+    people = {human.seat: human for human in spec.humans}
+    if seat and seat not in people:
+        raise UnknownName("person", seat, people)
+    return people[seat] if seat else spec.humans[0]
+
+
+def _reader(event: MessageEvent) -> str:
+    """The seat whose panel an event of a message is about; empty for a covered message where there is one panel."""
+    return event.reader if isinstance(event, Covered) else event.seat

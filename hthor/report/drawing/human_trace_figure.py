@@ -21,7 +21,7 @@ from hthor.eval.replay.human_trace import HumanTrace, TraceEvent
 from hthor.geometry import plane
 from hthor.humans.core.thoughts import Beliefs, Noticed, RankedOptions
 from hthor.report.drawing import floor_plan, human_trace_timeline, lettering, text_fit, trial_trace
-from hthor.types import HUMAN, HouseSpec, Vec2
+from hthor.types import HouseSpec, Vec2
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -62,7 +62,8 @@ def figure(record: TrialRecord, house: HouseSpec, stream: HumanTrace) -> Figure:
     human_trace_timeline.draw_timeline(sheet.add_subplot(grid[rows, :]), record, stream)
     _write(sheet.add_subplot(grid[rows + 1, :]), words)
     spec = record.spec
-    whose = f"{spec.task.id}, session {spec.session}, trial {spec.index + 1}"
+    who = f", {stream.seat}" if len(spec.humans) > 1 else ""
+    whose = f"{spec.task.id}, session {spec.session}, trial {spec.index + 1}{who}"
     title = text_fit.wrapped(f"“{spec.task.instruction}”   {whose}", inches - _EDGE_IN, _TITLE_PT)
     sheet.suptitle(title, fontsize=_TITLE_PT, x=0.01, ha="left", color=trial_trace.INK)
     text_fit.legend(sheet, _legend(), 6, loc="outside lower center")
@@ -89,8 +90,8 @@ def _draw_moment(
         if thing.id in chances:
             _draw_place(ax, thing, chances[thing.id], exposures[thing.id])
     log, until = record.log, beliefs.tick
-    _draw_way(ax, record, until)
-    here = trial_trace.position_at(log, HUMAN, until)
+    _draw_way(ax, record, stream.seat, until)
+    here = trial_trace.position_at(log, stream.seat, until)
     shares = human_trace_timeline.option_chances(choice, stream.traits["beta"])
     spots = _spots(house)
     for name, share in shares.items():
@@ -115,7 +116,7 @@ def _draw_end(ax: Axes, record: TrialRecord, house: HouseSpec, stream: HumanTrac
     for thing in house.things:
         if thing.id in noticed:
             _draw_place(ax, thing, 0.0, 0.0)
-    _draw_way(ax, record, record.ticks)
+    _draw_way(ax, record, stream.seat, record.ticks)
     _draw_targets(ax, record)
     ax.set_title("nothing had to be searched for", fontsize=8.5, loc="left", color=trial_trace.INK)
 
@@ -144,17 +145,15 @@ def _draw_place(ax: Axes, thing: Any, chance: float, exposure: float) -> None:
         _say(ax, (thing.centre[0], thing.centre[1]), f"{100 * chance:.0f} %", trial_trace.INK)
 
 
-def _draw_way(ax: Axes, record: TrialRecord, until: int) -> None:
-    path = record.paths[HUMAN][: until // rules.LOG_EVERY_TICKS + 1]
+def _draw_way(ax: Axes, record: TrialRecord, seat: str, until: int) -> None:
+    path, shade = record.paths[seat][: until // rules.LOG_EVERY_TICKS + 1], trial_trace.seat_colour(seat)
     xs, ys = [x / 1000 for x, _, _ in path], [y / 1000 for _, y, _ in path]
-    ax.plot(xs, ys, color=trial_trace.PERSON, lw=1.4, alpha=0.75, zorder=8)
+    ax.plot(xs, ys, color=shade, lw=1.4, alpha=0.75, zorder=8)
     yaw = math.degrees(path[-1][2] / 1000)
     half = _VIEW_DEG / 2.0
-    view = Wedge(
-        (xs[-1], ys[-1]), _VIEW_M, yaw - half, yaw + half, facecolor=trial_trace.PERSON, alpha=0.18, lw=0, zorder=9
-    )
+    view = Wedge((xs[-1], ys[-1]), _VIEW_M, yaw - half, yaw + half, facecolor=shade, alpha=0.18, lw=0, zorder=9)
     ax.add_patch(view)
-    ax.scatter(xs[-1], ys[-1], s=34, facecolor=trial_trace.PERSON, edgecolor="white", linewidths=0.8, zorder=10)
+    ax.scatter(xs[-1], ys[-1], s=34, facecolor=shade, edgecolor="white", linewidths=0.8, zorder=10)
 
 
 def _spots(house: HouseSpec) -> Mapping[str, Vec2]:

@@ -76,7 +76,8 @@ def draw_timeline(ax: Axes, record: TrialRecord, stream: HumanTrace) -> None:
             _draw_attempt(ax, event, end, rows["hands"])
         elif isinstance(event, Shown):
             _draw_message(ax, event, stream, end, rows["messages"])
-    _draw_trust(ax, [event for event in events if isinstance(event, TrustNow)], end)
+    shade = trial_trace.seat_colour(stream.seat)
+    _draw_trust(ax, [event for event in events if isinstance(event, TrustNow)], end, shade)
     top = len(names) - 0.4
     ax.axvline(end, color=trial_trace.TARGET if record.met else trial_trace.FAILED, lw=1.0)
     ax.text(end, top + 0.05, "done" if record.met else "time is up", fontsize=7.5, ha="center", color=trial_trace.INK)
@@ -161,16 +162,16 @@ def _draw_message(ax: Axes, shown: Shown, stream: HumanTrace, end: float, row: f
         ax.text(until + 0.4, row, fate.kind, fontsize=6.5, va="center", color=trial_trace.INK)
 
 
-def _draw_trust(ax: Axes, told: list[TrustNow], end: float) -> None:
+def _draw_trust(ax: Axes, told: list[TrustNow], end: float, shade: str) -> None:
     """Draw the mean trust, from 0 at the bottom of its lane to 1 at the top."""
     if not told:
         return
     xs = [event.tick * rules.TICK_S for event in told]
     ys = [0.8 * event.mean - 0.4 for event in told]
     ax.fill_between((0.0, end), -0.4, 0.4, color="#f3f3f3", lw=0, zorder=0)
-    ax.step([*xs, end], [*ys, ys[-1]], where="post", color=trial_trace.PERSON, lw=1.4)
+    ax.step([*xs, end], [*ys, ys[-1]], where="post", color=shade, lw=1.4)
     for x, event, y in zip(xs, told, ys, strict=True):
-        ax.text(min(x, end) + 0.4, y + 0.12, f"{event.mean:.2f}", fontsize=6.5, color=trial_trace.PERSON)
+        ax.text(min(x, end) + 0.4, y + 0.12, f"{event.mean:.2f}", fontsize=6.5, color=shade)
 
 
 def _words(name: str) -> str:

@@ -51,7 +51,7 @@ def task_figure(task: TaskSpec, house: HouseSpec, feat: Solution) -> Figure:
     ax = sheet.subplots()
     wanted = {name for job in task.goal.todo for name in job.destinations}
     floor_plan.draw_house(ax, house, marked=[thing.id for thing in house.things if {thing.id, thing.kind} & wanted])
-    ax.plot(*zip(*feat.way, strict=True), color=trial_trace.PERSON, lw=1.5, ls=(0, (4, 2)), zorder=8)
+    ax.plot(*zip(*feat.way, strict=True), color=trial_trace.PEOPLE[0], lw=1.5, ls=(0, (4, 2)), zorder=8)
     _draw_objects(ax, task)
     for number, pose in enumerate((task.human_start, *task.robot_starts)):
         _draw_start(ax, pose, number)
@@ -91,7 +91,7 @@ def _crowds(placed: Placement, other: Placement) -> bool:
 
 def _draw_start(ax: Axes, pose: Pose, number: int) -> None:
     """Draw a ring with a line in the viewing direction; robots also get their number."""
-    shade = trial_trace.PERSON if number == 0 else trial_trace.ROBOTS[(number - 1) % len(trial_trace.ROBOTS)]
+    shade = trial_trace.PEOPLE[0] if number == 0 else trial_trace.ROBOTS[(number - 1) % len(trial_trace.ROBOTS)]
     ax.plot(
         (pose.x, pose.x + 0.32 * math.cos(pose.yaw)),
         (pose.y, pose.y + 0.32 * math.sin(pose.yaw)),
@@ -116,8 +116,8 @@ def _legend(sheet: Figure, destined: bool) -> None:
         trial_legend.mark("*", trial_trace.TARGET, "target", size=10),
         trial_legend.mark("o", _OTHER, "other object", size=5.5),
         *([trial_legend.destination(7)] if destined else []),
-        trial_legend.mark("o", "white", "person's start", edge=trial_trace.PERSON, size=7),
+        trial_legend.mark("o", "white", "person's start", edge=trial_trace.PEOPLE[0], size=7),
         trial_legend.mark("o", "white", "robots' starts", edge=trial_trace.ROBOTS[0], size=7),
-        Line2D([], [], color=trial_trace.PERSON, lw=1.5, ls=(0, (4, 2)), label="shortest walk"),
+        Line2D([], [], color=trial_trace.PEOPLE[0], lw=1.5, ls=(0, (4, 2)), label="shortest walk"),
     ]
     text_fit.legend(sheet, handles, len(handles), loc="outside lower center", handlelength=1.8)

@@ -13,7 +13,7 @@ from matplotlib.transforms import blended_transform_factory
 from hthor import rules
 from hthor.episode import EpisodeLog, Fault
 from hthor.report.drawing import floor_plan, lettering, text_fit, trial_legend, trial_timeline, trial_trace
-from hthor.types import HouseSpec, TrialSpec, Vec2
+from hthor.types import HouseSpec, TrialSpec, Vec2, is_person
 from hthor.types.events import Sent
 
 if TYPE_CHECKING:
@@ -153,10 +153,20 @@ def _words(log: EpisodeLog) -> list[tuple[str, str]]:
 def _line_of(log: EpisodeLog, number: int, message: Sent) -> tuple[str, str]:
     """A message's number, time, sender, words and outcome as one line, and its colour."""
     fate = trial_trace.outcome_of(log, message.message)
-    head = f"{number}  {message.tick * rules.TICK_S:.1f} s  {message.seat}: “"
-    end = f"” ({'unanswered' if fate in ('sent', 'shown') else fate})"
+    to = f" to {message.to}" if message.to else ""
+    head = f"{number}  {message.tick * rules.TICK_S:.1f} s  {message.seat}{to}: “"
+    end = f"” ({_end(message, fate)})"
     room = _WIDE_IN - 2 * _EDGE_IN - text_fit.text_width(head + end, WORDS_PT)
     return (head + text_fit.shorten(message.text, room, WORDS_PT) + end, trial_trace.message_colour(log, message))
+
+
+def _end(message: Sent, fate: str) -> str:
+    """How a message ended, in a word or two; people's messages and answers, unless they ask, are only read."""
+    if fate not in ("sent", "shown"):
+        return fate
+    if message.question or not (is_person(message.seat) or message.answers is not None):
+        return "unanswered"
+    return "read" if fate == "shown" else "not read"
 
 
 def _write_words(ax: Axes, words: Sequence[tuple[str, str]]) -> None:

@@ -21,7 +21,9 @@ def legend_entries(spec: TrialSpec, log: EpisodeLog, house: HouseSpec, *, moving
     Args:
         moving: whether the legend is for a video, which does not mark starts, ends, actions and messages.
     """
-    found: list[Artist] = [line(trial_trace.PERSON, "person")]
+    found: list[Artist] = [
+        line(trial_trace.seat_colour(human.seat), trial_trace.person_words(human, spec)) for human in spec.humans
+    ]
     found += [line(trial_trace.seat_colour(robot.seat), trial_trace.robot_words(robot)) for robot in spec.robots]
     if not moving:
         found += [mark("o", "white", "start", edge="#555555"), mark("o", "#555555", "end")]

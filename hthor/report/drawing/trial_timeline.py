@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from hthor import rules
 from hthor.episode import EpisodeLog, Fault
 from hthor.report.drawing import trial_trace
-from hthor.types import HUMAN, TrialSpec
+from hthor.types import TrialSpec
 from hthor.types.events import Progress
 
 if TYPE_CHECKING:
@@ -55,7 +55,7 @@ def draw_timeline(ax: Axes, spec: TrialSpec, log: EpisodeLog) -> None:
     _moment(ax, end, word, shade, "-", last)
     ax.set_xlim(-1, limit + 1)
     ax.set_ylim(-rows + 0.4, 0.75)
-    names = ["person" if seat == HUMAN else seat for seat in seats]
+    names = [trial_trace.seat_name(seat, seats) for seat in seats]
     ax.set_yticks([-row for row in range(rows)], [*names, "progress"][:rows], fontsize=8)
     ax.set_xlabel("time [s]", fontsize=8)
     ax.tick_params(axis="x", labelsize=7.5)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,14 +12,15 @@ from msgspec import Struct
 from hthor import rules
 from hthor.episode import EpisodeLog, Fault
 from hthor.errors import RunError
-from hthor.types import HUMAN, HouseSpec, Job, Placement, RobotSeat, TrialSpec, Vec2
+from hthor.types import HUMAN, HouseSpec, HumanSeat, Job, Placement, RobotSeat, TrialSpec, Vec2, is_person
 from hthor.types.events import Accepted, MessageEvent, Sent
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 # Okabe and Ito's palette, which colour-blind readers can tell apart.
-PERSON, ROBOTS = "#0072B2", ("#D55E00", "#CC79A7", "#E69F00", "#56B4E9", "#8a6d00")
+PEOPLE = ("#0072B2", "#001f54", "#7fb8e6", "#5b6f95")
+ROBOTS = ("#D55E00", "#CC79A7", "#E69F00", "#56B4E9", "#8a6d00")
 TARGET, MESSAGE, FAILED = "#009E73", "#7a3b8f", "#b00020"
 IDLE_MESSAGE = "#ae98b8"
 INK = "#2b2f36"
@@ -76,9 +77,18 @@ def robot_words(robot: RobotSeat) -> str:
 
 def seat_colour(seat: str) -> str:
     """The colour of a seat's path."""
-    if seat == HUMAN:
-        return PERSON
-    return ROBOTS[(int(seat.removeprefix("robot") or 1) - 1) % len(ROBOTS)]
+    sort, shades = (HUMAN, PEOPLE) if is_person(seat) else ("robot", ROBOTS)
+    return shades[(int(seat.removeprefix(sort) or 1) - 1) % len(shades)]
+
+
+def seat_name(seat: str, seats: Iterable[str]) -> str:
+    """A seat in pictures: "person" for the only one among ``seats``, else the seat's own name."""
+    return "person" if is_person(seat) and not any(is_person(other) for other in seats if other != seat) else seat
+
+
+def person_words(human: HumanSeat, spec: TrialSpec) -> str:
+    """A person in a legend; if there are several, with their seat and the population that they belong to."""
+    return "person" if len(spec.humans) == 1 else f"{human.seat}: {human.model}"
 
 
 def points(log: EpisodeLog, seat: str) -> np.ndarray:
@@ -110,13 +120,13 @@ def messages(log: EpisodeLog) -> list[Sent]:
 
 
 def outcome_of(log: EpisodeLog, message: int) -> str:
-    """The kind of a message's last event: accepted, declined, answered, covered, shown or sent."""
+    """How a message ended for anybody: accepted, declined, answered, covered, shown or sent, the first that fits."""
     kinds = {event.kind for event in log.events if isinstance(event, MessageEvent) and event.message == message}
     return next((kind for kind in _OUTCOMES if kind in kinds), "sent")
 
 
 def message_colour(log: EpisodeLog, message: Sent) -> str:
-    """The colour of a message: strong if the human accepted it, else pale."""
+    """The colour of a message: strong if a person accepted it, else pale."""
     return message_colours(log)[message.message]
 
 

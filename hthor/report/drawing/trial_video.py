@@ -23,7 +23,7 @@ from hthor.episode import EpisodeLog
 from hthor.errors import HthorError
 from hthor.report.drawing import floor_plan, lettering, text_fit, trial_figure, trial_legend, trial_trace
 from hthor.types import HouseSpec, TrialSpec
-from hthor.types.events import Accepted, Declined, Lifted, Picked, Progress
+from hthor.types.events import Accepted, Answered, Declined, Lifted, Picked, Progress
 
 SPEED = 4
 """Seconds of the trial per second of the video."""
@@ -128,8 +128,9 @@ class _Stage:
         if log.ticks <= tick:
             said.append(("done" if log.met else "time is up", trial_trace.TARGET if log.met else trial_trace.FAILED))
         for event in log.events:
-            if isinstance(event, (Accepted, Declined)) and 0 <= tick - event.tick <= 3.0 / rules.TICK_S:
-                said.append((f"person: {event.kind}", trial_trace.PERSON))
+            if isinstance(event, (Accepted, Declined, Answered)) and 0 <= tick - event.tick <= 3.0 / rules.TICK_S:
+                name = trial_trace.seat_name(event.seat, log.paths)
+                said.append((f"{name}: {event.kind}", trial_trace.seat_colour(event.seat)))
         for fault in log.faults:
             if fault.tick <= tick:
                 said.append(

@@ -1,4 +1,4 @@
-"""Writes a case study from the folders of runs: one person at one task with several robots, as SVG and PNG."""
+"""Writes a case study from the folders of runs: the same people at one task with several robots, as SVG and PNG."""
 
 import io
 from collections.abc import Sequence
@@ -34,7 +34,7 @@ def write_case_study(
 
     Args:
         folders: of the runs. task: its id. out: the folder to write to.
-        person: the participant; by default the first who did the task in every run.
+        person: a participant; by default the first who did the task in every run.
         profile: how views are drawn, fast or nice.
         agents: files of agents that are not built in. humans: the human model, if its name in the log does not find it.
         given: arguments and files that the agents were given.
@@ -59,7 +59,8 @@ def write_case_study(
     made = case_study.case_study_figure(rows, house)
     spec = chosen[0].spec
     stem = f"case-{spec.task.id.replace('/', '-')}-{spec.session}"
-    words = f"{spec.task.instruction} One person at this task with: {', '.join(run.label for run in runs)}."
+    who = "One person" if len(spec.humans) == 1 else f"{len(spec.humans)} people"
+    words = f"{spec.task.instruction} {who} at this task with: {', '.join(run.label for run in runs)}."
     drawn, seen = out / f"{stem}.svg", out / f"{stem}.png"
     jsonio.write(drawn, matplotlib_svg.svg_document(matplotlib_svg.to_svg(made, "case", words)).encode())
     pixels = io.BytesIO()
@@ -74,8 +75,8 @@ def _same_people(runs: Sequence[Run]) -> None:
         if one.plan.humans.sha256 != runs[0].plan.humans.sha256:
             raise RunError(
                 f"{one.folder / 'run.json'}: humans.sha256 is not that of {runs[0].folder / 'run.json'}: "
-                f"'{one.plan.humans.name}', not '{runs[0].plan.humans.name}'. A case shows one person; give runs with "
-                "the same people."
+                f"'{one.plan.humans.name}', not '{runs[0].plan.humans.name}'. A case shows the same people; give "
+                "runs with them."
             )
 
 
@@ -83,11 +84,12 @@ def _records(runs: Sequence[Run], task: str, person: int | None) -> list[TrialRe
     """One person's trials of the task, one per run."""
     tables = [run.by_pair for run in runs]
     shared = sorted(pair for pair in tables[0] if all(pair in table for table in tables[1:]))
-    mine = [pair for pair in shared if pair[3] == task and person in (None, pair[1])]
+    people = {pair: [human.participant for human in tables[0][pair].spec.humans] for pair in shared}
+    mine = [pair for pair in shared if pair[3] == task and (person is None or person in people[pair])]
     if mine:
         return [table[mine[0]] for table in tables]
     if person is not None and any(pair[3] == task for pair in shared):
-        who = sorted({str(pair[1]) for pair in shared if pair[3] == task})
-        raise UnknownName("person", str(person), who, f"These did '{task}' in every run.")
+        who = sorted({number for pair in shared if pair[3] == task for number in people[pair]})
+        raise UnknownName("person", str(person), map(str, who), f"These did '{task}' in every run.")
     names = sorted({pair[3] for pair in shared})
-    raise UnknownName("task", task, names, "These were done by the same person in every run.")
+    raise UnknownName("task", task, names, "These were done by the same people in every run.")

@@ -1,4 +1,4 @@
-"""The moments of a trial that a case study shows: a robot speaks, the human answers and acts, the end."""
+"""The moments of a trial that a case study shows: a robot speaks, a person answers and acts, the end."""
 
 import itertools
 from collections.abc import Iterator
@@ -9,13 +9,13 @@ from hthor import rules
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.geometry import plane
 from hthor.report.drawing import trial_trace
-from hthor.types import HUMAN, HouseSpec
+from hthor.types import HUMAN, HouseSpec, is_person
 from hthor.types.events import Accepted, Declined, Sent
 
 MANY = 4
 _APART_S = 1.0
 """Time between two moments at least [s]."""
-_ANSWERS = {"accepted": "person accepts", "declined": "person declines"}
+_ANSWERS = {"accepted": "accepts", "declined": "declines"}
 _DEEDS = ("picked", "held", "lifted", "opened", "placed")
 
 
@@ -29,9 +29,9 @@ class Moment(Struct, frozen=True, kw_only=True):
 def key_moments(record: TrialRecord, house: HouseSpec | None = None) -> list[Moment]:
     """Up to `MANY` moments in order; the last moment is the end.
 
-    The first three are when the first message that the person accepted was sent (if none was, the first message), when
-    it was answered, and when the human's hands first did something. The others are in the middle of the longest waits;
-    if ``house`` is given, their words are the room in which the person is.
+    The first three are when a robot's first message that a person accepted was sent (if none was, the first message),
+    when it was answered, and when a person's hands first did something. The others are in the middle of the longest
+    waits; if ``house`` is given, their words are the room in which the first person is.
     """
     found = [Moment(tick=record.ticks, words="done" if record.met else "time is up")]
     apart = round(_APART_S / rules.TICK_S)
@@ -46,23 +46,25 @@ def key_moments(record: TrialRecord, house: HouseSpec | None = None) -> list[Mom
 
 def _candidates(record: TrialRecord) -> Iterator[Moment]:
     """Events of the trial as moments, the most important first."""
-    sent = trial_trace.messages(record.log)
+    sent = [event for event in trial_trace.messages(record.log) if not is_person(event.seat)]
     if sent:
         fates = [trial_trace.outcome_of(record.log, message.message) for message in sent]
         number = next((fates.index(fate) for fate in _ANSWERS if fate in fates), 0)
         yield Moment(tick=sent[number].tick, words=f"{sent[number].seat}, message {number + 1}")
         yield from _answer(record, sent[number])
-    own = [event for event in record.events if event.seat == HUMAN]
+    own = [event for event in record.events if is_person(event.seat)]
     for kind in _DEEDS:
         event = next((one for one in own if one.kind == kind), None)
         if event is not None:
-            yield Moment(tick=event.tick, words=f"person {trial_trace.ACTS[kind][1]}")
+            name = trial_trace.seat_name(event.seat, record.paths)
+            yield Moment(tick=event.tick, words=f"{name} {trial_trace.ACTS[kind][1]}")
 
 
 def _answer(record: TrialRecord, message: Sent) -> Iterator[Moment]:
     for event in record.events:
         if isinstance(event, (Accepted, Declined)) and event.message == message.message:
-            yield Moment(tick=event.tick, words=_ANSWERS[event.kind])
+            name = trial_trace.seat_name(event.seat, record.paths)
+            yield Moment(tick=event.tick, words=f"{name} {_ANSWERS[event.kind]}")
             return
 
 

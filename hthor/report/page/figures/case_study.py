@@ -17,7 +17,7 @@ from hthor.report.drawing import floor_plan, text_fit, trial_figure, trial_legen
 from hthor.report.html import matplotlib_svg
 from hthor.report.page.camera_frames import Views
 from hthor.report.page.key_moments import MANY, Moment
-from hthor.types import HUMAN, HouseSpec, Vec2
+from hthor.types import HouseSpec, Vec2
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -182,7 +182,7 @@ def _task(record: TrialRecord) -> str:
 
 def _legend(rows: Sequence[Row], *, destined: bool) -> list[Line2D]:
     seats = dict.fromkeys(seat for row in rows for seat in row.record.paths)
-    named = {seat: "person" if seat == HUMAN else seat for seat in seats}
+    named = {seat: trial_trace.seat_name(seat, seats) for seat in seats}
     marks = [trial_legend.line(trial_trace.seat_colour(seat), f"{name}, way and view") for seat, name in named.items()]
     marks += [
         trial_legend.mark("o", "white", "start", edge=matplotlib_svg.SOFT, size=6.0),

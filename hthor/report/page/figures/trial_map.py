@@ -1,4 +1,4 @@
-"""Draws one trial from above: the paths of the person and the robots, and that of the same person without a robot."""
+"""Draws one trial from above: the paths of people and robots, and those of the same people without a robot."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.report.drawing import floor_plan, text_fit, trial_figure, trial_legend, trial_trace
 from hthor.report.html import matplotlib_svg
-from hthor.types import HUMAN, HouseSpec
+from hthor.types import HouseSpec, is_person
 
 if TYPE_CHECKING:
     from collections.abc import Collection
@@ -23,7 +23,7 @@ def figure(record: TrialRecord, house: HouseSpec, alone: TrialRecord | None) -> 
     """A small plan; all plans have one size, whatever the house.
 
     Args:
-        alone: the trial of the same person at the same task without a robot, if there is one.
+        alone: the trial of the same people at the same task without a robot, if there is one.
     """
     with matplotlib_svg.style():
         made = matplotlib_svg.new_figure(_HIGH, _WIDE)
@@ -31,8 +31,9 @@ def figure(record: TrialRecord, house: HouseSpec, alone: TrialRecord | None) -> 
         ax = made.subplots()
         floor_plan.draw_house(ax, house, marked=trial_trace.destinations(record.spec, house), small=True)
         if alone is not None:
-            way = trial_trace.points(alone.log, HUMAN)
-            ax.plot(way[:, 0], way[:, 1], color=trial_trace.INK, lw=0.8, ls=_DASH, alpha=0.7, zorder=7.5)
+            for seat in alone.paths:
+                way = trial_trace.points(alone.log, seat)
+                ax.plot(way[:, 0], way[:, 1], color=trial_trace.INK, lw=0.8, ls=_DASH, alpha=0.7, zorder=7.5)
         for seat in record.paths:
             trial_figure.draw_path(ax, record.log, seat, words=False)
         for _, start in trial_trace.targets(record.spec, house):
@@ -48,9 +49,10 @@ def legend(seats: Collection[str], *, alone: bool, destined: bool, failed: bool 
         seats: those that are drawn. alone: whether paths without a robot are drawn. destined: whether destinations
         are drawn. failed: whether the agent of a seat failed.
     """
-    ways = [trial_legend.line(trial_trace.seat_colour(seat), "person" if seat == HUMAN else seat) for seat in seats]
+    ways = [trial_legend.line(trial_trace.seat_colour(seat), trial_trace.seat_name(seat, seats)) for seat in seats]
     if alone:
-        ways.append(Line2D([], [], color=trial_trace.INK, lw=0.9, ls=_DASH, label="the same person alone"))
+        who = "person alone" if sum(map(is_person, seats)) == 1 else "people without robots"
+        ways.append(Line2D([], [], color=trial_trace.INK, lw=0.9, ls=_DASH, label=f"the same {who}"))
     marks = [
         trial_legend.mark("o", "white", "start", edge=matplotlib_svg.SOFT),
         trial_legend.mark("o", matplotlib_svg.SOFT, "end"),
