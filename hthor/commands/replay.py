@@ -94,12 +94,8 @@ def _replay_mind(
     if json:
         output.put_json(stream)
         return
-    path = (
-        out
-        or run
-        / "replays"
-        / f"{record.spec.task.id.replace('/', '-')}-{record.key}-mind{f'-{seat}' if seat else ''}.png"
-    )
+    end = f"mind-{seat}" if seat else "mind"
+    path = out or run / "replays" / f"{record.spec.task.id.replace('/', '-')}-{record.key}-{end}.png"
     path.parent.mkdir(parents=True, exist_ok=True)
     render_trial.check_file_name(path, video=False)
     lettering.save_figure(human_trace_figure.figure(record, house, stream), path)

@@ -116,7 +116,7 @@ class TrialRunner:
                 profile="fast" if pack is None else "nice",
                 assets=pack or "",
                 cameras=cameras,
-                **({"people": people} if people > 1 else {}),
+                people=people,
             )
             gc_freeze.freeze_existing()
         return self._worlds[key]
