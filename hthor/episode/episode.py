@@ -334,10 +334,16 @@ class Episode:
         off = claims.claim_error(send.object, event.position, self.world.snapshot(), self.world.house)
         return msgspec.structs.replace(event, off=off)
 
+    def _finder(self) -> str:
+        """The person who has an object that was to be found in view; the first person if there is none."""
+        in_view = self.world.snapshot().in_view
+        wanted = {job.target for job in self.task.goal.todo if job.relation == "find"}
+        return next((seat for seat in self.people if wanted & set(in_view.get(seat, ()))), HUMAN)
+
     def _end(self) -> tuple[Event, ...]:
         """The last event of the trial; none while it goes on."""
         if self.voided:
             return (Voided(tick=self.tick, seat=HUMAN, reason=self.voided),)
         if not self.done:
             return ()
-        return ((Success if self.met else Timeout)(tick=self.tick, seat=HUMAN),)
+        return (Success(tick=self.tick, seat=self._finder()) if self.met else Timeout(tick=self.tick, seat=HUMAN),)

@@ -182,7 +182,7 @@ def _pair(one: LoadedRun, other: LoadedRun) -> Comparison:
         n=len(pairs),
         dropped=(joined.only_one, joined.only_other),
         tasks=len({pair.one.spec.task.id for pair in pairs}),
-        people=len({pair.one.spec.session for pair in pairs}),
+        people=len({human.participant for pair in pairs for human in pair.one.spec.humans}),
         differences={metric: difference for metric, difference in found.items() if difference is not None},
         mcnemar=paired_difference.mcnemar(pairs),
         tally=_tally(pairs),

@@ -62,7 +62,7 @@ def _arm(run: Run) -> Arm:
         condition=run.condition,
         folder=run.name,
         trials=len(run.records),
-        people=len({record.spec.session for record in run.records}),
+        people=len({human.participant for record in run.records for human in record.spec.humans}),
         tasks=len({record.spec.task.id for record in run.records}),
         unfinished=run.plan.trials - len(run.records),
         scores=aggregate.estimate_metrics(run.records),

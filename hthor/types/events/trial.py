@@ -58,7 +58,7 @@ class Voided(LogEntry, frozen=True, kw_only=True, tag="voided"):
 
 
 class Success(LogEntry, frozen=True, kw_only=True, tag="success"):
-    """The goal was met; always the last event."""
+    """The goal was met; always the last event. In a search the seat is that of the person who found the target."""
 
 
 class Timeout(LogEntry, frozen=True, kw_only=True, tag="timeout"):
