@@ -19,6 +19,7 @@ from walking_stage import WalkingStage
 from hthor.episode import Concurrent, DecisionClock, EpisodeLog, LockStep, play
 from hthor.guest import Guest, GuestConfig
 from hthor.types import Action, Briefing, Camera, Detection, Drive, Observation, Pose, Reply, Scan, Send
+from hthor.world import World
 
 LEVELS = ["L1", "L2", "L3"]
 CLOCKS = ["lockstep", "concurrent", "instant"]
@@ -104,17 +105,19 @@ def robots(tmp_path: Path) -> Iterator[Any]:
 
 
 def clock_of(name: str) -> DecisionClock:
+    """The clock of this name; a concurrent one waits for all agents now and then, or slow machines would ask few."""
     if name == "lockstep":
         return LockStep()
-    instant = Concurrent(pace=lambda _: instant.settle())
-    return instant if name == "instant" else Concurrent(pace=lambda _: time.sleep(0.004))
+    every = 1 if name == "instant" else 8
+    clock = Concurrent(pace=lambda tick: clock.settle() if tick % every == 0 else time.sleep(0.004))
+    return clock
 
 
-def run(clock: DecisionClock, robots: dict[str, Any]) -> EpisodeLog:
+def run(clock: DecisionClock, robots: dict[str, Any], world: Any = None) -> EpisodeLog:
     spec = trial("object_poses", "house_map")
-    spec = msgspec.structs.replace(spec, task=msgspec.structs.replace(TASK, time_limit=12.0))
+    spec = msgspec.structs.replace(spec, task=msgspec.structs.replace(TASK, time_limit=6.0 if world else 12.0))
     people = {"human": Mind(first_person), "human2": Mind(second_person)}
-    return play(spec, Stage(), people, robots, clock)
+    return play(spec, world or Stage(), people, robots, clock)
 
 
 def first_person(now: Observation) -> Action:
@@ -155,6 +158,22 @@ def test_a_guest_observes_what_a_local_agent_observes(level: str, clock: str, ro
     assert any(message.answers is not None for message in inbox)
     assert any(isinstance(here.say, Send) and here.say.answers is not None for _, here, _ in steps)
     assert len({one.receipt.status for one in seen if one.receipt}) > 1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("clock", CLOCKS[:2])
+@pytest.mark.parametrize("level", LEVELS[1:])
+def test_it_does_so_in_a_real_world(level: str, clock: str, robots: Any) -> None:
+    """With pictures, which another thread draws while bodies drive."""
+    objects = tuple((placed.id, placed.kind) for placed in TASK.objects)
+    both = robots(level)
+    log = run(clock_of(clock), both, World(TASK.house, ("scout", "scout"), objects, people=2))
+    assert not log.faults
+    for one in both.values():
+        assert len(one.decided) > 3
+        assert [here for _, here, _ in one.decided] == [there for _, _, there in one.decided]
+        assert len({observation.pose.x for observation, _, _ in one.decided}) > 1
+        assert any(observation.inbox for observation, _, _ in one.decided)
 
 
 @pytest.mark.slow

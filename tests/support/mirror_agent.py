@@ -12,7 +12,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from hthor.types import Action, Briefing, Drive, Observation, Send
+from hthor.types import Action, BodySpec, Briefing, Drive, Observation, Send
 from hthor.types.sensors import READINGS
 
 DRIVE = Drive(forward=0.4, left=-0.1, yaw=2.5, pitch=0.2)
@@ -50,7 +50,8 @@ def plain(value: Any) -> Any:
     """A value as JSON that differs whenever any field, type or byte of the value differs."""
     if isinstance(value, msgspec.Struct):
         fields = [name for name in value.__struct_fields__ if name != "senses"]
-        return {"record": type(value).__name__, **{name: plain(getattr(value, name)) for name in fields}}
+        kind = "BodySpec" if isinstance(value, BodySpec) else type(value).__name__  # a RobotSpec has the same fields
+        return {"record": kind, **{name: plain(getattr(value, name)) for name in fields}}
     if isinstance(value, np.ndarray):
         data = np.ascontiguousarray(value)
         return [value.dtype.str, *value.shape, hashlib.sha256(data.tobytes()).hexdigest()[:16]]
