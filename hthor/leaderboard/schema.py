@@ -11,6 +11,7 @@ import msgspec
 from msgspec import Struct
 
 from hthor import documents
+from hthor.eval.config.human_populations import HumanModelRef
 from hthor.eval.config.run_config import RunConfig
 from hthor.eval.results.paired_difference import Difference
 from hthor.eval.statistics.intervals import Estimate
@@ -19,8 +20,8 @@ from hthor.leaderboard.entries.entry import Counts, Entry, Trials
 from hthor.leaderboard.ranking.board import Board
 from hthor.types import RobotSeat
 
-NEVER = "shard"
-"""The only field of a run that entries never have: an entry is a whole run."""
+_NEVER = {RunConfig.__name__: "shard", HumanModelRef.__name__: "people"}
+"""The field of each record that entries never have: an entry is a whole run, with one person in a trial."""
 _MAYBE = {
     record.__name__: {field.name for field in msgspec.structs.fields(record) if field.default is msgspec.UNSET}
     for record in (RunConfig, RobotSeat, Trials)
@@ -69,7 +70,8 @@ def document_schema(kind: str) -> dict[str, Any]:
 
 def _strict(name: str, record: dict[str, Any]) -> dict[str, Any]:
     """The schema of a record in which every field is required and no other field is allowed."""
-    held = {field: _demanding(name, field, one) for field, one in record["properties"].items() if field != NEVER}
+    fields = {field: one for field, one in record["properties"].items() if field != _NEVER.get(name)}
+    held = {field: _demanding(name, field, one) for field, one in fields.items()}
     about = {"description": record["description"].split("\n")[0]} if "description" in record else {}
     return {
         "title": record["title"],
@@ -100,7 +102,8 @@ def _fields(there: Any, held: Any, where: str) -> Iterator[tuple[str, str]]:
     if isinstance(held, Struct):
         names = [field.name for field in msgspec.structs.fields(held)]
         parts = {name: getattr(held, name) for name in names}
-        wanted = {name: part for name, part in parts.items() if part is not msgspec.UNSET and name != NEVER}
+        never = _NEVER.get(type(held).__name__)
+        wanted = {name: part for name, part in parts.items() if part is not msgspec.UNSET and name != never}
         yield from ((_at(where, name), "is no field of an entry") for name in sorted(there.keys() - wanted.keys()))
         yield from ((_at(where, name), "is missing") for name in sorted(wanted.keys() - there.keys()))
         for name in sorted(wanted.keys() & there.keys()):
