@@ -63,6 +63,7 @@ class Messenger:
         """``yielding`` is None for a single job, as in the paper."""
         self.briefing, self.routes, self.follower = briefing, routes, follower
         self.knowledge, self.yielding, self.several = knowledge, yielding, yielding is not None
+        self._has_several_people = sum(map(is_person, briefing.teammates)) > 1
         self.kinds = {thing.id: thing.kind for thing in knowledge.things.values()}
         self._timings: dict[tuple[str, str], MessageTiming] = {}
         self._answers: dict[tuple[str, str], Receipt] = {}
@@ -198,7 +199,11 @@ class Messenger:
         found = self._belongs(job, target)
         if found is None or not self._is_close(observation, found[0]):
             return None
-        return Send(text=f"{kind_title(found[0].kind).capitalize()} is here.", object=found[0].id, position=where)
+        text, to = (
+            f"{kind_title(found[0].kind).capitalize()} is here.",
+            target.held_by if self._has_several_people else "",
+        )
+        return Send(text=text, object=found[0].id, position=where, to=to)
 
     def _is_close(self, observation: Observation, thing: Thing) -> bool:
         """Whether the robot is within the detector's range of a thing's outline, in the same room."""

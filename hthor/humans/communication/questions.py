@@ -1,7 +1,7 @@
 """Truthful answers to questions, from what a participant did and believes.
 
-Three questions are understood, by their words: where something is, whether it was found, and whether a suggestion was
-accepted. Any other question is left without an answer.
+Four questions are understood, by their words: where something is, whether it was found, whether it is somewhere, and
+whether a suggestion was accepted. Any other question is left without an answer.
 """
 
 import re
@@ -37,7 +37,9 @@ class QuestionAnswering:
             return self._place(question) or False
         if words & _SUGGESTION_WORDS:
             return self._has_accepted(question)
-        return self._has_found(question) if words & _FOUND_WORDS else None
+        if words & _FOUND_WORDS:
+            return self._has_found(question)
+        return self._is_there(question) if question.text.lower().startswith("is ") else None
 
     def _has_accepted(self, question: Message) -> bool:
         """Whether the latest message of the person or robot who asks, about the same thing, was accepted."""
@@ -52,6 +54,14 @@ class QuestionAnswering:
             return all(map(self._is_known, self.subgoals.all.values()))
         asked = self._asked(question)
         return any(map(self._is_known, asked)) or (not asked and self._furniture(question) is not None)
+
+    def _is_there(self, question: Message) -> bool | None:
+        """Whether an object is at the furniture that a question names too; None if either is not known."""
+        places = [place for place in self.memory.places.values() if _says(question, place.kind)]
+        seen = next((subgoal.known.seen for subgoal in self._asked(question)), None)
+        if seen is None or not places:
+            return None
+        return any(place.id == seen.support or place.covers(seen.position) for place in places)
 
     def _is_known(self, subgoal: Subgoal) -> bool:
         return bool(subgoal.done) or subgoal.known.seen is not None or self.human.now.holding == subgoal.target
@@ -87,8 +97,11 @@ class QuestionAnswering:
 
 
 def _names(question: Message, id: str, kind: str) -> bool:
-    if question.object:
-        return question.object in (id, kind)
+    return question.object in (id, kind) if question.object else _says(question, kind)
+
+
+def _says(question: Message, kind: str) -> bool:
+    """Whether the words of a question name this kind."""
     return f" {kind.replace('_', ' ')} " in f" {' '.join(re.findall('[a-z]+', question.text.lower()))} "
 
 

@@ -8,6 +8,7 @@ The policy knows nothing of questions: the receipt in its observation is that of
 
 import math
 from collections.abc import Callable, Collection
+from typing import Literal
 
 import msgspec
 
@@ -17,6 +18,7 @@ from hthor.agents.skills.conversation.sightings import Sightings
 from hthor.types import Action, Briefing, Observation, Receipt, Send, is_person
 
 _OPEN = ("sent", "shown")
+_Sort = Literal["suggestion", "answer", "question"]
 
 
 class Conversation:
@@ -33,8 +35,8 @@ class Conversation:
         self.answers = Answers(briefing, self.sightings, unfinished)
         self.queries = Queries(briefing) if asks else None
         self._has_several_people = sum(map(is_person, briefing.teammates)) > 1
-        self._said: Send | None = None
-        self._last: Send | None = None  # the last message that there was a receipt of, and its number
+        self._said: _Sort = "suggestion"
+        self._last: _Sort = "suggestion"  # the sort of the last message that there was a receipt of, and its number
         self._number = -1
         self._suggestion: Send | None = None  # the policy's last one, and what became of it
         self._receipt: Receipt | None = None
@@ -47,10 +49,10 @@ class Conversation:
             return observation
         if receipt.message != self._number:
             self._number, self._last = receipt.message, self._said
-        if self._last is self._suggestion:
+        if self._last == "suggestion":
             self._receipt = receipt
             return observation
-        if self.queries is not None and self._last is not None and self._last.question and self._receipt is not None:
+        if self._last == "question" and self.queries is not None and self._receipt is not None:
             self._receipt = self.queries.updated(self._receipt, receipt)
         return msgspec.structs.replace(observation, receipt=self._receipt)
 
@@ -65,13 +67,12 @@ class Conversation:
             say = self._suggest(observation, suggestion)
         elif self.queries is not None:
             say = self._ask(observation, self.queries)
-        self._said = say or self._said
         return action if say is action.say else msgspec.structs.replace(action, say=say)
 
     def _suggest(self, observation: Observation, suggestion: Send) -> Send:
         if self._has_several_people and not suggestion.to and suggestion.position is not None:
             suggestion = msgspec.structs.replace(suggestion, to=self._addressee(observation, suggestion))
-        self._suggestion = suggestion
+        self._suggestion, self._said = suggestion, "suggestion"
         self.sightings.note_told(suggestion.object)
         return suggestion
 
@@ -87,14 +88,15 @@ class Conversation:
 
         Another suggestion of this moment is left out, as if the answer had covered it.
         """
-        if suggestion is not None and answer.position is not None and answer.object == suggestion.object:
-            self._suggestion = msgspec.structs.replace(suggestion, to=answer.to, answers=answer.answers)
+        about = suggestion or self._suggestion
+        if about is not None and answer.position is not None and answer.object == about.object:
+            text = answer.text if suggestion is None else suggestion.text
+            self._suggestion, self._said = msgspec.structs.replace(answer, text=text), "suggestion"
             return self._suggestion
+        self._said = "answer"
         if suggestion is not None:
             self._suggestion = suggestion
             self._receipt = Receipt(message=-1, status="covered", tick=observation.tick, by=answer.to)
-        elif self._suggestion is not None and answer.position and answer.object == self._suggestion.object:
-            self._suggestion = answer
         else:
             self._cover(observation.tick, answer.to)
         return answer
@@ -102,21 +104,19 @@ class Conversation:
     def _ask(self, observation: Observation, queries: Queries) -> Send | None:
         """A question about the last suggestion, if that is the last thing that the robot said."""
         suggestion, receipt = self._suggestion, self._receipt
-        if suggestion is None or receipt is None or self._last is not suggestion or self._said is not suggestion:
-            return None
-        if suggestion.object not in self.unfinished() or self._is_held(observation, suggestion.object):
+        if suggestion is None or receipt is None or not self._last == self._said == "suggestion":
             return None
         kind = self.sightings.kind(suggestion.object) or kind_of(suggestion.object)
         question = queries.due(observation.tick, suggestion, kind, receipt)
-        if question is not None:
-            self._cover(observation.tick, question.to)
+        if question is None or suggestion.object not in self.unfinished():
+            return None
+        if any(state.held_by for state in self.sightings.named(suggestion.object, observation)):
+            return None
+        self._said = "question"
+        self._cover(observation.tick, question.to)
         return question
 
     def _cover(self, tick: int, reader: str) -> None:
         """Note that a message covers the suggestion, if it is open on this reader's panel."""
         if self._receipt is not None and self._receipt.status in _OPEN and self._receipt.by == reader:
             self._receipt = msgspec.structs.replace(self._receipt, status="covered", tick=tick)
-
-    def _is_held(self, observation: Observation, object: str) -> bool:
-        """Whether somebody is known to hold the object."""
-        return any(state.held_by for state in self.sightings.named(object, observation))
