@@ -43,12 +43,14 @@ def _stand(seat: BodyState, pose: Pose, place: Vec2) -> None:
 
 
 def _clear_place(seat: BodyState, pose: Pose, others: Sequence[BodyState]) -> Vec2:
-    space, free = seat.space, seat.space.free.copy()
+    space = seat.space
+    place = space.nearest_free(pose.x, pose.y)
+    if _is_clear(place, seat, others):
+        return place
+    free = space.free.copy()
     for row, column in zip(*(free & _cells_near(seat, others)).nonzero(), strict=True):
         if not _is_clear(space.centre_of(int(row), int(column)), seat, others):
             free[row, column] = False
-    if _is_clear((pose.x, pose.y), seat, others):
-        return space.nearest_free(pose.x, pose.y)
     return space.nearest_free(pose.x, pose.y, free)
 
 
