@@ -17,20 +17,19 @@ from collections.abc import Callable, Mapping, Sequence
 
 import msgspec
 
-from hthor import plugins, rules, seeds
-from hthor.comms import claims
+from hthor import rules, seeds
 from hthor.comms.mailbox import Mailbox
-from hthor.episode.briefing import make_briefing
 from hthor.episode.episode_log import EpisodeLog, Fault
 from hthor.episode.episode_state import EpisodeState
-from hthor.episode.goal_progress import GoalProgress
-from hthor.episode.log_writer import LogWriter
+from hthor.episode.goal_judge import GoalJudge
+from hthor.episode.log_writer import LogWriter, end_event
+from hthor.episode.seat_inputs import make_briefing, make_observation
 from hthor.episode.set_points import rounded
+from hthor.episode.speech import say
 from hthor.episode.trial_world import TrialWorld
 from hthor.errors import HthorError
-from hthor.tasks.kind import TaskKind
-from hthor.types import HUMAN, Action, Briefing, Drive, Motion, Observation, Send, TrialSpec, is_person
-from hthor.types.events import AgentFault, Event, JournalEntry, Paused, Resumed, Sent, Success, Thought, Timeout, Voided
+from hthor.types import HUMAN, Action, Briefing, Drive, Motion, Observation, TrialSpec, is_person
+from hthor.types.events import AgentFault, Event, JournalEntry, Paused, Resumed, Thought
 
 Observer = Callable[["Episode", Sequence[Event]], None]
 """Called after `Episode.reset` and after every tick, with the events since its last call; it must change nothing."""
@@ -46,7 +45,7 @@ class Episode:
 
     Attributes:
         seats: as above. events: everything that has happened so far, in order. faults: failures of agents so far.
-        met: whether the goal is met. voided: why the trial does not count; empty if it does.
+        voided: why the trial does not count; empty if it does.
     """
 
     def __init__(self, trial: TrialSpec, world: TrialWorld, seats: Sequence[str] | None = None) -> None:
@@ -55,16 +54,15 @@ class Episode:
         self.people = tuple(seat for seat in self.seats if is_person(seat))
         self._seed = seeds.derive(trial.seed, "world", trial.session, trial.index, trial.task.id)
         self._privileges = {robot.seat: robot.agent.privileges for robot in trial.robots}
-        self._kind: TaskKind = plugins.load("task kind", self.task.kind)
         self._limit = round(self.task.time_limit / rules.TICK_S)
         self._observers: list[Observer] = []
 
     def reset(self) -> None:
         """Begin the trial at tick 0, whatever has happened before."""
         self.world.reset(self.task, seed=self._seed)
-        self.met, self.voided, self.paused = False, "", False
+        self.voided, self.paused = "", False
         self._mailbox = Mailbox([seat for seat in self.seats if seat not in self.people], self.people)
-        self._progress = GoalProgress(self._kind, self.task)
+        self._goal = GoalJudge(self.task)
         self._writer = LogWriter({seat: self.world.bodies[seat] for seat in self.seats})
         self.events, self.faults = self._writer.events, self._writer.faults
         self._active = self.seats  # without those that were retired
@@ -73,7 +71,7 @@ class Episode:
         self._actions: dict[str, tuple[Action, Observation | None]] = {}
         self._failed: dict[str, Fault] = {}
         self._writer.trace(self.world)
-        self.events.extend(self._progress.update(self.world.snapshot(), self.world.house, has_events=True))
+        self.events.extend(self._goal.begin(self.world.snapshot(), self.world.house))
         for observer in self._observers:
             observer(self, tuple(self.events))
 
@@ -83,9 +81,14 @@ class Episode:
         return self.world.tick
 
     @property
+    def met(self) -> bool:
+        """Whether the goal is met."""
+        return self._goal.met
+
+    @property
     def done(self) -> bool:
         """Whether the goal is met, the time is over, or the trial was voided."""
-        return self.met or bool(self.voided) or self.world.tick >= self._limit
+        return self._goal.met or bool(self.voided) or self.world.tick >= self._limit
 
     @property
     def waiting(self) -> tuple[str, ...]:
@@ -109,19 +112,8 @@ class Episode:
             return known
         if self._steps:
             raise HthorError("observe before the first step of a tick, so that all seats observe the same moment")
-        world = self.world
-        observation = Observation(
-            tick=world.tick,
-            pose=world.pose(seat),
-            idle=world.idle(seat),
-            senses=world.frozen_senses(seat) if frozen else world.senses(seat),
-            room=world.room(seat),
-            holding=world.holding(seat),
-            outcome=world.outcome(seat),
-            inbox=self._mailbox.inbox(seat),
-            receipt=self._mailbox.receipt(seat),
-            truth=world.truth() if "object_poses" in self._privileges.get(seat, ()) else (),
-        )
+        privileges = self._privileges.get(seat, ())
+        observation = make_observation(self.world, self._mailbox, seat, privileges, frozen=frozen)
         self._observed[seat] = observation
         return observation
 
@@ -140,20 +132,14 @@ class Episode:
         """
         if not isinstance(action, Action):
             raise TypeError(f"submit needs an hthor.types.Action, got {type(action).__name__}")
-        if seat not in self.seats:
-            raise HthorError(f"'{seat}' is no seat of this trial; its seats are {', '.join(self.seats)}")
+        self._check_seat(seat)
         if seat in self._actions and action.say is None:
             action = msgspec.structs.replace(action, say=self._actions[seat][0].say)
         self._actions[seat] = (action, observation)
 
     def steer(self, seat: str, drive: Drive) -> None:
-        """Let a seat drive like this from its next step on, as a live person does between two ticks.
-
-        Raises:
-            HthorError: when there is no such seat.
-        """
-        if seat not in self.seats:
-            raise HthorError(f"'{seat}' is no seat of this trial; its seats are {', '.join(self.seats)}")
+        """Let a seat drive like this from its next step on, as a live person does between two ticks."""
+        self._check_seat(seat)
         self._start(seat, drive)
 
     def substep(self) -> None:
@@ -161,8 +147,7 @@ class Episode:
 
         Observe and submit before the first step of a tick: all seats then observe the moment at which it begins.
         """
-        if self.paused or self.done:
-            raise HthorError(f"this trial is {'paused' if self.paused else 'over'}, so no time passes in it")
+        self._check_running()
         self.world.substep()
         self._steps += 1
 
@@ -173,17 +158,12 @@ class Episode:
         self._failed.setdefault(seat, Fault(seat=seat, kind=kind, tick=self.tick, detail=detail))
 
     def advance(self) -> tuple[Event, ...]:
-        """Let one tick pass, and return its events.
+        """Let one tick pass, and return its events. Raises HthorError when the trial is over or paused.
 
         Messages that were observed count as shown, and failed agents leave. Then every seat in order says what it has
         to say and begins its motion. Then the world moves on, and the goal is judged.
-
-        Raises:
-            HthorError: when the trial is done or paused.
-            PhysicsError: when the world lost its state.
         """
-        if self.paused or self.done:
-            raise HthorError(f"this trial is {'paused' if self.paused else 'over'}, so no time passes in it")
+        self._check_running()
         world, events = self.world, self.events
         first, tick = len(events), world.tick
         for seat in self.seats:
@@ -196,7 +176,7 @@ class Episode:
         self._observed.clear()
         self._steps = 0
         self._writer.trace(world)
-        self._judge(has_events=len(events) > first)
+        events.extend(self._goal.judge(world.snapshot(), world.house, has_events=len(events) > first))
         happened = tuple(events[first:])
         for observer in self._observers:
             observer(self, happened)
@@ -232,10 +212,9 @@ class Episode:
             world=self.world.save_state(),
             mailbox=self._mailbox.save_state(),
             log=self._writer.save_state(),
-            met=self.met,
+            goal=self._goal.save_state(self.world.snapshot()),
             voided=self.voided,
             paused=self.paused,
-            progress=self._progress.save_state(self.world.snapshot()),
             active=self._active,
             observed={seat: msgspec.structs.replace(one, senses=None) for seat, one in self._observed.items()},
             actions=dict(self._actions),
@@ -253,8 +232,8 @@ class Episode:
         self.world.load_state(state.world)
         self._mailbox.load_state(state.mailbox)
         self._writer.load_state(state.log)
-        self.met, self.voided, self.paused = state.met, state.voided, state.paused
-        self._progress.load_state(state.progress, self.world.snapshot())
+        self.voided, self.paused = state.voided, state.paused
+        self._goal.load_state(state.goal, self.world.snapshot())
         self._active, self._actions, self._failed = state.active, dict(state.actions), dict(state.failed)
         self._steps = state.steps
         self._observed = {
@@ -272,8 +251,9 @@ class Episode:
             ratings: each person's rating of trust in the robots after the trial, by seat.
             journals: each human model's own entries for the journal, by seat.
         """
-        log = self._writer.log(self.tick, self._end(), journals or {})
-        return msgspec.structs.replace(log, met=self.met, progress=self._progress.value, ratings=dict(ratings or {}))
+        winner = self._goal.winner(self.world.snapshot(), self.people) if self.met else ""
+        end = end_event(self.tick, winner, self.voided) if self.done else None
+        return self._writer.log(self.tick, end, self._goal.progress, ratings or {}, journals or {})
 
     # ----------------------------------------------------------------------------------------------- within one tick
 
@@ -285,13 +265,6 @@ class Episode:
                 self._writer.rest.note(self.tick, seat, resting=True)
         self._active = tuple(seat for seat in self._active if seat not in self._failed)
         self._failed = {}
-
-    def _judge(self, *, has_events: bool) -> None:
-        """Judge the goal by the true state of the world; ``has_events``: whether anything happened in this tick."""
-        snapshot, house = self.world.snapshot(), self.world.house
-        self.met = self._kind.met(self.task, snapshot, house)
-        if self._progress.value is not None:
-            self.events.extend(self._progress.update(snapshot, house, met=self.met, has_events=has_events))
 
     def _act(self, tick: int) -> None:
         """Let every seat that has acted say what it says and begin its motion."""
@@ -305,7 +278,7 @@ class Episode:
             if seen is not None and seen.tick < tick:
                 self.events.append(Thought(tick=tick, seat=seat, ticks=tick - seen.tick))
             if action.say is not None:
-                self._say(seat, action)
+                self.events.extend(say(self.world, self._mailbox, seat, action.say))
             if isinstance(action.motion, Drive) or ((seen is None or seen.idle) and idle(seat)):
                 self._start(seat, action.motion)
             elif idle(seat):
@@ -318,32 +291,10 @@ class Episode:
         self.world.start(seat, motion)
         self._writer.note_motion(self.tick, self._steps, seat, motion, started=not self.world.idle(seat))
 
-    def _say(self, seat: str, action: Action) -> None:
-        tick, say = self.tick, action.say
-        if isinstance(say, Send):
-            image = None if seat in self.people else self.world.frame(seat)
-            events = self._mailbox.send(tick, seat, say, image)
-            self.events.extend(self._with_claim_error(event, say) for event in events)
-        elif say is not None:
-            self.events.extend(self._mailbox.reply(tick, seat, say))
+    def _check_seat(self, seat: str) -> None:
+        if seat not in self.seats:
+            raise HthorError(f"'{seat}' is no seat of this trial; its seats are {', '.join(self.seats)}")
 
-    def _with_claim_error(self, event: Event, send: Send) -> Event:
-        """The event; for a sent message, with the distance of its claim from the truth added."""
-        if not isinstance(event, Sent):
-            return event
-        off = claims.claim_error(send.object, event.position, self.world.snapshot(), self.world.house)
-        return msgspec.structs.replace(event, off=off)
-
-    def _finder(self) -> str:
-        """The person who has an object that was to be found in view; the first person if there is none."""
-        in_view = self.world.snapshot().in_view
-        wanted = {job.target for job in self.task.goal.todo if job.relation == "find"}
-        return next((seat for seat in self.people if wanted & set(in_view.get(seat, ()))), HUMAN)
-
-    def _end(self) -> tuple[Event, ...]:
-        """The last event of the trial; none while it goes on."""
-        if self.voided:
-            return (Voided(tick=self.tick, seat=HUMAN, reason=self.voided),)
-        if not self.done:
-            return ()
-        return (Success(tick=self.tick, seat=self._finder()) if self.met else Timeout(tick=self.tick, seat=HUMAN),)
+    def _check_running(self) -> None:
+        if self.paused or self.done:
+            raise HthorError(f"this trial is {'paused' if self.paused else 'over'}, so no time passes in it")

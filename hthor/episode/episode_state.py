@@ -4,6 +4,7 @@ from msgspec import Struct
 
 from hthor.comms.mailbox import MailboxState
 from hthor.episode.episode_log import Fault
+from hthor.episode.goal_judge import GoalState
 from hthor.episode.log_writer import LogState
 from hthor.types import Action, Observation
 
@@ -14,10 +15,9 @@ class EpisodeState(Struct, frozen=True, kw_only=True):
     world: bytes
     mailbox: MailboxState
     log: LogState
-    met: bool
+    goal: GoalState
     voided: str
     paused: bool
-    progress: tuple[float | None, bool]
     active: tuple[str, ...]
     observed: dict[str, Observation]
     actions: dict[str, tuple[Action, Observation | None]]

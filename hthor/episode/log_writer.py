@@ -9,8 +9,8 @@ from hthor.episode.episode_log import EpisodeLog, Fault
 from hthor.episode.rest_time import RestState, RestTime
 from hthor.episode.trial_world import TrialWorld
 from hthor.humans.core.behaviour_log import BehaviourRecorder, RecorderState
-from hthor.types import BodySpec, Motion, is_person
-from hthor.types.events import Event, JournalEntry
+from hthor.types import HUMAN, BodySpec, Motion, is_person
+from hthor.types.events import Event, JournalEntry, Success, Timeout, Voided
 
 _THOUSAND = 1000.0
 """Millimetres in a metre, milliradians in a radian."""
@@ -58,18 +58,26 @@ class LogWriter:
             self._recorders[seat].motion(tick, motion, step)
         self.rest.note_motion(tick, seat, motion, started=started)
 
-    def log(self, tick: int, end: Sequence[Event], journals: Mapping[str, Sequence[JournalEntry]]) -> EpisodeLog:
-        """The log up to this tick, with the last event ``end`` if the trial is over, and the people's journals."""
-        events = (*self.events, *end)
+    def log(
+        self,
+        tick: int,
+        end: Event | None,
+        progress: float | None,
+        ratings: Mapping[str, int | None],
+        journals: Mapping[str, Sequence[JournalEntry]],
+    ) -> EpisodeLog:
+        """The log up to this tick, with the last event ``end`` if the trial is over."""
+        events = (*self.events, *(() if end is None else (end,)))
         recorders = self._recorders.items()
         journal = [entry for seat, one in recorders for entry in one.journal(journals.get(seat, ()), events)]
         return EpisodeLog(
             events=events,
             paths={seat: list(path) for seat, path in self._paths.items()},
             ticks=tick,
-            met=False,
-            ratings={},
+            met=isinstance(end, Success),
+            ratings=dict(ratings),
             faults=tuple(self.faults),
+            progress=progress,
             idle=self.rest.totals(tick),
             journal=tuple(journal),
         )
@@ -91,3 +99,10 @@ class LogWriter:
         self.rest.load_state(state.rest)
         for seat, recorder in self._recorders.items():
             recorder.load_state(state.recorders[seat])
+
+
+def end_event(tick: int, winner: str, voided: str) -> Event:
+    """The last event of a trial; ``winner`` is the person to whom a success belongs, empty without success."""
+    if voided:
+        return Voided(tick=tick, seat=HUMAN, reason=voided)
+    return Success(tick=tick, seat=winner) if winner else Timeout(tick=tick, seat=HUMAN)

@@ -1,10 +1,11 @@
-"""What an agent or a human model is told before a trial."""
+"""What a seat is told before a trial, and what it observes in it."""
 
 from collections.abc import Sequence
 
 from hthor import rules
+from hthor.comms.mailbox import Mailbox
 from hthor.episode.trial_world import TrialWorld
-from hthor.types import Briefing, TaskSpec
+from hthor.types import Briefing, Observation, TaskSpec
 
 
 def make_briefing(
@@ -27,4 +28,22 @@ def make_briefing(
         kind=task.kind,
         jobs=goal.todo,
         crew=dict(world.bodies),
+    )
+
+
+def make_observation(
+    world: TrialWorld, mailbox: Mailbox, seat: str, privileges: tuple[str, ...], *, frozen: bool
+) -> Observation:
+    """What a seat observes now; ``frozen``: its sensors still show this moment when the world has gone on."""
+    return Observation(
+        tick=world.tick,
+        pose=world.pose(seat),
+        idle=world.idle(seat),
+        senses=world.frozen_senses(seat) if frozen else world.senses(seat),
+        room=world.room(seat),
+        holding=world.holding(seat),
+        outcome=world.outcome(seat),
+        inbox=mailbox.inbox(seat),
+        receipt=mailbox.receipt(seat),
+        truth=world.truth() if "object_poses" in privileges else (),
     )
