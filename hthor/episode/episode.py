@@ -120,7 +120,7 @@ class Episode:
     def submit(self, seat: str, action: Action, observation: Observation | None = None) -> None:
         """Let a seat act: what it says takes effect in the next `advance`, and its motion too if the body is free.
 
-        A second action in the same tick replaces the first, but for what the first said if the second says nothing.
+        A second action in the same tick replaces the first; if it says nothing, what the first says is kept.
 
         Args:
             observation: what the seat saw when it decided, if that was in an earlier tick; a motion counts only if the
