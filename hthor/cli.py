@@ -13,7 +13,21 @@ from typing import Annotated
 import typer
 
 from hthor import __version__, activity
-from hthor.commands import assets, calibrate, compare, doctor, houses, merge, priors, replay, report, runs, score, suite
+from hthor.commands import (
+    assets,
+    calibrate,
+    compare,
+    doctor,
+    houses,
+    merge,
+    migrate,
+    priors,
+    replay,
+    report,
+    runs,
+    score,
+    suite,
+)
 from hthor.commands.agent import agent, serve
 from hthor.commands.eval import evaluate
 from hthor.commands.humans import humans
@@ -31,6 +45,7 @@ app = typer.Typer(
 )
 app.command("eval")(evaluate.evaluate)
 app.command("merge")(merge.merge)
+app.command("migrate")(migrate.migrate)
 app.command("score")(score.score)
 app.command("compare")(compare.compare)
 app.command("power")(compare.power)

@@ -22,7 +22,9 @@ from hthor.tasks import Suite
 from hthor.types import RobotSeat
 from hthor.types.specs import LOCKSTEP, Clock
 
-SCHEMA = "hthor.run/4"
+SCHEMA = "hthor.run/5"
+OLD_SCHEMA = "hthor.run/4"
+"""The schema of runs that `hthor migrate` converts."""
 _NAME_MAX = 100
 _HOUSES_NAMED = 4
 """A run's folder names its houses when they are fewer than this."""

@@ -10,7 +10,7 @@ import msgspec
 
 from hthor import documents, jsonio
 from hthor.errors import RunError
-from hthor.eval.config.run_config import SCHEMA, RunConfig, differences
+from hthor.eval.config.run_config import OLD_SCHEMA, SCHEMA, RunConfig, differences
 from hthor.eval.records import platform, run_isolation, session_restarts, trial_log
 from hthor.eval.records.platform import Platform
 from hthor.eval.records.trial_log import Place, TrialLog
@@ -49,6 +49,8 @@ class RunFolder:
         """The run's configuration; raises RunError when the folder holds no run, or its `run.json` is damaged."""
         if not self.config_file.is_file():
             raise RunError(f"{self} is not a run's folder: it has no run.json.{self._guess()} 'hthor eval' makes one.")
+        if documents.schema_of(self.config_file) == OLD_SCHEMA:
+            raise RunError(f"{self} was played by an older version of hthor; 'hthor migrate {self}' converts it.")
         hint = "evaluate it again, into another folder"
         return documents.read(self.config_file, RunConfig, RunError, schema=SCHEMA, hint=hint)
 

@@ -23,7 +23,8 @@ _DIGITS = 4
 _encoder = msgspec.json.Encoder(order="deterministic")
 _CHECK = b',"check":"%08x"}\n'
 _CHECK_LENGTH = len(_CHECK % 0)
-_KEY_DIGITS = 16
+KEY_DIGITS = 16
+"""Length of a trial's key."""
 _Entry = TypeVar("_Entry", bound=LogEntry)
 
 
@@ -68,7 +69,7 @@ OtherVersion = log_format.OtherVersion
 
 def key(spec: TrialSpec) -> str:
     """The trial's name: the first 16 hexadecimal digits of the hash of everything that decides the trial."""
-    return jsonio.sha256(spec)[:_KEY_DIGITS]
+    return jsonio.sha256(spec)[:KEY_DIGITS]
 
 
 def make_record(spec: TrialSpec, log: EpisodeLog) -> TrialRecord:
@@ -122,7 +123,7 @@ def decode(line: bytes, skipped: Counter[str] | None = None) -> TrialRecord:
 
 def _key_in(line: bytes) -> str:
     """The key of the spec in a line, with fields that a later version has added."""
-    return jsonio.sha256(msgspec.json.decode(line)["spec"])[:_KEY_DIGITS]
+    return jsonio.sha256(msgspec.json.decode(line)["spec"])[:KEY_DIGITS]
 
 
 @cache

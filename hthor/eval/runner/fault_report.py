@@ -22,7 +22,7 @@ from hthor.types import Action, Briefing, Mind, Observation, TrialSpec
 if TYPE_CHECKING:
     from hthor.episode import Fault
 
-SCHEMA = "hthor.faults/1"
+SCHEMA = "hthor.faults/2"
 FOLDER = "faults"
 MOST_OF_A_KIND, MOST = 20, 200
 """How many reports a run keeps: of one kind of fault, and in all. Our choice."""
