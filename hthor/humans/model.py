@@ -11,7 +11,7 @@ Optional parts of the file and the class:
   the model behaves, such as the hash of its weights. They become part of the run's identity.
 - ``Model(participant, source="/path")``: a model named with a source (``replay:runs/demo``) is made with that path.
 - ``alike = True`` in the class: participants do not differ; all get the population's mean traits.
-- ``journal``, a property of the class: the trial's events for a recorder (`hthor.humans.core.behaviour_log`).
+- ``journal``, a property of the class: the trial's entries for a recorder (`hthor.types.events.JournalEntry`).
 """
 
 from collections.abc import Mapping

@@ -163,7 +163,7 @@ def test_what_is_left_of_an_agent_is_shown_with_the_command_that_plays_it_again(
         "output": "last & least",
         "looks": [],
     }
-    left = {"schema": "hthor.faults/1", "key": first.key, "failures": [told], "again": f"hthor agent run x {first.key}"}
+    left = {"schema": "hthor.faults/2", "key": first.key, "failures": [told], "again": f"hthor agent run x {first.key}"}
     jsonio.write(mine / "faults" / f"{first.key}.json", msgspec.json.encode(left))
     _, text = _told(mine)
     again = f"hthor agent run {mine} {first.key}"  # with the run's folder as it is reached from here

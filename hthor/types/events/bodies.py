@@ -17,7 +17,8 @@ class Placed(LogEntry, frozen=True, kw_only=True, tag="placed"):
     """The seat put down the object in its hand.
 
     Attributes:
-        object: its id. on: the id of the furniture that it was placed on or in, or "floor".
+        object: its id.
+        on: the id of the furniture that it was placed on or in, or "floor".
     """
 
     object: str
@@ -68,7 +69,8 @@ class Lifted(LogEntry, frozen=True, kw_only=True, tag="lifted"):
     """With the seat's help there were enough bearers, and a heavy thing rose.
 
     Attributes:
-        object: the thing's id. bearers: the seats that hold it, in the order in which they took hold.
+        object: the thing's id.
+        bearers: the seats that hold it, in the order in which they took hold.
     """
 
     object: str
@@ -79,7 +81,8 @@ class Lowered(LogEntry, frozen=True, kw_only=True, tag="lowered"):
     """The seat let go of a thing that was carried, and it was put down; nobody holds it any more.
 
     Attributes:
-        object: the thing's id. bearers: the seats that had held it, in the order in which they took hold.
+        object: the thing's id.
+        bearers: the seats that had held it, in the order in which they took hold.
     """
 
     object: str

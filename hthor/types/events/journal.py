@@ -13,11 +13,9 @@ from hthor.types.events.entry import LogEntry
 from hthor.types.house import Vec3
 
 ExposureRow = tuple[float, float, float, float, int, int]
-"""Glimpses that were alike, added up: seconds [s], visual angle [rad], eccentricity [rad], share in view (0 to 1), how
-many small things were beside it, and whether the person was searching there (0 or 1)."""
+"""Glimpses that were alike, see `Exposure.gathered`."""
 OptionRow = tuple[float, float, float, float, int, int]
-"""One option of a `Choice`: probability by common knowledge and without it (0 to 1), path length [m], exposure so far,
-whether it must be opened first, and whether it is a doorway (0 or 1); see `hthor.humans.core.policy`."""
+"""One option of a choice, see `Choice.options`."""
 
 
 class Stick(LogEntry, frozen=True, kw_only=True, tag="stick"):
@@ -78,9 +76,12 @@ class Exposure(LogEntry, frozen=True, kw_only=True, tag="exposure"):
     """The glimpses at one object until it was noticed, or until the trial ended.
 
     Attributes:
-        object: its id. noticed: whether it was noticed at the last glimpse.
+        object: its id.
+        noticed: whether it was noticed at the last glimpse.
         seconds: [s] how long it was in view.
-        gathered: rows of like glimpses, see `ExposureRow`; the last row is the last glimpse alone.
+        gathered: rows of like glimpses, added up: seconds [s], visual angle [rad], eccentricity [rad], share in view
+            (0 to 1), how many small things were beside it, and whether the person was searching there (0 or 1); the
+            last row is the last glimpse alone.
     """
 
     object: str
@@ -94,7 +95,8 @@ class Choice(LogEntry, frozen=True, kw_only=True, tag="choice"):
 
     Attributes:
         aim: what is searched for: "target", "destination" or "room".
-        options: a row for each option, see `OptionRow`; of many options a sample is kept.
+        options: a row for each option, of many a sample: probability by common knowledge and without it (0 to 1), path
+            length [m], exposure so far, whether it must be opened first, and whether it is a doorway (0 or 1).
         chosen: the index of the chosen option.
     """
 
@@ -107,12 +109,16 @@ class Offer(LogEntry, frozen=True, kw_only=True, tag="offer"):
     """A message that the person read and decided on; see `hthor.humans.core.policy.Offer`.
 
     Attributes:
-        message: its number in the trial. number: counts the messages read in the trial, from 1.
+        message: its number in the trial.
+        number: counts the messages read in the trial, from 1.
         trust: the proxy's mean trust, 0 to 1; a live person's log does not have it.
-        useful: whether following it could still help. relevant: whether it was about the task.
+        useful: whether following it could still help.
+        relevant: whether it was about the task.
         gain: [s] the time that following it was expected to save.
-        load: work in hand, 0 to 1. again: how often the same offer was refused before.
-        words: length of the text in words. read_s: [s] from when it was shown to the answer.
+        load: work in hand, 0 to 1.
+        again: how often the same offer was refused before.
+        words: length of the text in words.
+        read_s: [s] from when it was shown to the answer.
         answer: what the person did with it.
     """
 
@@ -137,7 +143,8 @@ class Asked(LogEntry, frozen=True, kw_only=True, tag="asked"):
     """The person began to ask a question; the event `Sent` follows when it was said.
 
     Attributes:
-        object: id or kind of what it is about. words: its length in words.
+        object: id or kind of what it is about.
+        words: its length in words.
         seconds: [s] how long it takes to think of it and to say it.
     """
 
@@ -150,7 +157,8 @@ class Replied(LogEntry, frozen=True, kw_only=True, tag="replied"):
     """The person read a question, and began to answer it.
 
     Attributes:
-        message: its number in the trial. words: its length in words.
+        message: its number in the trial.
+        words: its length in words.
         read_s: [s] from when it was shown until it was read.
         answer: "yes" or "no" on a button, "told" by a message of their own, or "ignore" for none.
         seconds: [s] how long it takes to think of the answer and to press or say it.
@@ -167,7 +175,8 @@ class Note(LogEntry, frozen=True, kw_only=True, tag="note"):
     """What a human model of one's own records in addition, such as how often a language model was asked.
 
     Attributes:
-        topic: what the note is about. values: plain values by name.
+        topic: what the note is about.
+        values: plain values by name.
     """
 
     topic: str

@@ -37,7 +37,8 @@ class Shown(LogEntry, frozen=True, kw_only=True, tag="shown"):
     """The seat saw a message for the first time.
 
     Attributes:
-        message: its number. sender: the seat that sent it.
+        message: its number.
+        sender: the seat that sent it.
     """
 
     message: int
@@ -48,7 +49,8 @@ class Accepted(LogEntry, frozen=True, kw_only=True, tag="accepted"):
     """The person in the seat accepted a message.
 
     Attributes:
-        message: its number. sender: the seat that sent it.
+        message: its number.
+        sender: the seat that sent it.
     """
 
     message: int
@@ -59,7 +61,8 @@ class Declined(LogEntry, frozen=True, kw_only=True, tag="declined"):
     """The person in the seat declined a message.
 
     Attributes:
-        message: its number. sender: the seat that sent it.
+        message: its number.
+        sender: the seat that sent it.
     """
 
     message: int
@@ -70,7 +73,8 @@ class Covered(LogEntry, frozen=True, kw_only=True, tag="covered"):
     """The seat sent a newer message, and an older one that was still open is not shown any more.
 
     Attributes:
-        message: the number of the older message. sender: the seat that had sent it.
+        message: the number of the older message.
+        sender: the seat that had sent it.
         by: the number of the newer message.
         reader: the seat that the older message was for, in trials with several people.
     """
@@ -85,7 +89,8 @@ class Answered(LogEntry, frozen=True, kw_only=True, tag="answered"):
     """The seat answered a question.
 
     Attributes:
-        message: the number of the question. sender: the seat that asked it.
+        message: the number of the question.
+        sender: the seat that asked it.
         yes: the answer; absent if it is a message of its own, the next `Sent`.
     """
 

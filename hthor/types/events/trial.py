@@ -4,10 +4,10 @@ from hthor.types.events.entry import LogEntry
 
 
 class Thought(LogEntry, frozen=True, kw_only=True, tag="thought"):
-    """The seat's action took effect late, because deciding took time; until then its body stood still.
+    """The seat's action took effect late, because deciding took time.
 
     Attributes:
-        ticks: by how many ticks.
+        ticks: by how many ticks after the observation on which it was decided.
     """
 
     ticks: int

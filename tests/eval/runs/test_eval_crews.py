@@ -244,4 +244,4 @@ def test_real_runs_of_several_robots_repeat_themselves(tmp_path: Path):
         ("tender", "oracle"),
         ("puck", "frontier"),
     ]
-    assert json.loads((tmp_path / "1" / "run.json").read_bytes())["schema"] == "hthor.run/4"
+    assert json.loads((tmp_path / "1" / "run.json").read_bytes())["schema"] == "hthor.run/5"
