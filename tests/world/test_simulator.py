@@ -6,6 +6,7 @@ import doctest
 import re
 from pathlib import Path
 
+import pages
 import pytest
 
 from hthor.world import World
@@ -43,19 +44,9 @@ def calls(page: str, title: str) -> list[tuple[str, str]]:
     return list(dict.fromkeys(found))
 
 
-def only_code(page: str) -> str:
-    """The page with everything but its Python blocks blanked, so that failures name the page's own lines."""
-    inside, lines = False, []
-    for line in page.splitlines():
-        fence = line.startswith("```")
-        lines.append(line if inside and not fence else "")
-        inside = (line == "```python") if fence else inside
-    return "\n".join(lines) + "\n"
-
-
 @pytest.mark.slow
 def test_the_page_s_examples_do_what_it_shows(page: str) -> None:
-    code = only_code(page)
+    code = pages.only_code(page)
     test = doctest.DocTestParser().get_doctest(code, {}, "simulator.md", "docs/simulator.md", 0)
     assert len(test.examples) >= 70
     assert page.count("```python") == len(re.findall(r"```python\n>>> ", page)), "a block that nobody runs"
@@ -67,7 +58,7 @@ def test_the_page_s_examples_do_what_it_shows(page: str) -> None:
 
 @pytest.mark.parametrize("title", FAMILIES)
 def test_every_call_of_a_table_is_there_and_shown(page: str, title: str) -> None:
-    listed, shown = calls(page, title), only_code(page)
+    listed, shown = calls(page, title), pages.only_code(page)
     assert len(listed) >= 5
     for owner, name in listed:
         kind = {"world": World, "actor": Actor}[owner]
