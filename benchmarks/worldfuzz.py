@@ -23,7 +23,7 @@ import numpy as np
 
 from hthor.errors import HthorError, PhysicsError
 from hthor.geometry import plane
-from hthor.types import Close, Drop, Move, Open, Outcome, Pick, Place, Rotate, Wait
+from hthor.types import Close, Drive, Drop, Move, Open, Outcome, Pick, Place, Rotate, Wait
 from hthor.world import World
 from hthor.world.model.engine import mujoco
 
@@ -69,7 +69,7 @@ def main() -> None:
     began, found = time.process_time(), Report()
     for number, house in enumerate(given.houses):
         share = given.calls // len(given.houses) + (number < given.calls % len(given.houses))
-        world = World(house, robots=CREWS[number % len(CREWS)])
+        world = World(house, robots=CREWS[number % len(CREWS)], people=1 + number % 2)
         found = run(world, share, f"{given.seed}/{house}", odd=given.odd, report=found)
         print(f"{house}: {share} calls, findings so far: {len(found.findings)}", file=sys.stderr, flush=True)
     for finding in found.findings:
@@ -144,11 +144,13 @@ class Checker:
 
     def _bodies(self) -> Iterator[str]:
         for seat, pose in self._world.poses().items():
-            if not all(math.isfinite(value) for value in (pose.x, pose.y, pose.yaw, pose.pitch)):
+            body = self._world.bodies[seat]
+            steepest = body.pitch_limit if seat in self._world.robots else math.pi / 2  # as heads are measured
+            if not all(math.isfinite(value) for value in (pose.x, pose.y, pose.yaw, pose.pitch, pose.gaze)):
                 yield f"{seat} is at {pose}"
             elif not self._world.space[seat].is_free(pose.x, pose.y):
                 yield f"{seat} stands in something, at {pose}"
-            elif abs(pose.pitch) > self._world.bodies[seat].pitch_limit + 1e-6 or abs(pose.yaw) > math.pi + 1e-9:
+            elif abs(pose.pitch) > steepest + 1e-6 or abs(pose.yaw) > math.pi + 1e-9:
                 yield f"{seat} looks where it cannot, {pose}"
 
     def _objects(self) -> Iterator[str]:
@@ -215,13 +217,15 @@ class Fuzz:
         self._things = [thing.id for thing in world.furniture()]
         self._opens = [leaf.thing.id for leaf in world._doors]
         self._rooms = [room.id for room in world.house.rooms]
+        self._state = world.save_state()
         self.words = ""
 
     def next(self) -> Call:
         """The next call: its name, and what makes it."""
         if self._chance.random() < 1.0 / RESET_EVERY:
             return self._call("world.reset", self._world.reset, seed=self._chance.randrange(1000))
-        sort = self._chance.choices((self._arrange, self._act, self._move, self._look, self._say), (4, 6, 5, 4, 1))[0]
+        sorts = (self._arrange, self._act, self._move, self._look, self._say, self._keep)
+        sort = self._chance.choices(sorts, (8, 12, 10, 8, 2, 1))[0]
         return sort()
 
     # ------------------------------------------------------------------------------------------------------- sorts
@@ -318,6 +322,21 @@ class Fuzz:
             return self._call("reply", world.human.reply, True, self._number(0, 3, whole=True))
         return self._call("inbox", world.human.inbox)
 
+    def _keep(self) -> Call:
+        world, sort = self._world, self._chance.randrange(3)
+        if sort == 0:
+            self.words = "state = world.save_state()"
+            return "save_state", self._save
+        state = self._name((self._state,)) if sort == 1 else self._state[: self._chance.randrange(len(self._state))]
+        return self._call("world.load_state", world.load_state, state)
+
+    def _save(self) -> None:
+        """Keep the state; loaded at once, it changes nothing."""
+        self._state = self._world.save_state()
+        self._world.load_state(self._state)
+        if self._world.save_state() != self._state:
+            raise AssertionError("a state that was loaded is not the one that was saved")
+
     # ------------------------------------------------------------------------------------------------------ values
 
     def _call(self, name: str, function: Callable[..., Any], *given: Any, **named: Any) -> Call:
@@ -379,6 +398,15 @@ class Fuzz:
                 Open(thing=self._name(self._opens)),
                 Close(thing=self._name(self._opens)),
                 Wait(seconds=self._number(0.0, 1.0)),
+                *(
+                    Drive(
+                        forward=self._number(-1.5, 1.5),
+                        left=self._number(-1.0, 1.0),
+                        yaw=self._number(-4.0, 4.0),
+                        pitch=self._number(-1.0, 1.0),
+                    )
+                    for _ in range(2)
+                ),
                 5,
             )
         )

@@ -4,9 +4,22 @@ from collections.abc import Iterable
 
 from hthor import catalog, rules
 from hthor.comms.mailbox import Mailbox
-from hthor.errors import UnknownName
+from hthor.errors import HthorError, UnknownName
 from hthor.geometry import plane
-from hthor.types import Message, Motion, Outcome, Placement, Receipt, Room, TaskSpec, Thing, ThingState, Vec3, is_person
+from hthor.types import (
+    Drive,
+    Message,
+    Motion,
+    Outcome,
+    Placement,
+    Receipt,
+    Room,
+    TaskSpec,
+    Thing,
+    ThingState,
+    Vec3,
+    is_person,
+)
 from hthor.types.events import Event
 from hthor.world import numbers
 from hthor.world.motion import spawn
@@ -92,7 +105,13 @@ class InteractiveSimulation(SensingSimulation):
         return places[id]
 
     def run(self, seat: str, motion: Motion) -> Outcome:
-        """Start a motion and let ticks pass until it has ended."""
+        """Start a motion and let ticks pass until it has ended.
+
+        Raises:
+            HthorError: for a `Drive`, which never ends.
+        """
+        if isinstance(motion, Drive):
+            raise HthorError("a Drive does not end by itself; begin it with start, and let time pass with step")
         self.start(seat, motion)
         for _ in range(_MOTION_TICKS_MAX):
             self.step()

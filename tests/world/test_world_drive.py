@@ -15,10 +15,11 @@ from world_house import TABLE, do, on, task, wait
 
 from hthor import rules
 from hthor.geometry.plane import wrap
-from hthor.types import Drive, Event, Move, Outcome, Pick, Placement, Pose, Rotate, Wait
+from hthor.types import SUBTICKS, Drive, Move, Outcome, Pick, Placement, Pose, Rotate, Wait
+from hthor.types.events import Blocked, Event, InWay
 from hthor.world import World
 
-STEP_M = 1.0 * rules.TICK_S / rules.SUBTICKS
+STEP_M = 1.0 * rules.TICK_S / SUBTICKS
 """[m] A step of a person who drives at full speed."""
 MIDDLE = Pose(x=2.5, y=2.0)
 angles = st.floats(-math.pi, math.pi)
@@ -105,7 +106,7 @@ def test_nobody_drives_into_anything(built: World, script) -> None:
             built.start(built.seats[seat], Drive(forward=forward, left=left, yaw=yaw))
         for _ in range(ticks):
             before = built.poses()
-            for _ in range(rules.SUBTICKS):
+            for _ in range(SUBTICKS):
                 built.substep()
                 for seat, pose in built.poses().items():
                     assert built.space[seat].is_free(pose.x, pose.y)
@@ -269,7 +270,7 @@ def test_a_person_who_leans_on_a_wall_is_told_once(empty: World) -> None:
     for tick in range(100):  # the head sways, the stick trembles
         sway = math.pi + 0.2 * math.sin(tick)
         events += drive(empty, "human", 1, forward=0.9 + 0.1 * math.cos(tick), yaw=sway)
-    assert [(event.kind, event.seat, event.data) for event in events] == [("blocked", "human", {"by": "wall"})]
+    assert events == [Blocked(tick=events[0].tick, seat="human", by="wall")]
     drive(empty, "human", 1, forward=1.0, yaw=math.pi)
     assert empty.outcome("human") == Outcome(motion="drive", ok=False, reason="blocked", by="wall")
     drive(empty, "human", 10, forward=1.0)
@@ -282,7 +283,7 @@ def test_a_person_who_leans_on_a_wall_is_told_once(empty: World) -> None:
 def test_who_is_in_the_way_is_told_once_and_passed(empty: World) -> None:
     begin(empty, Pose(x=1.0, y=2.0), Pose(x=2.5, y=2.1))
     events = drive(empty, "human", 40, forward=1.0, yaw=0.3)
-    assert [(event.kind, event.data) for event in events] == [("in_way", {"by": "human2"})]
+    assert events == [InWay(tick=events[0].tick, seat="human", by="human2")]
     assert empty.outcome("human") is None, "it has slid past"
     assert place(empty, "human")[0] > 3.0
     begin(empty, Pose(x=1.0, y=2.0), Pose(x=2.5, y=2.0))

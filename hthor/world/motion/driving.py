@@ -131,7 +131,7 @@ class DriveMotion:
         """Turn the head, and the body unless its hands are ``busy``."""
         seat, aim, pose = self._seat, self._drive, self._seat.pose
         most = seat.spec.turn_rate * _STEP_S
-        if "navigate" not in seat.spec.capabilities:
+        if "navigate" not in seat.spec.capabilities or (pose.yaw, pose.pitch, pose.head) == (aim.yaw, aim.pitch, UNSET):
             return
         yaw = pose.yaw if busy else _turned(pose.yaw, aim.yaw, most)
         if seat.has_neck:
