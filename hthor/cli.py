@@ -32,6 +32,7 @@ from hthor.commands.agent import agent, serve
 from hthor.commands.eval import evaluate
 from hthor.commands.humans import humans
 from hthor.commands.leaderboard import board, list_entries, verify
+from hthor.commands.runs import merge, migrate, runs
 from hthor.commands.tasks import make, tasks
 from hthor.console import completion, exit_status, help_text, output, waiting_notice
 from hthor.errors import HthorError

@@ -8,7 +8,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import UnionType
-from typing import Generic, TypeVar, get_args
+from typing import Any, Generic, TypeVar, get_args
 
 import msgspec
 from msgspec import Struct
@@ -90,8 +90,7 @@ class LineDecoder(Generic[_Line]):
     def _decode_known(self, line: bytes, skipped: Counter[str], error: Unreadable) -> _Line:
         """The record without the events of unknown kinds; raises ``error`` if it has none."""
         try:
-            with documents.reading_errors():
-                header, document = msgspec.json.decode(line, type=_Header), msgspec.json.decode(line)
+            header, document = documents.decode(line, _Header), documents.decode(line, dict[str, Any])
         except Unreadable:
             raise error from None
         if not header.schema.startswith(_MAJOR) and (header.schema or header.key):

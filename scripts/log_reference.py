@@ -35,16 +35,8 @@ def page(text: str) -> str:
         _, end, after = rest.partition(END)
         if not begin or not end:
             raise ValueError(f"the page lacks the line '{(END if begin else _MARK.format(name)).strip()}'")
-        rows = (_row(kind) for kind in get_args(union))
-        text = (
-            before
-            + begin
-            + _line(("kind", "what happened", "its fields"))
-            + "|---|---|---|\n"
-            + "".join(rows)
-            + end
-            + after
-        )
+        head = _line(("kind", "what happened", "its fields")) + "|---|---|---|\n"
+        text = before + begin + head + "".join(map(_row, get_args(union))) + end + after
     return text
 
 

@@ -70,8 +70,9 @@ def decode(line: bytes) -> OldRecord:
         Unreadable: when the line is not as it was written; names the field.
     """
     with documents.reading_errors():
-        record, spec = _decoder.decode(line), msgspec.json.decode(line)["spec"]
+        record = _decoder.decode(line)
     trial_record.verify_checksum(line)
-    if record.key != (key := jsonio.sha256(spec)[: trial_record.KEY_DIGITS]):
+    key = jsonio.sha256(documents.decode(line, dict[str, Any])["spec"])[: trial_record.KEY_DIGITS]
+    if record.key != key:
         raise Unreadable("key", f"'{record.key}' is not the key of the trial in 'spec', '{key}'")
     return record

@@ -123,7 +123,7 @@ def decode(line: bytes, skipped: Counter[str] | None = None) -> TrialRecord:
 
 def _key_in(line: bytes) -> str:
     """The key of the spec in a line, with fields that a later version has added."""
-    return jsonio.sha256(msgspec.json.decode(line)["spec"])[:KEY_DIGITS]
+    return jsonio.sha256(documents.decode(line, dict[str, Any])["spec"])[:KEY_DIGITS]
 
 
 @cache

@@ -67,7 +67,7 @@ def test_damage_in_the_middle_names_file_line_and_field(tmp_path: Path):
     lines = path.read_bytes().splitlines(keepends=True)
     lines[1] = lines[1].replace(b'"met":', b'"mat":')
     path.write_bytes(b"".join(lines))
-    with pytest.raises(RunError, match=r"trials\.jsonl, line 2: \$: .*met.*Delete that line"):
+    with pytest.raises(RunError, match=r"trials\.jsonl, line 2: met: is missing.*Delete that line"):
         trial_log.TrialLog(tmp_path)
     with pytest.raises(RunError, match="line 2"):
         list(trial_log.read(path))
