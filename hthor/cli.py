@@ -13,21 +13,7 @@ from typing import Annotated
 import typer
 
 from hthor import __version__, activity
-from hthor.commands import (
-    assets,
-    calibrate,
-    compare,
-    doctor,
-    houses,
-    merge,
-    migrate,
-    priors,
-    replay,
-    report,
-    runs,
-    score,
-    suite,
-)
+from hthor.commands import assets, calibrate, compare, doctor, houses, priors, replay, report, score, suite
 from hthor.commands.agent import agent, serve
 from hthor.commands.eval import evaluate
 from hthor.commands.humans import humans
