@@ -24,6 +24,7 @@ from hthor.types import (
     Detection,
     Goal,
     HouseSpec,
+    Message,
     Move,
     Observation,
     Outcome,
@@ -40,6 +41,7 @@ from hthor.types import (
     Wait,
     Wall,
 )
+from tests.support.guest_agents import BRIEFING, look
 
 BODY = BodySpec(
     name="disc",
@@ -383,6 +385,16 @@ def test_the_template_works_as_it_is(tmp_path: Path) -> None:
     ((tick, message),) = live(load(path)(), Flat(), 900)
     assert tick < 800
     assert message.object == "apple"
+
+
+def test_the_template_answers_what_it_knows(tmp_path: Path) -> None:
+    mind = load(agents.write_template(tmp_path / "my_agent.py"))()
+    mind.begin(BRIEFING)
+    mug = Message(id=5, sender="human2", tick=0, text="Where is the mug?", object="mug", question=True)
+    apple = Message(id=6, sender="human2", tick=0, text="Where is the apple?", object="apple", question=True)
+    assert mind.act(look(inbox=(mug,))).say.answers is None
+    said = mind.act(look(inbox=(mug, apple))).say
+    assert (said.answers, said.object, said.position) == (6, "apple", (1, 2, 0.8))
 
 
 def test_the_template_overwrites_nothing_unasked(tmp_path: Path) -> None:
