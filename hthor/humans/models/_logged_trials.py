@@ -1,4 +1,4 @@
-"""The trials of a participant in a run's log, as far as `replay` needs them: paths, looks, hand actions, answers."""
+"""The trials of a participant in a run's log, as far as `replay` needs them: paths, looks, hand actions, words."""
 
 import hashlib
 import math
@@ -12,9 +12,10 @@ import msgspec
 from hthor import documents, rules
 from hthor.errors import HthorError
 from hthor.log_format import LineDecoder, Logged, OtherVersion
-from hthor.types import HUMAN, Briefing, Close, Drop, Motion, Open, Pick, Place, Pose, TrialSpec
+from hthor.types import HUMAN, Briefing, Close, Drop, Motion, Open, Pick, Place, Pose, Send, TrialSpec
 from hthor.types.events import (
     Accepted,
+    Answered,
     Attempt,
     Closed,
     Declined,
@@ -28,6 +29,7 @@ from hthor.types.events import (
     Picked,
     Placed,
     Released,
+    Sent,
     Stick,
 )
 
@@ -68,11 +70,12 @@ class LoggedTrial(Logged, frozen=True, kw_only=True):
             if motion is not None:
                 yield event.tick, _where(motion, event.tick, self._own_journal)
 
-    def answers(self) -> Iterator[tuple[int, bool]]:
-        """The ticks of answers; True for an accepted message."""
+    def utterances(self) -> Iterator[tuple[int, bool | Send]]:
+        """What the participant said, with its tick: True for an accepted message or a yes, False for a no, or words."""
         for event in self.events:
-            if event.seat == self.seat and isinstance(event, (Accepted, Declined)):
-                yield event.tick, isinstance(event, Accepted)
+            said = _utterance(event) if event.seat == self.seat else None
+            if said is not None:
+                yield event.tick, said
 
     @property
     def rating(self) -> int | None:
@@ -147,6 +150,24 @@ def _bytes(path: Path) -> bytes:
         return path.read_bytes()
     except OSError as error:
         raise HthorError(f"there is no log to replay at {path}: {error.strerror}. {_HINT}") from None
+
+
+def _utterance(event: Event) -> bool | Send | None:
+    """What an event says that the participant said."""
+    if isinstance(event, (Accepted, Declined)):
+        return isinstance(event, Accepted)
+    if isinstance(event, Answered):
+        return event.yes  # None if words follow
+    if not isinstance(event, Sent):
+        return None
+    return Send(
+        text=event.text,
+        object=event.object,
+        position=event.position,
+        to=event.to,
+        question=event.question,
+        answers=event.answers,
+    )
 
 
 def _hand_action(event: Event) -> Motion | None:

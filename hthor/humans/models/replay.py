@@ -6,7 +6,7 @@ It is defined for the trials of that log only: the same suite, seed and particip
 rules apply, which no real person would follow:
 
 - A message that is shown at the tick of a logged answer gets that answer; if none is shown, the answer lapses. The
-  content of messages changes nothing.
+  content of messages changes nothing. What the participant asked or told others is said at the same tick.
 - If a robot or another person blocks the path, the replay stands and tries again every half second, and never goes
   around them. Afterwards it catches up as fast as stick and body allow. Hand actions happen at their places, so they
   come later too.
@@ -20,13 +20,15 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
+import msgspec
+
 from hthor import rules
 from hthor.errors import HthorError
 from hthor.geometry.plane import turn, wrap
 from hthor.humans.models import _logged_trials
 from hthor.humans.models._logged_trials import LoggedTrial
 from hthor.humans.population.participant import Participant
-from hthor.types import Action, Briefing, Motion, Move, Observation, Pose, Reply, Rotate, Wait, is_person
+from hthor.types import Action, Briefing, Motion, Move, Observation, Pose, Reply, Rotate, Send, Wait, is_person
 
 _EVERY = rules.LOG_EVERY_TICKS
 _THERE_M = 0.003
@@ -126,17 +128,22 @@ class Reenactment:
         self._poses, self._moving = _extrapolated(trial.poses(), trial.ticks), trial.moving()
         self._hand_actions = [(tick - handling, motion) for tick, motion in trial.hand_actions()]
         self._handling = handling
-        self._answers = list(trial.answers())
+        self._utterances, self._others = list(trial.utterances()), ("", *briefing.teammates)
         self._tries = 0
 
-    def say(self, now: Observation) -> Reply | None:
-        """The logged answer when it is due and a message is shown."""
-        while self._answers and now.tick - self._answers[0][0] > _LAPSE_TICKS:
-            self._answers.pop(0)
-        if not self._answers or now.tick < self._answers[0][0]:
+    def say(self, now: Observation) -> Reply | Send | None:
+        """What the participant said, when it is due: an answer if a message is shown, words if somebody is there."""
+        while self._utterances and now.tick - self._utterances[0][0] > _LAPSE_TICKS:
+            self._utterances.pop(0)
+        if not self._utterances or now.tick < self._utterances[0][0]:
             return None
-        _, accept = self._answers.pop(0)
-        return Reply(message=now.inbox[-1].id, accept=accept) if now.inbox else None
+        _, said = self._utterances.pop(0)
+        if isinstance(said, bool):
+            return Reply(message=now.inbox[-1].id, accept=said) if now.inbox else None
+        if said.answers is None:
+            return said if said.to in self._others else None
+        asked = [message for message in now.inbox if message.question]
+        return msgspec.structs.replace(said, to="", answers=asked[-1].id) if asked else None
 
     def motion(self, now: Observation) -> Motion:
         """The next motion; waits where the logged participant waited."""
