@@ -338,7 +338,7 @@ def test_a_replay_does_the_same_whatever_the_robot_says(robot, world, log):
 
 def test_a_replay_answers_what_is_shown_when_the_logged_person_answered(world, log):
     one = _logged_trials.read_logged_trials(str(log))[0][0]
-    (tick, accept), *_ = one.answers()
+    (tick, accept), *_ = one.utterances()
     says = (Send(text="Look here.", object="apple", position=(9.0, 2.7, 0.5)), Send(text="Or here.", object="apple"))
     done = umpire.play(one.spec, world, {"human": model("replay", log)}, {"robot": Teller(*says, at=tick - 1)})
     answered = [event for event in done.events if event.kind in ("accepted", "declined")]
