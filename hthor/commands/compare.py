@@ -54,6 +54,8 @@ def compare(
     for party in found.runs:
         if party.trials < party.planned:
             output.say(f"{party.name}: {party.planned - party.trials} of {party.planned} trials are not played yet.")
+        if party.voided:
+            output.say(f"{result_tables.voided_words(party.name, party.voided)}.")
     if fail_if_worse and found.worse:
         raise typer.Exit(_WORSE_EXIT)
 

@@ -29,7 +29,9 @@ Run = Annotated[Path, typer.Argument(metavar="RUN", help="The folder of a run, s
 Trial = Annotated[
     str,
     typer.Argument(
-        metavar="TRIAL", help="The trial: its key or the start of it, a task id, or a number counted from 0."
+        metavar="TRIAL",
+        help="The trial: its key or the start of it, a task id, or a number counted from 0. A trial that was repeated "
+        "has several attempts; 12@0 is the first at trial 12.",
     ),
 ]
 RobotFiles = Annotated[

@@ -2,7 +2,7 @@
 
 from msgspec import Struct
 
-from hthor.types.events import Event, JournalEntry
+from hthor.types.events import Event, JournalEntry, Voided
 
 
 class Fault(Struct, frozen=True, kw_only=True):
@@ -41,3 +41,9 @@ class EpisodeLog(Struct, frozen=True, kw_only=True):
     progress: float | None = None
     idle: dict[str, int] = {}
     journal: tuple[JournalEntry, ...] = ()
+
+    @property
+    def voided(self) -> str:
+        """Why the trial was voided and does not count; empty if it counts."""
+        last = self.events[-1] if self.events else None
+        return last.reason if isinstance(last, Voided) else ""

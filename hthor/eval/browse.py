@@ -12,7 +12,8 @@ from hthor import rules
 from hthor.errors import HthorError
 from hthor.eval.config import cli_command
 from hthor.eval.config.run_config import RunConfig
-from hthor.eval.records import trial_log
+from hthor.eval.records import attempts, trial_log
+from hthor.eval.records.attempts import VoidedTrial
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import aggregate, result_file
@@ -108,8 +109,7 @@ def _tally(run: Path, plan: RunConfig) -> tuple[int, float, int]:
     if result is not None and result.metrics["sr"].mean is not None and result.hashes.run == plan.sha256:
         trials = result.counts.trials
         return trials, result.metrics["sr"].mean * trials, result.counts.faults
-    last: dict[str, TrialRecord] = {record.key: record for _, record in trial_log.read(run / "trials.jsonl")}
-    kept = last.values()
+    kept = attempts.select_records(record for _, record in trial_log.read(run / "trials.jsonl"))
     return len(kept), float(sum(one.met for one in kept)), sum(bool(one.faults) for one in kept)
 
 
@@ -164,7 +164,10 @@ class TrialLine(Struct, frozen=True, kw_only=True):
 
 
 class RunView(Struct, frozen=True, kw_only=True):
-    """The document of `hthor runs view`. ``result`` is None while trials are missing, or if none was played."""
+    """The document of `hthor runs view`. ``result`` is None while trials are missing, or if none was played.
+
+    ``voided`` lists the attempts that do not count.
+    """
 
     schema: str = VIEW_SCHEMA
     folder: str
@@ -173,6 +176,7 @@ class RunView(Struct, frozen=True, kw_only=True):
     total: int
     result: RunResult | None
     trials: tuple[TrialLine, ...]
+    voided: tuple[VoidedTrial, ...]
     next: tuple[str, ...]
 
 
@@ -197,6 +201,7 @@ def view_run(folder: Path, wanted: TrialFilter) -> tuple[RunView, RunResult | No
         total=total,
         result=so_far if whole and not plan.shard else None,
         trials=lines,
+        voided=run.voided,
         next=tuple(_next(folder, plan, records, whole=whole)),
     )
     return view, so_far

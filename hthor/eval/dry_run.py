@@ -19,7 +19,7 @@ from msgspec import Struct
 from hthor import rules
 from hthor.errors import RunError
 from hthor.eval.config.run_config import RunConfig
-from hthor.eval.records import trial_log
+from hthor.eval.records import attempts, trial_log
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.results import result_file
 from hthor.eval.runner import engines, run_options
@@ -211,7 +211,7 @@ def _run_forecast(
     run: ScheduledRun, workers: int, houses: int, sampler: CostSampler | None, *, control: bool
 ) -> RunForecast:
     trials = run.config.expected_trials
-    played = len({record.key for _, record in trial_log.read(run.folder.log_file)})
+    played = len(attempts.select_records(record for _, record in trial_log.read(run.folder.log_file)))
     left = trials - played
     cost = measured_cost(run)
     if cost is None and left and sampler is not None:

@@ -65,6 +65,11 @@ def make_entry(folder: Path, submission: Submission | None = None) -> Entry:
     config = run.config
     lines, kept = run.lines()
     _whole(folder, config, len(kept))
+    if run.voided:
+        raise BoardError(
+            f"{folder} has {len(run.voided)} voided trials, and cannot stand on the leaderboard: whoever voids a trial "
+            "knows how it went. Play it again into another folder."
+        )
     found = overrides.overridden_settings(config, _crew(config), len({one.spec.task.id for one in kept}))
     if found:
         raise BoardError(overrides.refusal(folder, config, found))

@@ -14,7 +14,7 @@ from hthor.calibration.from_logs.features.messages import Offer, Reading
 from hthor.calibration.from_logs.models.search_models import Choice, Exposure
 from hthor.calibration.from_logs.models.trust_model import Experience
 from hthor.errors import RunError
-from hthor.eval.records import trial_record
+from hthor.eval.records import attempts, trial_record
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.humans.population.parameters import Parameters
 from hthor.types import HUMAN, events
@@ -51,7 +51,7 @@ def read_sessions(paths: Sequence[Path]) -> Sessions:
     """
     records_by_key: dict[str, TrialRecord] = {}
     for path in paths:
-        for one in _records(path):
+        for one in attempts.select_records(_records(path)):
             records_by_key.setdefault(one.key, one)
     return sessions_of(records_by_key.values())
 

@@ -110,6 +110,9 @@ def view_run(
     if result is not None and result.counts.faults:
         kinds = ", ".join(f"{count} {kind}" for kind, count in result.counts.faults_by_kind.items())
         output.put_line(f"an agent failed in {result.counts.faults} of {found.done} trials: {kinds}", shape)
+    for one in found.voided:
+        which = f"session {one.session}, trial {one.index}, {one.task}, attempt {one.attempt}, {one.key}"
+        output.put_line(f"voided, does not count: {which}: {one.reason}", shape)
     for line in output.following(*found.next):
         output.put_line(line, shape)
 

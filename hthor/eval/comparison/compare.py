@@ -37,13 +37,17 @@ class WinCounts(Struct, frozen=True, kw_only=True):
 
 
 class ComparedRun(Struct, frozen=True, kw_only=True):
-    """One of the runs: its name, its folder's name, its trials so far and planned, and its configuration's hash."""
+    """One of the runs: its name, its folder's name, its trials so far and planned, and its configuration's hash.
+
+    ``voided`` counts attempts at trials that were voided and do not count; it is absent if there were none.
+    """
 
     name: str
     folder: str
     trials: int
     planned: int
     run: str
+    voided: int | msgspec.UnsetType = msgspec.UNSET
 
 
 class Comparison(Struct, frozen=True, kw_only=True):
@@ -108,6 +112,7 @@ class LoadedRun(Struct, frozen=True, kw_only=True):
     folder: Path
     plan: RunConfig
     records: tuple[TrialRecord, ...]
+    voided: int = 0
 
 
 def compare_runs(folders: Sequence[Path]) -> Comparisons:
@@ -132,6 +137,7 @@ def compare_runs(folders: Sequence[Path]) -> Comparisons:
                 trials=len(one.records),
                 planned=one.plan.trials,
                 run=one.plan.sha256,
+                voided=one.voided or msgspec.UNSET,
             )
             for one in read_
         ),
@@ -152,10 +158,10 @@ def compare_pairs(read_: Sequence[LoadedRun]) -> tuple[Comparison, ...]:
 def load_runs(folders: Sequence[Path]) -> tuple[LoadedRun, ...]:
     """The runs in these folders, with metrics measured again from their events, and a distinct name each."""
     held = [aggregate.load_measured(folder) for folder in folders]
-    names = _names([plan.label for plan, _ in held], folders)
+    names = _names([plan.label for plan, _, _ in held], folders)
     return tuple(
-        LoadedRun(name=name, folder=folder, plan=plan, records=tuple(records))
-        for name, folder, (plan, records) in zip(names, folders, held, strict=True)
+        LoadedRun(name=name, folder=folder, plan=plan, records=tuple(records), voided=voided)
+        for name, folder, (plan, records, voided) in zip(names, folders, held, strict=True)
     )
 
 

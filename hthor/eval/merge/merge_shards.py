@@ -1,6 +1,6 @@
 """Joining the shards of a run in one folder: each record once; also lists missing trials."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import msgspec
@@ -11,7 +11,16 @@ from hthor.errors import RunError
 from hthor.eval.config import cli_command, run_config
 from hthor.eval.config.run_config import RunConfig
 from hthor.eval.config.sessions import Shard, whole_folder
-from hthor.eval.records import opened_files, platform, run_isolation, session_restarts, trial_log, trial_record
+from hthor.eval.records import (
+    attempts,
+    opened_files,
+    platform,
+    run_isolation,
+    session_restarts,
+    trial_log,
+    trial_record,
+)
+from hthor.eval.records.attempts import Attempt, Attempts
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_log import Place
 from hthor.eval.records.trial_record import TrialRecord
@@ -20,8 +29,8 @@ from hthor.eval.results.result_file import Effort, RunResult
 
 _CARRIED = ("suite.json", "houses/*.json", "faults/*.json")
 """Other files of a run's folder that are copied, as its readers need them."""
-_Trial = tuple[int, int]
-"""A participant, and the place of the trial in their session."""
+_Trial = tuple[int, int, int]
+"""A session, a trial's place in it, and the number of the attempt."""
 _Line = tuple[Place, str, int]
 """Where a trial's line is, the trial's key, and the line's checksum."""
 
@@ -50,11 +59,15 @@ class MergeResult(Struct, frozen=True, kw_only=True):
 
 
 class _ShardLog(Struct, frozen=True, kw_only=True):
-    """A shard's folder and its lines; ``opened`` has the records of trials in which agents opened further files."""
+    """A shard's folder, its lines, and how many trials have an attempt that counts.
+
+    ``opened`` has the records of trials in which agents opened further files.
+    """
 
     folder: RunFolder
     shard: Shard
     lines: dict[_Trial, _Line]
+    attempts: tuple[Attempt, ...]
     opened: tuple[TrialRecord, ...] = ()
 
     @property
@@ -85,10 +98,10 @@ def merge_shards(folders: Sequence[Path], out: Path, *, dry: bool = False) -> Me
     whole = RunFolder(out)
     whole.check_free(config)
     if dry:
-        known = {record.key for _, record in trial_log.read(whole.log_file)}
-        new_keys = {key for _, key, _ in lines.values()} - known
-        count = len(known) + len(new_keys)
-        return MergeResult(folder=str(out), plan=config, trials=count, new=len(new_keys), gaps=(), result=None)
+        known = [attempts.attempt_of(record) for _, record in trial_log.read(whole.log_file)]
+        before = Attempts(known).counted
+        count = Attempts([*known, *_attempts(shards)]).counted
+        return MergeResult(folder=str(out), plan=config, trials=count, new=count - before, gaps=(), result=None)
     trials, new = _write(whole, config, shards, lines)
     result = _score(whole, [shard.folder for shard in shards]) if trials == config.trials else None
     gaps = () if result else _gaps(shards, out, config.trials - trials)
@@ -103,17 +116,24 @@ def _read_shard(folder: RunFolder) -> _ShardLog:
         )
     lines: dict[_Trial, _Line] = {}
     opened: list[TrialRecord] = []
+    tried: list[Attempt] = []
     for place, line, record in trial_log.places(folder.log_file):
         folder.check_origin(record)
         _check_shard(folder, record, config.shard)
         if record.files:
             opened.append(msgspec.structs.replace(record, paths={}, journal=(), events=()))
-        trial, mine = (record.spec.session, record.spec.index), (place, record.key, trial_record.checksum(line))
+        one = attempts.attempt_of(record)
+        tried.append(one)
+        trial, mine = (*one.place, one.number), (place, record.key, trial_record.checksum(line))
         if lines.setdefault(trial, mine)[1:] != mine[1:]:
             raise RunError(
                 f"{place.path}: trial {record.key} is there twice, with different content. Delete one of the two lines."
             )
-    return _ShardLog(folder=folder, shard=config.shard, lines=lines, opened=tuple(opened))
+    return _ShardLog(folder=folder, shard=config.shard, lines=lines, attempts=tuple(tried), opened=tuple(opened))
+
+
+def _attempts(shards: Iterable[_ShardLog]) -> list[Attempt]:
+    return [attempt for shard in shards for attempt in shard.attempts]
 
 
 def _check_shard(folder: RunFolder, record: TrialRecord, shard: Shard) -> None:
@@ -150,20 +170,20 @@ def _write(
     whole: RunFolder, config: RunConfig, shards: Sequence[_ShardLog], lines: dict[_Trial, _Line]
 ) -> tuple[int, int]:
     """Write the whole run's files; returns how many trials its log has now, and how many are new."""
-    new = 0
     with whole.open_log() as log:
+        before = log.counted
         whole.write_config(config)
         for name, data in _other_files([shard.folder for shard in shards]).items():
             whole.write(name, data)
         ordered = [lines[trial] for trial in sorted(lines)]
         fetched = trial_log.fetch(place for place, _, _ in ordered)
         for (_, key, _), line in zip(ordered, fetched, strict=True):
-            new += log.append(key, line)
+            log.append(key, line)
             if not log.agrees(key, line):
                 raise RunError(
                     f"{whole}: trial {key} is there already and differs from the shards'. Choose another --out."
                 )
-        return len(log), new
+        return log.counted, log.counted - before
 
 
 def _other_files(folders: Sequence[RunFolder]) -> dict[str, bytes]:
@@ -192,8 +212,8 @@ def _gaps(shards: Sequence[_ShardLog], out: Path, missing: int) -> tuple[Missing
             command = cli_command.resume_command(absent.folder(base), config)
             gaps.append(MissingTrials(number=number, of=of, trials=None, command=command))
             continue
-        fullest = max(same, key=lambda shard: len(shard.lines))
-        lacks = fullest.shard.trials - len(set().union(*(shard.lines for shard in same)))
+        fullest = max(same, key=lambda shard: Attempts(shard.attempts).counted)
+        lacks = fullest.shard.trials - Attempts(_attempts(same)).counted
         if lacks:
             command = cli_command.resume_command(fullest.folder.path, fullest.config)
             gaps.append(MissingTrials(number=number, of=of, trials=lacks, command=command))

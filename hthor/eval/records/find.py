@@ -16,19 +16,25 @@ def find_trial(folder: RunFolder, name: str) -> TrialRecord:
     """The trial of a run that ``name`` stands for.
 
     Args:
-        name: the start of a key, a task's id, or a number: the trial's place among all trials, counted from 0.
+        name: the start of a key, a task's id, or a number: the trial's place among all trials, counted from 0. After an
+            @ the number of an attempt may follow, such as 12@0 for the first at trial 12, which may have been voided;
+            without it, the attempt that counts is meant. A key names an attempt by itself.
 
     Raises:
         UnknownName: when no trial fits.
         RunError: when several trials fit, or the run cannot be read.
     """
+    trial, at, number = name.rpartition("@")
+    if at and number.isdecimal():
+        return _attempt(folder, trial, int(number))
     records = folder.records()
     by_task = [record for record in records if record.spec.task.id == name]
     if by_task:
         return _only(by_task, name)
     if name.isdecimal() and int(name) < len(records):
         return records[int(name)]
-    by_key = [record for record in records if name and record.key.startswith(name)]
+    tried = folder.attempts() if folder.voided else records
+    by_key = [record for record in tried if name and record.key.startswith(name)]
     if by_key:
         return _only(by_key, name)
     ids = sorted({record.spec.task.id for record in records})
@@ -37,6 +43,20 @@ def find_trial(folder: RunFolder, name: str) -> TrialRecord:
         f"The run's log has {len(ids)} tasks; a number from 0 to {len(records) - 1} or the start of a key does as well."
     )
     raise UnknownName("trial", name, near, more if records else "The run has no trials yet.")
+
+
+def _attempt(folder: RunFolder, name: str, number: int) -> TrialRecord:
+    """The attempt with this number at the trial that ``name`` stands for, which may have no attempt that counts."""
+    tried = folder.attempts()
+    mine = [record for record in tried if record.spec.task.id == name]
+    if not mine:
+        spec = find_trial(folder, name).spec
+        mine = [record for record in tried if (record.spec.session, record.spec.index) == (spec.session, spec.index)]
+    found = [record for record in mine if (record.spec.attempt or 0) == number]
+    if not found:
+        known = sorted({str(record.spec.attempt or 0) for record in mine})
+        raise UnknownName("attempt", str(number), known, f"These are the attempts at '{name}'.")
+    return _only(found, name)
 
 
 def _only(records: Sequence[TrialRecord], name: str) -> TrialRecord:

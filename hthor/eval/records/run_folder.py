@@ -2,21 +2,24 @@
 
 import difflib
 import fnmatch
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import cached_property
 from pathlib import Path
+from typing import TypeVar
 
 import msgspec
 
 from hthor import documents, jsonio
 from hthor.errors import RunError
 from hthor.eval.config.run_config import OLD_SCHEMA, SCHEMA, RunConfig, differences
-from hthor.eval.records import platform, run_isolation, session_restarts, trial_log
+from hthor.eval.records import attempts, platform, run_isolation, session_restarts, trial_log
+from hthor.eval.records.attempts import VoidedTrial
 from hthor.eval.records.platform import Platform
 from hthor.eval.records.trial_log import Place, TrialLog
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.guest import Isolation
 
+_Part = TypeVar("_Part")
 _WRITTEN_FIRST = (".lock", trial_log.NAME, ".run.json.*", "control")
 """Files that a command may leave if it is killed before it writes `run.json`."""
 
@@ -74,19 +77,30 @@ class RunFolder:
         return TrialLog(self.path)
 
     def lines(self) -> tuple[list[bytes], list[TrialRecord]]:
-        """Every line of the log and its record, in the order of sessions and their trials.
+        """The line and the record of every trial, in the order of sessions and their trials.
+
+        Of several attempts at a trial the one that counts is here; `attempts` has all.
 
         Raises:
             RunError: when a line is damaged, belongs to another run, or occurs twice.
         """
-        pairs = sorted(trial_log.read(self.log_file), key=lambda pair: _order(pair[1]))
-        records = [record for _, record in pairs]
-        self._check(records)
-        return [line for line, _ in pairs], records
+        pairs = self._counting(trial_log.read(self.log_file))
+        return [line for line, _ in pairs], [record for _, record in pairs]
 
     def records(self) -> list[TrialRecord]:
-        """Every record of the log, in the order of sessions and their trials; errors as in `lines`."""
+        """The record of every trial, in the order of sessions and their trials; errors as in `lines`."""
         return self.lines()[1]
+
+    def attempts(self) -> list[TrialRecord]:
+        """Every record of the log, of voided attempts too, in the order of sessions, their trials, and attempts."""
+        records = sorted((record for _, record in trial_log.read(self.log_file)), key=_order)
+        self._check(records)
+        return records
+
+    @cached_property
+    def voided(self) -> tuple[VoidedTrial, ...]:
+        """The attempts that were voided and do not count; known without reading again after `lines` or `digest`."""
+        return attempts.voided_trials(self.attempts())
 
     def digest(self) -> tuple[list[Place], list[TrialRecord]]:
         """As `lines`, for runs of any length: lines stay on the disk, and records lack paths and journal."""
@@ -94,10 +108,8 @@ class RunFolder:
             (place, msgspec.structs.replace(record, paths={}, journal=()))
             for place, _, record in trial_log.places(self.log_file)
         )
-        pairs = sorted(slim, key=lambda pair: _order(pair[1]))
-        records = [record for _, record in pairs]
-        self._check(records)
-        return [place for place, _ in pairs], records
+        pairs = self._counting(slim)
+        return [place for place, _ in pairs], [record for _, record in pairs]
 
     def check_origin(self, record: TrialRecord) -> None:
         """Check that a record of the log is one of this run.
@@ -172,6 +184,14 @@ class RunFolder:
         if others:
             raise RunError(f"{self} is not empty and holds no run ({min(others)}). Choose another folder with --out.")
 
+    def _counting(self, pairs: Iterable[tuple[_Part, TrialRecord]]) -> list[tuple[_Part, TrialRecord]]:
+        """The pairs whose record counts, in order; checks all."""
+        held = sorted(pairs, key=lambda pair: _order(pair[1]))
+        records = [record for _, record in held]
+        self._check(records)
+        self.__dict__["voided"] = attempts.voided_trials(records)
+        return attempts.select(held)
+
     def _check(self, records: Sequence[TrialRecord]) -> None:
         for record in records:
             self.check_origin(record)
@@ -187,5 +207,5 @@ class RunFolder:
         return f" Did you mean '{self.path.parent / near[0]}'?" if near else ""
 
 
-def _order(record: TrialRecord) -> tuple[int, int]:
-    return record.spec.session, record.spec.index
+def _order(record: TrialRecord) -> tuple[int, int, int]:
+    return record.spec.session, record.spec.index, record.spec.attempt or 0

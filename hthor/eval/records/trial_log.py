@@ -14,8 +14,10 @@ from typing import NamedTuple
 
 from hthor import jsonio, log_format
 from hthor.errors import RunError, RunLocked
-from hthor.eval.records import trial_record
+from hthor.eval.records import attempts, trial_record
+from hthor.eval.records.attempts import Attempts
 from hthor.eval.records.trial_record import TrialRecord
+from hthor.types import TrialSpec
 
 NAME = "trials.jsonl"
 BEAT_S = 0.05
@@ -82,9 +84,10 @@ def fetch(wanted: Iterable[Place]) -> Iterator[bytes]:
 
 
 class TrialLog:
-    """The one writer of a run's log, a context manager. ``key in log`` says whether the log has a trial.
+    """The one writer of a run's log, a context manager. ``key in log`` says whether the log has that line.
 
-    Only keys and checksums are kept in memory.
+    Only keys, checksums and attempts are kept in memory. A live session asks `due` which attempt comes next, and writes
+    with `add`.
 
     Args:
         folder: the run's folder, made when absent.
@@ -100,7 +103,10 @@ class TrialLog:
         self._lock = lock(folder)
         try:
             self.torn = cut_torn_lines(self.path)
-            self._checks = {found.key: trial_record.checksum(line) for line, found in read(self.path)}
+            self._checks: dict[str, int] = {}
+            self._attempts = Attempts()
+            for line, found in read(self.path):
+                self._note(found.key, line)
             self._file = os.open(self.path, os.O_WRONLY | os.O_APPEND | os.O_CREAT | os.O_CLOEXEC, 0o644)
             jsonio.sync_folder(folder)
         except BaseException:
@@ -121,12 +127,28 @@ class TrialLog:
     def __len__(self) -> int:
         return len(self._checks)
 
+    @property
+    def counted(self) -> int:
+        """How many trials have an attempt that counts: one that was not voided."""
+        return self._attempts.counted
+
+    def due(self, trial: TrialSpec) -> TrialSpec:
+        """The attempt at a trial of this run that counts, or the next one while every attempt was voided."""
+        return attempts.numbered(trial, self._attempts.number((trial.session, trial.index)))
+
+    def add(self, record: TrialRecord) -> bool:
+        """Write the record of a trial, voided or not; returns whether it was new. Then `due` may name another."""
+        return self.append(record.key, trial_record.encode(record))
+
     def agrees(self, key: str, line: bytes) -> bool:
         """Whether the log's line for this trial equals ``line``."""
         return self._checks.get(key) == trial_record.checksum(line)
 
     def append(self, key: str, line: bytes) -> bool:
-        """Write a trial's line unless the log has the trial; returns whether it was new."""
+        """Write a trial's line unless the log has it; returns whether it was new.
+
+        Another attempt at the same trial has another key, so it is new.
+        """
         if key in self._checks:
             return False
         written = 0
@@ -138,7 +160,7 @@ class TrialLog:
                 os.ftruncate(self._file, self._size)
             raise self._unwritten(error) from None
         self._size += written
-        self._checks[key] = trial_record.checksum(line)
+        self._note(key, line)
         if self._dirty_since is None:
             self._dirty_since = time.monotonic()
         self.sync(due=True)
@@ -161,6 +183,10 @@ class TrialLog:
         finally:
             os.close(self._file)
             os.close(self._lock)
+
+    def _note(self, key: str, line: bytes) -> None:
+        self._checks[key] = trial_record.checksum(line)
+        self._attempts.add(attempts.read_attempt(line))
 
     def _unwritten(self, error: OSError) -> RunError:
         return RunError(

@@ -73,13 +73,13 @@ def session_before(folder: RunFolder, trial: TrialRecord) -> tuple[TrialSpec, ..
             "in which people may decide differently. Play the run again with 'hthor eval', or use that version."
         )
     specs = [record.spec for record in folder.records()]
-    mine = [one for one in specs if one.session == spec.session and one.index <= spec.index]
-    if [one.index for one in mine] != list(range(spec.index + 1)):
+    before = [one for one in specs if one.session == spec.session and one.index < spec.index]
+    if [one.index for one in before] != list(range(spec.index)):
         raise RunError(
             f"{folder} lacks some of the trials before this one in session {spec.session}, which shaped people's "
             "trust. Finish the run with the 'hthor eval' command that began it."
         )
-    return tuple(mine)
+    return (*before, spec)
 
 
 def replay_team(

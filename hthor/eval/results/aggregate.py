@@ -31,11 +31,13 @@ def make_result(
     uplift: Uplift | None = None,
     isolation: Isolation | None = None,
     replays: int = 0,
+    voided: int = 0,
 ) -> RunResult:
     """The result of a run's records, complete or not.
 
     Args:
         lines: the log's lines, for their hash. replays: sessions that were run again because an agent was killed.
+        voided: attempts at trials that were voided, and are not among the records.
     """
     trials = hashlib.sha256()
     for line in lines:
@@ -70,6 +72,7 @@ def make_result(
             },
             faults_by_kind=dict(sorted(Counter(fault.kind for one in records for fault in one.faults).items())),
             replays=replays,
+            voided=voided or msgspec.UNSET,
         ),
         versions=plan.versions,
         hashes=Hashes(
@@ -135,8 +138,16 @@ def score_run(
 ) -> RunResult:
     """The result of a run from its records and the other files of its folder."""
     uplift = baseline.uplift_or_stored(run.path, run.config, records)
-    isolation, replays = run.isolation, run.restarts
-    return make_result(run.config, lines, records, effort, uplift=uplift, isolation=isolation, replays=replays)
+    return make_result(
+        run.config,
+        lines,
+        records,
+        effort,
+        uplift=uplift,
+        isolation=run.isolation,
+        replays=run.restarts,
+        voided=len(run.voided),
+    )
 
 
 def rescore(folder: Path) -> tuple[RunConfig, RunResult, RunResult | None]:
@@ -151,10 +162,10 @@ def rescore(folder: Path) -> tuple[RunConfig, RunResult, RunResult | None]:
     return run.config, score_run(run, lines, _measured(kept), stored.effort if stored else None), stored
 
 
-def load_measured(folder: Path) -> tuple[RunConfig, list[TrialRecord]]:
-    """A run's configuration and its records, with every trial's metrics measured again from its events."""
+def load_measured(folder: Path) -> tuple[RunConfig, list[TrialRecord], int]:
+    """A run's configuration, its records with metrics measured again from their events, and how many were voided."""
     run = RunFolder(folder)
-    return run.config, _measured(run.records())
+    return run.config, _measured(run.records()), len(run.voided)
 
 
 def _measured(kept: Iterable[TrialRecord]) -> list[TrialRecord]:

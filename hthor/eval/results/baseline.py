@@ -9,7 +9,7 @@ import msgspec
 from hthor.errors import RunError
 from hthor.eval.config.run_config import RunConfig
 from hthor.eval.metrics import trial_metrics
-from hthor.eval.records import trial_log
+from hthor.eval.records import attempts, trial_log
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import paired_difference, pairing, result_file
@@ -125,4 +125,4 @@ def _records(folder: Path) -> list[TrialRecord]:
         ]
     except RunError:
         return []
-    return sorted(kept, key=lambda record: (record.spec.session, record.spec.index))
+    return sorted(attempts.select_records(kept), key=lambda record: (record.spec.session, record.spec.index))

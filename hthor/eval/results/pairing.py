@@ -43,8 +43,8 @@ def pairing_key(spec: TrialSpec) -> str:
     It is the key of the trial without a robot; trials with equal keys meet equal random draws. Settings that only
     robots notice are left out: the furniture pack (only they see its pictures), real time, an action's deadline.
     """
-    of_robots = {"clock": msgspec.UNSET, "step_limit_s": msgspec.UNSET}
-    return trial_record.key(msgspec.structs.replace(spec, robots=(), assets_sha256="", **of_robots))
+    left_out = {"clock": msgspec.UNSET, "step_limit_s": msgspec.UNSET, "attempt": msgspec.UNSET}
+    return trial_record.key(msgspec.structs.replace(spec, robots=(), assets_sha256="", **left_out))
 
 
 def differing_field(one: RunConfig, other: RunConfig) -> str:

@@ -52,6 +52,7 @@ class Counts(Struct, frozen=True, kw_only=True):
 
     ``faults_by_seat`` counts the trials in which each seat's robot failed, ``faults_by_kind`` all faults by kind.
     ``replays`` counts sessions that began again because an agent's process was killed: each gave the agent another try.
+    ``voided`` counts attempts at trials that were voided and do not count; it is absent if there were none.
     """
 
     trials: int
@@ -62,6 +63,7 @@ class Counts(Struct, frozen=True, kw_only=True):
     faults_by_seat: dict[str, int]
     faults_by_kind: dict[str, int] = {}
     replays: int = 0
+    voided: int | msgspec.UnsetType = msgspec.UNSET
 
 
 class Hashes(Struct, frozen=True, kw_only=True):

@@ -4,6 +4,8 @@ import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 
+import msgspec
+
 from hthor import jsonio
 from hthor.eval.config.run_config import RunConfig
 from hthor.eval.config.sessions import Session
@@ -90,7 +92,8 @@ def _run_missing(
     watcher: Watcher,
     stop: threading.Event,
 ) -> CollectedTrials | None:
-    """Run the sessions that lack trials; None when no session does."""
+    """Run the sessions that lack trials; None when no session does. Trials that were voided are repeated."""
+    sessions = [msgspec.structs.replace(session, trials=tuple(map(log.due, session.trials))) for session in sessions]
     keys = {session.number: [trial_record.key(trial) for trial in session.trials] for session in sessions}
     expected = [key for some in keys.values() for key in some]
     left = [session for session in sessions if any(key not in log for key in keys[session.number])]
@@ -102,7 +105,7 @@ def _run_missing(
         platform.join(folder.path, (), (platform.this_platform(),))
         collected = collector.collect(left, make, repeatable=config.mode == LOCKSTEP)
     if stop.is_set():
-        raise Interrupted(f"interrupted after {len(log)} trials; resume with the same command.")
+        raise Interrupted(f"interrupted after {log.counted} trials; resume with the same command.")
     missing = [key for key in expected if key not in log]
     if missing:
         raise unfinished_error(folder, collected.lost if collected else [], len(missing), len(expected))
@@ -116,7 +119,7 @@ def _score(folder: RunFolder, effort: Effort | None) -> RunResult:
     if folder.config.shard:
         if effort is not None:
             jsonio.write(folder.effort_file, jsonio.pretty(effort))
-        return aggregate.make_result(folder.config, lines, records, effort)
+        return aggregate.make_result(folder.config, lines, records, effort, voided=len(folder.voided))
     stored = result_file.load_result(folder.path)
     result = aggregate.score_run(folder, lines, records, effort or (stored.effort if stored else None))
     if result != stored:

@@ -31,6 +31,7 @@ from hthor.types.events import (
     Released,
     Sent,
     Stick,
+    Voided,
 )
 
 _START_M = 0.002
@@ -140,9 +141,17 @@ def _read(path: str) -> dict[int, list[LoggedTrial]]:
         for human in trial.spec.humans:
             own = msgspec.structs.replace(trial, seat=human.seat)
             trials.setdefault(human.participant, []).append(own)
-    if not trials:
+    trials = {number: _counting(own) for number, own in trials.items()}
+    if not any(trials.values()):
         raise HthorError(f"{path} has no complete trial. {_HINT}")
     return {number: sorted(own, key=lambda trial: trial.spec.index) for number, own in trials.items()}
+
+
+def _counting(own: list[LoggedTrial]) -> list[LoggedTrial]:
+    """The trials that count: of each the last attempt that was not voided."""
+    valid = [trial for trial in own if not (trial.events and isinstance(trial.events[-1], Voided))]
+    last = {trial.spec.index: trial for trial in sorted(valid, key=lambda trial: trial.spec.attempt or 0)}
+    return list(last.values())
 
 
 def _bytes(path: Path) -> bytes:

@@ -62,7 +62,7 @@ class FaultGroup(Struct, frozen=True, kw_only=True):
     replay: str
 
 
-SCHEMA = "hthor.report/3"
+SCHEMA = "hthor.report/4"
 
 
 class Share(Struct, frozen=True, kw_only=True):

@@ -17,15 +17,15 @@ from hthor.eval.results import baseline
 
 NONE = NO_ROBOT
 Pair = tuple[int, int, int, str]
-"""Seed, participant, place in the session and task of a trial. Trials of two runs with an equal key form a pair."""
+"""Seed, session, place in the session and task of a trial. Trials of two runs with an equal key form a pair."""
 
 
 class Run(Struct, frozen=True, kw_only=True, eq=False):
     """One run: its configuration, its trials in order with newly computed metrics, and its names in the report.
 
     ``name`` is the name of its folder, preceded by the parent folder's if needed to tell runs apart. ``sha256`` is the
-    hash of its log as in `hthor.eval.results.aggregate`. ``beside`` is true if the user did not name the run: the
-    report found it next to another run, as its baseline.
+    hash of its log as in `hthor.eval.results.aggregate`. ``voided`` is the number of attempts that do not count.
+    ``beside`` is true if the user did not name the run: the report found it next to another run, as its baseline.
     """
 
     folder: Path
@@ -35,6 +35,7 @@ class Run(Struct, frozen=True, kw_only=True, eq=False):
     sha256: str
     label: str
     condition: str
+    voided: int = 0
     beside: bool = False
 
     @property
@@ -44,7 +45,7 @@ class Run(Struct, frozen=True, kw_only=True, eq=False):
 
 
 def pairing_key(record: TrialRecord) -> Pair:
-    """The key by which a trial is paired with that of the same person at the same task with other robots."""
+    """The key by which a trial is paired with that of the same people at the same task with other robots."""
     spec = record.spec
     return (spec.seed, spec.session, spec.index, spec.task.id)
 
@@ -89,6 +90,7 @@ def _read(folder: Path) -> Run:
         sha256=hashlib.sha256(b"".join(lines)).hexdigest(),
         label=plan.name if plan.seats else NONE,
         condition=_condition(plan),
+        voided=len(run.voided),
     )
 
 

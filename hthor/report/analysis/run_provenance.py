@@ -32,6 +32,7 @@ class Provenance(Struct, frozen=True, kw_only=True):
     ``name`` is its folder's name. ``beside`` is true if the report found the run by itself, as another run's baseline.
     ``isolation`` is None if all agents are built in. ``platforms`` is empty if the run did not record them. ``command``
     plays the run again; ``alone`` plays the same people and tasks without a robot. ``mode`` is the decision clock.
+    ``voided`` counts attempts at trials that do not count.
     """
 
     name: str
@@ -48,6 +49,7 @@ class Provenance(Struct, frozen=True, kw_only=True):
     trials: int
     whole: int
     faulty: int
+    voided: int
     assets: AssetsRef
     versions: dict[str, str]
     isolation: Isolation | None
@@ -82,6 +84,7 @@ def run_provenance(run: Run) -> Provenance:
         trials=len(run.records),
         whole=plan.trials,
         faulty=sum(bool(record.faults) for record in run.records),
+        voided=run.voided,
         assets=plan.assets,
         versions=plan.versions,
         isolation=run_isolation.load_isolation(run.folder),

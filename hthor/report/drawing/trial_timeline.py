@@ -51,7 +51,7 @@ def draw_timeline(ax: Axes, spec: TrialSpec, log: EpisodeLog) -> None:
     first, last = sides if spec.task.t_star <= end else sides[::-1]
     if spec.task.t_star <= limit:  # a T* beyond the time limit has no place on the axis
         _moment(ax, spec.task.t_star, "T*", "#777777", ":", first)
-    word, shade = ("done", trial_trace.TARGET) if log.met else ("time is up", trial_trace.FAILED)
+    word, shade = trial_trace.end_word(log), trial_trace.TARGET if log.met else trial_trace.FAILED
     _moment(ax, end, word, shade, "-", last)
     ax.set_xlim(-1, limit + 1)
     ax.set_ylim(-rows + 0.4, 0.75)

@@ -137,6 +137,11 @@ def message_colours(log: EpisodeLog) -> dict[int, str]:
     return {number: MESSAGE if number in accepted else IDLE_MESSAGE for number in sent}
 
 
+def end_word(log: EpisodeLog) -> str:
+    """How the trial ended, in a word or three."""
+    return "voided" if log.voided else "done" if log.met else "time is up"
+
+
 def first_fault(log: EpisodeLog, seat: str) -> Fault | None:
     """The first fault of a seat's agent; the trial went on without the agent."""
     return next((fault for fault in log.faults if fault.seat == seat), None)

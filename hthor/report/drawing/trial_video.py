@@ -126,7 +126,7 @@ class _Stage:
             steps = [event.value for event in log.events if isinstance(event, Progress) and event.tick <= tick]
             said.append((f"{100.0 * (steps or [0.0])[-1]:.0f} %", trial_trace.TARGET))
         if log.ticks <= tick:
-            said.append(("done" if log.met else "time is up", trial_trace.TARGET if log.met else trial_trace.FAILED))
+            said.append((trial_trace.end_word(log), trial_trace.TARGET if log.met else trial_trace.FAILED))
         for event in log.events:
             if isinstance(event, (Accepted, Declined, Answered)) and 0 <= tick - event.tick <= 3.0 / rules.TICK_S:
                 name = trial_trace.seat_name(event.seat, log.paths)

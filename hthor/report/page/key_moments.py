@@ -33,7 +33,7 @@ def key_moments(record: TrialRecord, house: HouseSpec | None = None) -> list[Mom
     when it was answered, and when a person's hands first did something. The others are in the middle of the longest
     waits; if ``house`` is given, their words are the room in which the first person is.
     """
-    found = [Moment(tick=record.ticks, words="done" if record.met else "time is up")]
+    found = [Moment(tick=record.ticks, words=trial_trace.end_word(record.log))]
     apart = round(_APART_S / rules.TICK_S)
     for one in _candidates(record):
         if len(found) < MANY and one.tick > 0 and all(abs(one.tick - other.tick) >= apart for other in found):

@@ -57,8 +57,16 @@ def result_notes(results: Iterable[RunResult]) -> Iterator[str]:
             "than their intervals."
         )
     for result in held:
+        if result.counts.voided:
+            yield f"note: {voided_words(result.label, result.counts.voided)}."
         if result.uplift is not None and result.uplift.note:
             yield f"note: uplift of {result.label}: {result.uplift.note}."
+
+
+def voided_words(name: str, count: int) -> str:
+    """How many attempts at a run's trials were voided."""
+    what = "1 attempt was voided and does" if count == 1 else f"{count} attempts were voided and do"
+    return f"{name}: {what} not count; 'hthor runs view' lists the reasons"
 
 
 def kinds_table(result: RunResult) -> Table:

@@ -73,12 +73,15 @@ def _suite(one: Provenance) -> str:
 
 def _trials(one: Provenance) -> str:
     whole = str(one.trials) if one.trials == one.whole else f"{one.trials} of {one.whole}, not finished"
-    return f"{whole}; {one.faulty} with a fault"
+    voided = f"; {one.voided} voided attempts do not count" if one.voided else ""
+    return f"{whole}; {one.faulty} with a fault{voided}"
 
 
 def _people(one: Provenance) -> str:
     drawn = f" out of the population {one.humans.population}" if one.humans.population else ""
-    return f"{one.participants} {one.humans.name}{drawn}, model {one.humans.model}"
+    each = len(one.humans.members)
+    together = f", {each} in each trial" if each > 1 else ""
+    return f"{one.participants} {one.humans.name}{drawn}, model {one.humans.model}{together}"
 
 
 def _versions(one: Provenance) -> str:

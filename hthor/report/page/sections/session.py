@@ -95,7 +95,7 @@ def communication(found: Findings, drawings: Mapping[str, str]) -> list[str]:
         elements.table(
             ("", *(arm.label for arm in found.arms)),
             [*_rows(found.arms, "bodies"), *_rows_by_seat(found.arms)],
-            "Idle time of the person, and how much people and robots were in each other's way; means over trials, "
+            "Idle time of people, and how much people and robots were in each other's way; means over trials, "
             "brackets and second lines as before.",
         ),
     ]

@@ -55,7 +55,7 @@ def faults(found: Findings, _: Mapping[str, str]) -> list[str]:
     ]
     return [
         elements.paragraph(
-            "After a fault the person went on without that robot; the trial counts as it ended. No trial is left out."
+            "After a fault people went on without that robot; the trial counts as it ended. No trial is left out."
         ),
         elements.table(_FAULT_HEAD, rows, "Trials with a fault, by its kind.", words=(0, 1, 2, 5)),
         *(part for one in found.failures for part in _first(one)),

@@ -1,0 +1,137 @@
+"""Attempts at a trial: a voided one stays in the log with its reason and does not count, and the trial is repeated.
+
+A repetition has the same specification but for its number: ``attempt`` is 1 for the first, 2 for the second. Of several
+attempts the last that was not voided counts.
+"""
+
+from collections.abc import Iterable
+from typing import TypeVar
+
+import msgspec
+from msgspec import UNSET, Struct, UnsetType
+
+from hthor.eval.records.trial_record import TrialRecord
+from hthor.types import TrialSpec
+from hthor.types.events import Voided
+
+Place = tuple[int, int]
+"""A trial of a run: the number of its session, and its index there."""
+_Pair = TypeVar("_Pair")
+
+
+class VoidedTrial(Struct, frozen=True, kw_only=True):
+    """An attempt that was voided: which one of which trial, from 0, and the reason."""
+
+    key: str
+    task: str
+    session: int
+    index: int
+    attempt: int
+    reason: str
+
+
+class Attempt(Struct, frozen=True):
+    """One attempt at a trial of a run: its number from 0, and whether it was voided."""
+
+    place: Place
+    number: int
+    voided: bool
+
+
+class _Spec(Struct):
+    session: int
+    index: int
+    attempt: int | UnsetType = UNSET
+
+
+class _Event(Struct):
+    kind: str
+
+
+class _Line(Struct):
+    spec: _Spec
+    events: list[_Event]
+
+
+_decoder = msgspec.json.Decoder(_Line)
+_VOIDED = Voided.__struct_config__.tag
+
+
+def read_attempt(line: bytes) -> Attempt:
+    """The attempt that a line of a log is about; fast, as little else is read."""
+    found = _decoder.decode(line)
+    ends = found.events[-1].kind if found.events else ""
+    place = found.spec.session, found.spec.index
+    return Attempt(place, found.spec.attempt or 0, ends == _VOIDED)
+
+
+def attempt_of(record: TrialRecord) -> Attempt:
+    """The attempt that a record is about."""
+    spec = record.spec
+    return Attempt((spec.session, spec.index), spec.attempt or 0, bool(record.log.voided))
+
+
+def numbered(trial: TrialSpec, number: int) -> TrialSpec:
+    """The trial's attempt with this number; 0 is the first, whose specification names no attempt."""
+    return msgspec.structs.replace(trial, attempt=number or UNSET)
+
+
+class Attempts:
+    """The attempts at the trials of a run, as far as they have come."""
+
+    def __init__(self, known: Iterable[Attempt] = ()) -> None:
+        self._known: dict[Place, dict[int, bool]] = {}
+        for one in known:
+            self.add(one)
+
+    def add(self, attempt: Attempt) -> None:
+        """Take note of another attempt."""
+        self._known.setdefault(attempt.place, {})[attempt.number] = attempt.voided
+
+    @property
+    def counted(self) -> int:
+        """How many trials have an attempt that counts."""
+        return sum(not all(one.values()) for one in self._known.values())
+
+    @property
+    def voided(self) -> int:
+        """How many attempts were voided."""
+        return sum(sum(one.values()) for one in self._known.values())
+
+    def number(self, place: Place) -> int:
+        """The number of the attempt that counts; of the next one, if all before were voided."""
+        known = self._known.get(place, {})
+        return max((number for number, voided in known.items() if not voided), default=max(known, default=-1) + 1)
+
+    def counts(self, attempt: Attempt) -> bool:
+        """Whether this is the attempt of its trial that counts."""
+        return not attempt.voided and attempt.number == self.number(attempt.place)
+
+
+def select(pairs: Iterable[tuple[_Pair, TrialRecord]]) -> list[tuple[_Pair, TrialRecord]]:
+    """Those of some records of a run that count, in their order; each comes with whatever belongs to it."""
+    held = [(pair, attempt_of(pair[1])) for pair in pairs]
+    known = Attempts(attempt for _, attempt in held)
+    return [pair for pair, attempt in held if known.counts(attempt)]
+
+
+def select_records(records: Iterable[TrialRecord]) -> list[TrialRecord]:
+    """Those of some records of a run that count, each once, in their order."""
+    found = {record.key: record for record in records}
+    return [record for _, record in select(found.items())]
+
+
+def voided_trials(records: Iterable[TrialRecord]) -> tuple[VoidedTrial, ...]:
+    """The attempts among some records that were voided, in their order."""
+    return tuple(
+        VoidedTrial(
+            key=record.key,
+            task=record.spec.task.id,
+            session=record.spec.session,
+            index=record.spec.index,
+            attempt=record.spec.attempt or 0,
+            reason=record.log.voided,
+        )
+        for record in records
+        if record.log.voided
+    )
