@@ -102,7 +102,7 @@ class LogWriter:
 
 
 def end_event(tick: int, winner: str, voided: str) -> Event:
-    """The last event of a trial; ``winner`` is the person who found the object or stands for the team; empty without success."""
+    """The last event of a trial; ``winner`` found the object or stands for the team, and is empty without success."""
     if voided:
         return Voided(tick=tick, seat=HUMAN, reason=voided)
     return Success(tick=tick, seat=winner) if winner else Timeout(tick=tick, seat=HUMAN)
