@@ -89,6 +89,7 @@ def show_task(task: TaskId, suite: Own = None, json: Json = False) -> None:
         ("time limit", f"{spec.time_limit:.0f} s"),
         ("T*", f"{spec.t_star:.1f} s"),
         ("person", _pose(spec.human_start)),
+        *((f"person {number}", _pose(pose)) for number, pose in enumerate(spec.other_human_starts, 2)),
         *((f"robot {number}", _pose(pose)) for number, pose in enumerate(spec.robot_starts, 1)),
     ]
     width = max(len(name) for name, _ in facts)

@@ -53,7 +53,9 @@ def task_figure(task: TaskSpec, house: HouseSpec, feat: Solution) -> Figure:
     floor_plan.draw_house(ax, house, marked=[thing.id for thing in house.things if {thing.id, thing.kind} & wanted])
     ax.plot(*zip(*feat.way, strict=True), color=trial_trace.PEOPLE[0], lw=1.5, ls=(0, (4, 2)), zorder=8)
     _draw_objects(ax, task)
-    for number, pose in enumerate((task.human_start, *task.robot_starts)):
+    for pose in (task.human_start, *task.other_human_starts):
+        _draw_start(ax, pose, 0)
+    for number, pose in enumerate(task.robot_starts, 1):
         _draw_start(ax, pose, number)
     title = "\n".join(text_fit.wrapped(line, _WIDE_IN - 0.3, _TITLE_PT) for line in _headline(task, feat))
     sheet.suptitle(title, x=0.015, ha="left", fontsize=_TITLE_PT, color=trial_trace.INK)
