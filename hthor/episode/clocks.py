@@ -205,11 +205,13 @@ class Concurrent:
         self._pace = pace if pace is not None else RealTime()
         self._landed: queue.SimpleQueue[Answer] = queue.SimpleQueue()
         self._workers: dict[str, _Worker] = {}
+        self._minds: dict[str, Mind] = {}
         self._asked: set[str] = set()
 
     def begin(self, seat: str, mind: Mind, briefing: Briefing) -> None:
         """Brief an agent in its thread, and wait until it is ready."""
         self._workers[seat] = worker = _Worker(seat, self._landed)
+        self._minds[seat] = mind
         worker.call(lambda: mind.begin(briefing))
 
     def ask(self, seat: str, mind: Mind, observation: Observation) -> None:
@@ -236,7 +238,10 @@ class Concurrent:
             worker.call(lambda: None)
 
     def close(self) -> None:
-        """Wait for agents that are still deciding, and end their threads."""
+        """End the agents' threads. An agent that is still deciding is told to finish if it can be, or waited for."""
+        for seat in sorted(self._asked):
+            if (finish := getattr(self._minds[seat], "finish", None)) is not None:
+                finish()
         for worker in self._workers.values():
             worker.end()
         self._workers.clear()

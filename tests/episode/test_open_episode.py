@@ -13,7 +13,7 @@ import pytest
 from episode_fakes import TASK, trial
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from walking_stage import SEATS, WalkingStage, minds
+from walking_stage import SEATS, Chancy, WalkingStage, minds
 
 from hthor import tasks
 from hthor.episode import Charged, Concurrent, DecisionClock, Episode, EpisodeLog, play
@@ -280,3 +280,22 @@ def test_a_seat_observes_before_the_first_step_of_a_tick(house: World) -> None:
         episode.observe("robot")
     episode.advance()
     assert episode.observe("robot").tick == 1
+
+
+def test_an_agent_that_still_thinks_at_the_end_is_told_to_finish() -> None:
+    people, robots = minds(3)
+    told = threading.Event()
+
+    class Thinker(Chancy):
+        def act(self, observation: Observation) -> Action:
+            told.wait(20.0)
+            return Action()
+
+        def finish(self) -> None:
+            told.set()
+
+    robots["robot"] = Thinker("robot", 3)
+    began = time.monotonic()
+    play(spec(), WalkingStage(), people, robots, Concurrent(pace=lambda _: None))  # type: ignore[arg-type]
+    assert told.is_set()
+    assert time.monotonic() - began < 15.0

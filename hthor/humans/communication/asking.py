@@ -1,4 +1,4 @@
-"""When a participant who searches in vain asks where something is, and of whom."""
+"""When a participant who searches in vain asks where something is, and which robot."""
 
 from collections.abc import Sequence
 

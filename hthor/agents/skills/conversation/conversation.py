@@ -3,7 +3,7 @@
     heard = conversation.hear(observation)
     action = conversation.speak(heard, policy.act(heard))
 
-The policy knows nothing of questions: the receipt in its observation is that of its own last suggestion.
+The policy gets no questions: the receipt in its observation is that of its own last suggestion.
 """
 
 import math
