@@ -22,6 +22,7 @@ from hypothesis import strategies as st
 from hthor import seeds
 from hthor.errors import HthorError
 from hthor.humans.core.policy import Offer, OptionDescription, Situation
+from hthor.humans.core.trial_context import HumanContext
 from hthor.humans.llm import backends, policy, prompts
 from hthor.humans.llm.policy import ResponseCache
 from hthor.humans.models import proxy
@@ -30,6 +31,7 @@ from hthor.humans.population.participant import Participant
 from hthor.humans.search import option_description
 from hthor.humans.search.option_description import Option
 from hthor.types import HUMAN, Message
+from hthor.types.events import Choice
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "examples"))
 import clone
@@ -179,11 +181,11 @@ def test_choices_are_plain_json_and_small():
     model, _, _ = played()
     choices = [event for event in model.journal if event.kind == "choice"]
     assert all(event.seat == HUMAN for event in choices)
-    assert msgspec.json.decode(msgspec.json.encode(choices)) == [msgspec.to_builtins(event) for event in choices]
+    assert msgspec.json.decode(msgspec.json.encode(choices), type=list[Choice]) == choices
     assert max(len(msgspec.json.encode(event)) for event in choices) < 700
 
 
-def crowded(root: int, chosen: int, count: int = 40):
+def crowded(root: int, chosen: int, count: int = 40) -> Choice:
     """A choice among many options, one of them taken."""
     places = [SimpleNamespace(id=f"Bed|{k}", kind="bed", state="") for k in range(count)]
     options = [
@@ -191,7 +193,11 @@ def crowded(root: int, chosen: int, count: int = 40):
         for k, place in enumerate(places)
     ]
     shares = [0.1] * count
-    return option_description.features(root, "target", 0, options, options[chosen], shares, shares)
+    human = HumanContext(Parameters(), root, Flat("Bed|1").briefing())
+    human.now = SimpleNamespace(tick=0)
+    option_description.record_choice(human, "target", 0, options, options[chosen], shares, shares)
+    (entry,) = human.journal
+    return entry
 
 
 @pytest.mark.slow
@@ -202,7 +208,7 @@ def test_of_many_options_chance_keeps_some_all_as_likely():
         metres = [row[2] for row in kept.options]
         assert len(metres) == option_description.MAX_RECORDED
         assert metres == sorted(metres)
-        assert metres[kept["chosen"]] == 7.0
+        assert metres[kept.chosen] == 7.0
         counts.update(int(m) for m in metres)
     share = (option_description.MAX_RECORDED - 1) / 39
     tolerance = 4.5 * math.sqrt(1500 * share * (1 - share))
