@@ -80,7 +80,7 @@ class Conversation:
         """The person seen nearest to the place of a suggestion, rather one with free hands; "" if nobody was seen."""
         assert suggestion.position is not None
         spot, busy = suggestion.position[:2], self.sightings.holders(observation)
-        people = self.sightings.people
+        people = self.sightings.people()
         return min(people, key=lambda seat: (seat in busy, math.dist(people[seat], spot), seat), default="")
 
     def _answer(self, observation: Observation, answer: Send, suggestion: Send | None) -> Send:

@@ -11,27 +11,21 @@ class Sightings:
 
     A robot that gets true states (`Observation.truth`) knows where a thing is now, but speaks only of things that it
     has been close to: those that it has detected, or has told people about in front of a closed door.
-
-    Attributes:
-        people: where each person was seen last [m], by seat.
     """
 
     def __init__(self) -> None:
-        self.people: dict[str, Vec2] = {}
         self._things: dict[str, Detection] = {}
+        self._people: dict[str, Vec2] = {}
         self._told: set[str] = set()
         self._last: tuple[Detection, ...] = ()
+        self._new: list[tuple[Detection, ...]] = []  # only looked through when something is asked for
 
     def note(self, observation: Observation) -> None:
         """Remember what is in view; call at every act."""
-        if observation.detections is self._last:
-            return
-        self._last = observation.detections
-        for seen in self._last:
-            if seen.family == "person":
-                self.people[seen.id] = seen.position[:2]
-            elif seen.family in ("object", "furniture"):
-                self._things[seen.id] = seen
+        detections = observation.detections
+        if detections is not self._last:
+            self._last = detections
+            self._new.append(detections)
 
     def note_told(self, object: str) -> None:
         """Remember that people were told where this thing is."""
@@ -40,7 +34,7 @@ class Sightings:
     def named(self, name: str, observation: Observation) -> list[ThingState]:
         """The thing of this id, or else all things of this kind, as far as they are known; the nearest first."""
         truth = {state.id: state for state in observation.truth}
-        known = {id: truth.get(id) or _state(seen) for id, seen in self._things.items()}
+        known = {id: truth.get(id) or _state(seen) for id, seen in self._known().items()}
         known |= {id: truth[id] for id in self._told if id in truth}
         if name in known:
             return [known[name]]
@@ -50,13 +44,29 @@ class Sightings:
 
     def kind(self, thing: str) -> str:
         """The kind of a thing that was detected, empty for any other."""
-        seen = self._things.get(thing)
+        seen = self._known().get(thing)
         return "" if seen is None else seen.kind
+
+    def people(self) -> dict[str, Vec2]:
+        """Where each person was seen last [m], by seat."""
+        self._known()
+        return self._people
 
     def holders(self, observation: Observation) -> set[str]:
         """The people who have something in hand, as far as the robot sees or knows now."""
         things: Collection[Detection | ThingState] = (*observation.detections, *observation.truth)
         return {thing.held_by for thing in things if is_person(thing.held_by)}
+
+    def _known(self) -> dict[str, Detection]:
+        """The things that were detected, as seen last."""
+        for detections in self._new:
+            for seen in detections:
+                if seen.family == "person":
+                    self._people[seen.id] = seen.position[:2]
+                elif seen.family in ("object", "furniture"):
+                    self._things[seen.id] = seen
+        self._new.clear()
+        return self._things
 
 
 def _state(seen: Detection) -> ThingState:
