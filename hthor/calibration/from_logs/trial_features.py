@@ -8,6 +8,7 @@ from pathlib import Path
 from msgspec import UNSET, Struct
 
 from hthor import log_format, rules
+from hthor.calibration.from_logs import one_person
 from hthor.calibration.from_logs.features import locomotion, messages
 from hthor.calibration.from_logs.features.locomotion import Walk
 from hthor.calibration.from_logs.features.messages import Offer, Reading
@@ -21,7 +22,7 @@ from hthor.types import HUMAN, events
 
 
 class Trial(Struct, frozen=True, kw_only=True):
-    """A trial, and the numbers of its person and of its session within a `Sessions`, from 0."""
+    """A trial of one person, and the numbers of that person and of their session within a `Sessions`, from 0."""
 
     record: TrialRecord
     person: int
@@ -32,7 +33,7 @@ class Sessions(Struct, frozen=True, kw_only=True):
     """All trials, ordered by person, session and index.
 
     Trials with the same human model, seed and participant number are of the same person, with any robots; each robot
-    team that a person met is a session of its own.
+    team that a person met is a session of its own. Records have one person, see `one_person`.
     """
 
     trials: tuple[Trial, ...]
@@ -57,8 +58,9 @@ def read_sessions(paths: Sequence[Path]) -> Sessions:
 
 
 def sessions_of(records: Iterable[TrialRecord]) -> Sessions:
-    """The sessions that these records belong to."""
-    ordered = sorted(records, key=lambda one: (*_person(one), _team(one), one.spec.index, one.key))
+    """The sessions that these records belong to; a trial of several people is a trial of each of them."""
+    own = (part for record in records for part in one_person.split_by_person(record))
+    ordered = sorted(own, key=lambda one: (*_person(one), _team(one), one.spec.index, one.key))
     people: dict[object, int] = {}
     sessions: dict[object, int] = {}
     trials = tuple(

@@ -1,7 +1,7 @@
 """Attempts at a trial: a voided one stays in the log with its reason and does not count, and the trial is repeated.
 
-A repetition has the same specification but for its number: ``attempt`` is 1 for the first, 2 for the second. Of several
-attempts the last that was not voided counts.
+A repetition has the same specification except for its number: ``attempt`` is 1 for the first, 2 for the second. Of
+several attempts the last that was not voided counts.
 """
 
 from collections.abc import Iterable
