@@ -7,10 +7,10 @@ rules apply, which no real person would follow:
 
 - A message that is shown at the tick of a logged answer gets that answer; if none is shown, the answer lapses. The
   content of messages changes nothing. What the participant asked or told others is said at the same tick.
-- If a robot or another person blocks the path, the replay stands and tries again every half second, and never goes
-  around them. Afterwards it catches up as fast as stick and body allow. Hand actions happen at their places, so they
-  come later too.
-- If anything else blocks the path (a door that was shut), that part of the path is skipped after three tries.
+- If a robot blocks the path, the replay stands and tries again every half second, and never goes around it. Afterwards
+  it catches up as fast as stick and body allow. Hand actions happen at their places, so they come later too.
+- If anything else blocks the path (a door that was shut, another person), that part of the path is skipped after three
+  tries.
 - After the end of the log it stands still. The rating is the logged rating.
 """
 
@@ -36,7 +36,7 @@ _THERE_M = 0.003
 _THERE_RAD = 0.003
 """[rad] Angle within which a logged direction is reached. Our choice: angles are logged to a milliradian."""
 _PAUSE_S = 0.5
-"""[s] Time between two tries while another body blocks the path. Our choice."""
+"""[s] Time between two tries while a robot blocks the path. Our choice."""
 _TRIES = 3
 """[count] Tries after which a blocked part of the path is skipped. Our choice."""
 _LAPSE_TICKS = 10
@@ -209,11 +209,11 @@ class Reenactment:
         return near and max(abs(wrap(goal.yaw - pose.yaw)), abs(goal.pitch - pose.pitch)) <= _THERE_RAD
 
     def _is_stuck(self, now: Observation) -> bool:
-        """Whether another body blocks the path; other obstacles are skipped after some tries."""
+        """Whether a robot blocks the path; other obstacles are skipped after some tries."""
         outcome = now.outcome
         if outcome is None or outcome.ok or outcome.motion != "move":
             return False
-        if outcome.by.startswith("robot") or is_person(outcome.by):
+        if outcome.by.startswith("robot"):
             return True
         self._tries += 1
         if self._tries >= _TRIES:
