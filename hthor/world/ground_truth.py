@@ -11,8 +11,8 @@ from hthor.world.state.body_state import BodyState
 from hthor.world.state.doors import Doors
 from hthor.world.state.objects import Objects
 
-_Moment = tuple[tuple[Pose, ...], int, int]
-"""What the people's objects in view depend on: their poses, and the numbers of changes of objects and doors."""
+_Moment = tuple[int | Pose, ...]
+"""What the people's objects in view depend on: the numbers of changes of objects and doors, and the people's poses."""
 
 
 class GroundTruth:
@@ -21,6 +21,7 @@ class GroundTruth:
     def __init__(self, objects: Objects, doors: Doors, visibility: Visibility, seats: Sequence[BodyState]) -> None:
         self._objects, self._doors, self._visibility, self._seats = objects, doors, visibility, seats
         self._people = {seat.name: seat for seat in seats if is_person(seat.name)}
+        self._first, *self._others = self._people.values()
         self._things: dict[str, ThingState] = {}
         self._version = (-1, -1)
         self._view: LazyInView | None = None
@@ -56,14 +57,16 @@ class GroundTruth:
 
     def _in_view(self, tick: int) -> LazyInView:
         """The people's objects in view; the same record as long as nothing changes."""
-        moment = self._moment()
+        moment = self._moment
         if self._view is None or self._view.moment != moment:
             self._view = LazyInView(self, tuple(self._people), moment, tick)
         return self._view
 
+    @property
     def _moment(self) -> _Moment:
-        poses = tuple([seat.pose for seat in self._people.values()])  # a list is faster than a generator
-        return (poses, self._objects.changes, self._doors.changes)
+        if not self._others:
+            return (self._objects.changes, self._doors.changes, self._first.pose)
+        return (self._objects.changes, self._doors.changes, *(seat.pose for seat in self._people.values()))
 
     def look(self, seat: str, moment: _Moment, tick: int) -> tuple[str, ...]:
         """Ids of the objects that a person has in view.
@@ -71,7 +74,7 @@ class GroundTruth:
         Raises:
             StaleObservation: when the world is no longer at this ``moment``.
         """
-        if moment != self._moment():
+        if moment != self._moment:
             raise StaleObservation(
                 f"in_view of the snapshot of tick {tick} was read after the world had moved on; "
                 "read it while the snapshot is new"

@@ -39,7 +39,11 @@ class ObjectGoalNavigation(TaskKind):
         return f"Find {catalog.kind(target_of(goal, objects).kind).indefinite}."
 
     def met(self, task: TaskSpec, snapshot: Snapshot, house: HouseSpec) -> bool:
-        return any(task.goal.target in seen for seen in snapshot.in_view.values())
+        target, view = task.goal.target, snapshot.in_view
+        for person in view:  # noqa: SIM110 - twice as fast as a generator, and called at every tick
+            if target in view[person]:
+                return True
+        return False
 
     def solved(self, goal: Goal, objects: tuple[Placement, ...], house: HouseSpec) -> bool:
         return False

@@ -26,7 +26,7 @@ from hthor.types import SUBTICKS, Drive, Outcome, Pose, Vec2
 from hthor.types.events import Blocked, Event, InWay
 from hthor.world import numbers
 from hthor.world.motion.locomotion import Culprit, clip
-from hthor.world.motion.steps import FREE, HOUSE, go_or_slide
+from hthor.world.motion.steps import FREE, HOUSE, go, slide
 from hthor.world.records import Driving
 from hthor.world.state.body_state import BodyState
 
@@ -53,7 +53,11 @@ class JointLoads(Protocol):
         """Why a body cannot move because of the thing that it holds; empty when it can."""
 
     def go(self, seat: BodyState, step: Vec2, length: float, tick: int) -> tuple[str, bool]:
-        """Go by ``step`` [m] with the thing in the way of `go_or_slide`; for what the bearers cannot lift, ``LOAD``."""
+        """Go by ``step`` [m] with the thing, or slide.
+
+        Returns:
+            what is in the way, ``LOAD`` for what the bearers cannot lift, and whether the body had to stay.
+        """
 
 
 class DriveMotion:
@@ -97,7 +101,8 @@ class DriveMotion:
         if pace is None:
             length = self._speed * _STEP_S
             step = (self._along[0] * length, self._along[1] * length)
-            met, stuck = go_or_slide(seat, self._others, step, length)
+            met = go(seat, self._others, *step)
+            stuck = met != FREE and not slide(seat, self._others, step, length)
         elif last:
             length = min(self._speed, pace) * rules.TICK_S
             step = (self._along[0] * length, self._along[1] * length)

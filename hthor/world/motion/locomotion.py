@@ -15,7 +15,7 @@ from hthor.houses.space.free_space import STEP_M
 from hthor.types import BodySpec, HouseSpec, Move, Opening, Outcome, Pose, Rotate, Vec2, Wait
 from hthor.types.events import Blocked, Event, InWay
 from hthor.world import numbers
-from hthor.world.motion.steps import EPS, FREE, HOUSE, go_or_slide
+from hthor.world.motion.steps import EPS, FREE, HOUSE, go, slide
 from hthor.world.records import Moving, Rotating, Waiting
 from hthor.world.state.body_state import BodyState
 from hthor.world.state.doors import leaf_rectangle
@@ -100,6 +100,7 @@ class RotateMotion:
     def __init__(self, seat: BodyState, motion: Rotate, begun: Pose, done: int = 0) -> None:
         self._seat, self._motion, self._from = seat, motion, begun
         self._done, self._rate = done, seat.spec.turn_rate * rules.TICK_S
+        self._limit = pitch_limit(seat.spec, begun)
         self._ticks = max(1, math.ceil(max(abs(motion.yaw), abs(motion.pitch)) / self._rate - EPS))
 
     def advance(self, tick: int) -> TickResult:  # noqa: ARG002
@@ -107,8 +108,7 @@ class RotateMotion:
         start, most = self._from, self._done * self._rate
         pitch = start.pitch + clip(self._motion.pitch, most)
         yaw = wrap(start.yaw + clip(self._motion.yaw, most))
-        limit = pitch_limit(self._seat.spec, start)
-        self._seat.pose = Pose(x=start.x, y=start.y, yaw=yaw, pitch=clip(pitch, limit), head=start.head)
+        self._seat.pose = Pose(x=start.x, y=start.y, yaw=yaw, pitch=clip(pitch, self._limit), head=start.head)
         return (None if self._done < self._ticks else _ROTATED), ()
 
     def state(self) -> Rotating:
@@ -140,13 +140,13 @@ class MoveMotion:
     def advance(self, tick: int) -> TickResult:
         length = min(self._seat.spec.speed * rules.TICK_S, self._left)
         self._left -= length
-        step = self._along[0] * length, self._along[1] * length
-        met, stuck = go_or_slide(self._seat, self._others, step, length)
+        dx, dy = self._along[0] * length, self._along[1] * length
+        met = go(self._seat, self._others, dx, dy)
         if not met:
             return (None if self._left > EPS else _MOVED), ()
         events = self._in_way(tick, met)
-        if stuck:
-            return self._stop(tick, met, step, events)
+        if not slide(self._seat, self._others, (dx, dy), length):
+            return self._stop(tick, met, (dx, dy), events)
         return (None if self._left > EPS else _MOVED), events
 
     def state(self) -> Moving:

@@ -18,24 +18,6 @@ FREE, HOUSE = "", "*"
 """What blocks a step: nothing or the house; any other value is the seat in the way."""
 
 
-def go_or_slide(seat: BodyState, others: Sequence[BodyState], step: Vec2, length: float) -> tuple[str, bool]:
-    """Go by ``step`` [m], or else along one of the axes x and y, unless the step is nearly perpendicular to it.
-
-    Args:
-        others: all other bodies. length: [m] of the step.
-
-    Returns:
-        what blocked the straight step, and whether the body had to stay where it was.
-    """
-    dx, dy = step
-    met = go(seat, others, dx, dy)
-    if not met:
-        return FREE, False
-    least = SLIDE_SHARE_MIN * length
-    slid = (abs(dx) > least and not go(seat, others, dx, 0.0)) or (abs(dy) > least and not go(seat, others, 0.0, dy))
-    return met, not slid
-
-
 def go(seat: BodyState, others: Sequence[BodyState], dx: float, dy: float) -> str:
     """Go by (dx, dy) [m] if that place is free; else returns what is in the way."""
     pose = seat.pose
@@ -47,6 +29,19 @@ def go(seat: BodyState, others: Sequence[BodyState], dx: float, dy: float) -> st
         return HOUSE
     seat.pose = Pose(x=x, y=y, yaw=pose.yaw, pitch=pose.pitch, head=pose.head)
     return FREE
+
+
+def slide(seat: BodyState, others: Sequence[BodyState], step: Vec2, length: float) -> bool:
+    """Go along x or else y by that part of a blocked step [m], unless the step is nearly perpendicular to the axis.
+
+    Args:
+        others: all other bodies. length: [m] of the step.
+
+    Returns:
+        whether the body has moved.
+    """
+    (dx, dy), least = step, SLIDE_SHARE_MIN * length
+    return (abs(dx) > least and not go(seat, others, dx, 0.0)) or (abs(dy) > least and not go(seat, others, 0.0, dy))
 
 
 def _too_close(seat: BodyState, other: BodyState, x: float, y: float) -> bool:
