@@ -7,10 +7,11 @@ are compared come from the same run, so that ratios hold on a noisy machine too.
 from __future__ import annotations
 
 import argparse
+import itertools
 import sys
 from collections.abc import Callable, Iterator
 
-from benchmarks import environment, guests, rendering, scaling, scenes, table, trials
+from benchmarks import driving, environment, guests, rendering, scaling, scenes, table, trials
 from hthor import code_identity, tasks
 
 PARTS = ("trials", "environment", "rendering", "processes", "guests")
@@ -42,7 +43,9 @@ def _measures(given: argparse.Namespace) -> dict[str, Callable[[], Iterator[tabl
     sizes = (128,) if quick else rendering.SIZES
     profiles = [name for name in given.profile.split(",") if name]
     return {
-        "trials": lambda: trials.rows(suite, 2 if quick else 6),
+        "trials": lambda: itertools.chain(
+            trials.rows(suite, 2 if quick else 6), driving.rows(suite, 4 if quick else 12)
+        ),
         "environment": lambda: environment.rows(scenes.scenes(suite), suite, 1 if quick else 5),
         "rendering": lambda: rendering.rows(scenes.scenes(suite), profiles, sizes),
         "processes": lambda: scaling.rows(suite, 5 if quick else 30),
