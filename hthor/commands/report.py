@@ -68,9 +68,9 @@ def case(
     humans: Annotated[str, typer.Option(help="The file of the people, if the runs used one.", show_default=False)] = "",
     json: Json = False,
 ) -> None:
-    """Draw one task with several robots: paths from above, and the views of person and robot at key moments.
+    """Draw one task with several robots: paths from above, and the views of people and robots at key moments.
 
-    One row per run, as SVG and as PNG. The person's session is played again for the views, and must equal the log.
+    One row per run, as SVG and as PNG. The session is played again for the views, and must equal the log.
     """
     from hthor.guest.agent import inputs
     from hthor.report.page import case_study as cases

@@ -54,7 +54,7 @@ def run(
 ) -> None:
     """Play one trial of a run again with the current version of your agent, and show what happened.
 
-    The person's trials before it are played too, as they shape what the person does. Exit code 3 when the agent fails.
+    The trials before it in the session are played too, as they shape what people do. Exit code 3 when the agent fails.
     """
     from hthor.eval.records import find
     from hthor.eval.records.run_folder import RunFolder

@@ -34,9 +34,8 @@ def show_run(console: Console, one: FinishedRun) -> None:
     console.print(result_tables.result_table(result))
     if result.counts.faults:
         faulty, many = find.first_fault(one.folder), f"{result.counts.faults} of {result.counts.trials}"
-        alone = (
-            "there the person continued alone" if len(config.seats) == 1 else "there the others continued without it"
-        )
+        others = "the person continued alone" if len(config.humans.members) == 1 else "the people continued alone"
+        alone = f"there {others if len(config.seats) == 1 else 'the others continued without it'}"
         failed = [f"{seat} in {count}" for seat, count in result.counts.faults_by_seat.items() if count]
         whose = f" ({', '.join(failed)})" if len(config.seats) > 1 else ""
         output.say(f"{'An' if whose else 'The'} agent failed in {many} trials{whose}; {alone}.", console)

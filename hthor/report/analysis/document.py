@@ -18,7 +18,7 @@ from hthor.report.analysis.run_provenance import Provenance
 class ExampleTrial(Struct, frozen=True, kw_only=True):
     """A trial to draw on a map; ``replay`` is the command that draws the whole trial.
 
-    ``gain_s`` is the time saved [s] against the same person without a robot, None if there is no such trial.
+    ``gain_s`` is the time saved [s] against the same people without a robot, None if there is no such trial.
     """
 
     arm: str

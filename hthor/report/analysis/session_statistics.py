@@ -62,7 +62,7 @@ def _people(rated: Sequence[tuple[int, int, float]]) -> list[int]:
 
 
 def _slope(marks: Sequence[tuple[int, float]]) -> float | None:
-    """Least-squares slope of one person's ratings [points per trial]; None if there is only one rating."""
+    """Least-squares slope of one session's ratings [points per trial]; None if there is only one rating."""
     if len(marks) < 2:
         return None
     x, y = (np.array(values, dtype=float) for values in zip(*marks, strict=True))

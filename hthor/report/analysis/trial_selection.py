@@ -19,7 +19,7 @@ _FOLDER = "faults"
 def best_and_worst(run: Run, alone: Run | None, each: int = EACH) -> list[ExampleTrial]:
     """The ``each`` best and worst trials of a run with robots, each trial at most once.
 
-    If there is a run without a robot, trials are ranked by the time saved against the same person in that run, then by
+    If there is a run without a robot, trials are ranked by the time saved against the same people in that run, then by
     time-weighted success. Otherwise they are ranked by time-weighted success, then by the time spent.
     """
     others = alone.by_pair if alone is not None else {}

@@ -81,7 +81,7 @@ def _same_people(runs: Sequence[Run]) -> None:
 
 
 def _records(runs: Sequence[Run], task: str, person: int | None) -> list[TrialRecord]:
-    """One person's trials of the task, one per run."""
+    """The same people's trials of the task, one per run."""
     tables = [run.by_pair for run in runs]
     shared = sorted(pair for pair in tables[0] if all(pair in table for table in tables[1:]))
     people = {pair: [human.participant for human in tables[0][pair].spec.humans] for pair in shared}

@@ -24,7 +24,7 @@ class NamedFigure(Struct, frozen=True, kw_only=True, eq=False):
 
 
 class MapScene(Struct, frozen=True, kw_only=True, eq=False):
-    """The content of a map: a trial, the same person's trial without a robot if there is one, and the house."""
+    """The content of a map: a trial, the same people's trial without a robot if there is one, and the house."""
 
     record: TrialRecord
     alone: TrialRecord | None

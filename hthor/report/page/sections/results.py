@@ -72,7 +72,7 @@ def comparison(found: Findings, drawings: Mapping[str, str]) -> list[str]:
         elements.drawn(
             drawings,
             "compared",
-            "Differences trial by trial: the same person with the same task at the same point of the session. Right of "
+            "Differences trial by trial: the same people with the same task at the same point of the session. Right of "
             f"the line the robot that is named first is better. Bars: {_bars(found)}.",
         ),
         elements.table(

@@ -84,7 +84,7 @@ def communication(found: Findings, drawings: Mapping[str, str]) -> list[str]:
             drawings,
             "channel",
             "Left: messages a trial by what became of them. Middle: when the first message was sent that was true and "
-            "that the person accepted, over the trials that had one. Right: messages that came up before the person's "
+            "that a person accepted, over the trials that had one. Right: messages that came up before a person's "
             "eyes. Bars: 95 % intervals.",
         ),
         elements.table(

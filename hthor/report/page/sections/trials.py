@@ -16,7 +16,7 @@ def trials(found: Findings, drawings: Mapping[str, str]) -> list[str]:
     """The parts of the section on best and worst trials."""
     if not found.shown:
         return [elements.paragraph("There is no robot in these runs.")]
-    by = "the time saved against the same person without a robot" if found.baseline else "time-weighted success"
+    by = "the time saved against the same people without a robot" if found.baseline else "time-weighted success"
     held = [elements.paragraph(f"Ranked by {by}: extremes of many trials, not typical ones.")]
     if "legend" in drawings:
         told = "The house from above. Lines darken with time, with a dot every ten seconds; a number stands where "
