@@ -29,7 +29,7 @@ MODULES = {
     "Houses": ["hthor.houses"],
     "The catalog": ["hthor.catalog"],
     "Messages": ["hthor.comms"],
-    "Logs": ["hthor.eval.records.trial_record", "hthor.eval.records.trial_log"],
+    "Logs": ["hthor.eval.records.trial_record", "hthor.eval.records.trial_log", "hthor.types.events"],
     "Results": ["hthor.eval.results.result_file"],
     "Metrics": ["hthor.eval.metrics.metric"],
     "Rules": ["hthor.rules"],

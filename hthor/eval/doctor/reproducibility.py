@@ -38,7 +38,7 @@ def run_reference_trial() -> TrialFingerprint:
     first = sessions.make_sessions(tasks.load_suite(_SUITE), agent=_AGENT, humans=_PEOPLE, seed=_SEED)[0]
     done = next(iter(trial_runner.make_runner()(msgspec.structs.replace(first, trials=first.trials[:1])))).record
     course = msgspec.json.decode(trial_record.encode(done))
-    for name in ("key", "spec", "check"):  # not part of the course of the trial
+    for name in ("schema", "key", "spec", "check"):  # not part of the course of the trial
         del course[name]
     return TrialFingerprint(
         trial=done.spec.task.id,
