@@ -46,7 +46,8 @@ class HumanModel(Protocol):
                 motion ended, and the messages shown. It never has the true state of the world.
 
         Returns:
-            A motion, which is carried out only when ``observation.idle``, and at most one answer to a message.
+            A motion, which is carried out only when ``observation.idle``, and at most one utterance: a `Reply` to a
+            message or question on the panel, or a `Send` to others, which may be a question or the answer to one.
 
         Raises:
             HthorError: if the model cannot go on, for example a replay of another task. The run then stops.

@@ -166,6 +166,9 @@ def test_of_several_things_of_a_kind_the_one_that_is_still_to_be_done_counts() -
     assert said is not None
     assert said.object == "apple_2"
     none = reply(conversation(told, open=("apple_3",)), question(), done)
+    named = reply(conversation(told, open=("apple_3",)), question(about="apple_1"), done)
+    assert named is not None
+    assert named.object == "apple_1"
     assert none is not None
     assert none.text == "I have not seen the apple yet."
 
@@ -352,7 +355,15 @@ def test_a_suggestion_goes_to_the_nearest_person_who_was_seen() -> None:
     assert addressed(conversation(), person(HUMAN, 2.0)) == ""
     busy = thing("mug", held="human2")
     assert addressed(conversation(two), person(HUMAN, 9.0), person("human2", 2.0), busy) == HUMAN
+    assert addressed(conversation(two, open=()), person(HUMAN, 9.0)) == ""  # a report is for everybody
     assert addressed(conversation(two), person(HUMAN, 9.0), say=msgspec.structs.replace(FOUND, to="human2")) == "human2"
+
+
+def test_who_declined_is_not_told_again_while_there_is_somebody_else() -> None:
+    talk, people = conversation(briefing(HUMAN, "human2")), (person(HUMAN, 9.0), person("human2", 2.0))
+    assert addressed(talk, *people) == "human2"
+    talk.hear(look(*people, receipt=Receipt(message=0, status="declined", tick=9, by="human2")))
+    assert addressed(talk, *people) == HUMAN
 
 
 def test_only_the_person_who_was_told_is_asked() -> None:

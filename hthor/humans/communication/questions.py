@@ -68,7 +68,8 @@ class QuestionAnswering:
 
     def _place(self, question: Message) -> Send | None:
         """A message that tells where the thing is, None if it is not known."""
-        for subgoal in self._asked(question):
+        asked = self._asked(question)
+        for subgoal in [one for one in asked if not one.done] or asked:  # who searches wants what is still to be done
             seen = subgoal.known.seen
             if seen is not None:
                 return self._told(question, subgoal.target, seen.position, self._words(subgoal, seen.support))

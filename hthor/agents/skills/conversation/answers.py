@@ -13,7 +13,7 @@ from hthor.types import Briefing, Message, Observation, Send, ThingState, is_per
 class Answers:
     """Answers each question once and at once: with the place of what it asks for, or that the robot has not seen it.
 
-    A question that names a kind of which the task has several is about one that is not where it belongs yet. If all
+    While the task has things of the kind in question that are not where they belong yet, it is about these. If all
     robots are asked and one does not know, it leaves the answer to the others, unless its seat is the first.
 
     Args:
@@ -22,7 +22,6 @@ class Answers:
 
     def __init__(self, briefing: Briefing, sightings: Sightings, unfinished: Callable[[], Collection[str]]) -> None:
         self.seat, self.sightings, self.unfinished = briefing.seat, sightings, unfinished
-        self._targets = {job.target for job in briefing.todo}
         robots = [seat for seat in (briefing.seat, *briefing.teammates) if not is_person(seat)]
         self._speaks_for_all = min(robots, key=seat_order, default=briefing.seat) == briefing.seat
         self._left: set[int] = set()
@@ -51,9 +50,9 @@ class Answers:
     def _meant(self, name: str, observation: Observation) -> ThingState | None:
         """The thing that a question means, if it is known; rather one that nobody holds."""
         known = self.sightings.named(name, observation) if name else []
-        if any(state.id in self._targets for state in known) and name not in self._targets:
-            unfinished = self.unfinished()
-            known = [state for state in known if state.id in unfinished]
+        wanted = [target for target in self.unfinished() if name in (target, kind_of(target))]
+        if wanted:
+            known = [state for state in known if state.id in wanted]
         return next((state for state in known if not state.held_by), known[0] if known else None)
 
     def _told(self, known: ThingState, asker: str, observation: Observation) -> str:

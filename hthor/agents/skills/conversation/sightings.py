@@ -32,15 +32,13 @@ class Sightings:
         self._told.add(object)
 
     def named(self, name: str, observation: Observation) -> list[ThingState]:
-        """The thing of this id, or else all things of this kind, as far as they are known; the nearest first."""
+        """The things of this id or kind, as far as they are known; first the one of this id, then the nearest."""
         truth = {state.id: state for state in observation.truth}
         known = {id: truth.get(id) or _state(seen) for id, seen in self._known().items()}
         known |= {id: truth[id] for id in self._told if id in truth}
-        if name in known:
-            return [known[name]]
         here = (observation.pose.x, observation.pose.y)
-        alike = [state for state in known.values() if state.kind == name]
-        return sorted(alike, key=lambda state: (math.dist(here, state.position[:2]), state.id))
+        alike = [state for state in known.values() if name in (state.id, state.kind)]
+        return sorted(alike, key=lambda state: (state.id != name, math.dist(here, state.position[:2]), state.id))
 
     def kind(self, thing: str) -> str:
         """The kind of a thing that was detected, empty for any other."""
