@@ -35,6 +35,7 @@ from hthor.types import (
 )
 
 if TYPE_CHECKING:
+    from hthor.agents.skills.audience import Audience
     from hthor.agents.skills.routes import HouseRoutes
     from hthor.agents.skills.yielding import Yielding
     from hthor.navigation.path_follower import Follower
@@ -59,11 +60,12 @@ class Messenger:
         follower: Follower,
         knowledge: Knowledge,
         yielding: Yielding | None,
+        audience: Audience,
     ) -> None:
         """``yielding`` is None for a single job, as in the paper."""
         self.briefing, self.routes, self.follower = briefing, routes, follower
         self.knowledge, self.yielding, self.several = knowledge, yielding, yielding is not None
-        self._has_several_people = sum(map(is_person, briefing.teammates)) > 1
+        self.audience = audience
         self.kinds = {thing.id: thing.kind for thing in knowledge.things.values()}
         self._timings: dict[tuple[str, str], MessageTiming] = {}
         self._answers: dict[tuple[str, str], Receipt] = {}
@@ -94,6 +96,7 @@ class Messenger:
         """Keep the answer to the last message."""
         if self.several and observation.receipt is not None:
             self._answers[self.spoken_about] = observation.receipt
+        self.audience.hear(observation)
 
     def waits(self, observation: Observation, job: Job) -> bool:
         """Whether the person may still act on the message about this job, or has not been sent one."""
@@ -102,7 +105,8 @@ class Messenger:
         answer = self._answers.get((job.target, "target"))
         if answer is None:
             return False
-        patience = {"sent": _UNANSWERED_S, "shown": _UNANSWERED_S, "accepted": _ACCEPTED_S}.get(answer.status, 0.0)
+        accepted = 0.0 if self.audience.has_somebody_else(job, self.knowledge) else _ACCEPTED_S
+        patience = {"sent": _UNANSWERED_S, "shown": _UNANSWERED_S, "accepted": accepted}.get(answer.status, 0.0)
         return observation.tick < answer.tick + patience / self.briefing.tick_s
 
     def is_due(self, observation: Observation, job: Job, topic: str = "target") -> bool:
@@ -142,7 +146,7 @@ class Messenger:
         if topic == "destination":
             message = self._destined(observation, job, target, where)
         else:
-            message = self._found(observation, target)
+            message = self._found(observation, target, job)
         return self._note(observation, job, topic, message)
 
     def in_view(self, observation: Observation, jobs: Sequence[Job]) -> list[Job]:
@@ -154,7 +158,9 @@ class Messenger:
         """A message about an object in view."""
         seen = find_detection(observation, job.target)
         assert seen is not None
-        message = Send(text=sighting_text(seen, self.kinds), object=seen.id, position=seen.position)
+        message = Send(
+            text=sighting_text(seen, self.kinds), object=seen.id, position=seen.position, to=self._listener(job)
+        )
         return self._note(observation, job, "target", message)
 
     def ask_for_help(self, observation: Observation, job: Job) -> Send | None:
@@ -162,7 +168,8 @@ class Messenger:
         state = self.knowledge.states[job.target]
         if not self.is_due(observation, job, "help"):
             return None
-        message = Send(text=help_carry_text(state.kind, bool(state.bearers)), object=state.id, position=state.position)
+        text = help_carry_text(state.kind, bool(state.bearers))
+        message = Send(text=text, object=state.id, position=state.position, to=self._listener(job))
         return self._note(observation, job, "help", message)
 
     def report(self, observation: Observation, job: Job) -> Send | None:
@@ -178,12 +185,17 @@ class Messenger:
         if message is not None:
             self.timing(job, topic).note(observation.tick)
             self.spoken_about = (job.target, topic)
+            self.audience.note(message.to, job)
         return message
 
-    def _found(self, observation: Observation, target: ThingState) -> Send | None:
-        seen = find_detection(observation, target.id)
+    def _listener(self, job: Job) -> str:
+        """Whom to tell about the job: one of several people, or everybody ("") about the only job there is."""
+        return self.audience.choose(job, self.knowledge) if self.several else ""
+
+    def _found(self, observation: Observation, target: ThingState, job: Job) -> Send | None:
+        to, seen = self._listener(job), find_detection(observation, target.id)
         if seen is not None and not is_person(seen.held_by):
-            return Send(text=sighting_text(seen, self.kinds), object=seen.id, position=seen.position)
+            return Send(text=sighting_text(seen, self.kinds), object=seen.id, position=seen.position, to=to)
         support = self.knowledge.things.get(target.support)
         if support is None or not self._is_close(observation, support):
             return None
@@ -193,7 +205,7 @@ class Messenger:
         text = f"{kind_title(target.kind).capitalize()} is {place_phrase(support.kind)}."
         if shut and self.briefing.kind not in PAPER_KINDS and "open" not in self.briefing.body.capabilities:
             text = look_inside_text(support.kind, (target.kind,))
-        return Send(text=text, object=target.id, position=target.position)
+        return Send(text=text, object=target.id, position=target.position, to=to)
 
     def _destined(self, observation: Observation, job: Job, target: ThingState, where: Vec3) -> Send | None:
         found = self._belongs(job, target)
@@ -201,7 +213,7 @@ class Messenger:
             return None
         text, to = (
             f"{kind_title(found[0].kind).capitalize()} is here.",
-            target.held_by if self._has_several_people else "",
+            target.held_by if len(self.audience.allocation.people) > 1 else "",
         )
         return Send(text=text, object=found[0].id, position=where, to=to)
 

@@ -3,6 +3,7 @@
 import math
 
 from hthor import rules
+from hthor.agents.skills.audience import Audience
 from hthor.agents.skills.carrying import Carrier
 from hthor.agents.skills.explorer import Explorer, ObservedRoutes
 from hthor.agents.skills.knowledge import ObservedKnowledge
@@ -36,6 +37,7 @@ class MultiObjectFrontier:
         self.yielding = Yielding(briefing, routes)
         self.manipulator = Manipulator(briefing.body, routes, self.yielding, briefing.tick_s)
         self.allocation = TaskAllocation(briefing, lambda here, place: math.dist(here, place[:2]))
+        self.audience = Audience(self.allocation, briefing.tick_s)
         self.carrier = Carrier(briefing, routes, self.manipulator, self.allocation, waits=False)
         self.mine: Job | None = None
         self.placing: Place | None = None
@@ -50,6 +52,7 @@ class MultiObjectFrontier:
         self.allocation.see(observation, self.seen)
         if observation.receipt is not None:
             self._answers[self._spoken] = observation.receipt
+        self.audience.hear(observation)
         if observation.idle:
             self._look_back(observation)
             self.mine = self._own(observation)
@@ -144,7 +147,7 @@ class MultiObjectFrontier:
                 continue
             if self._is_due(observation, job.target):
                 kinds = {thing.id: thing.kind for thing in self.seen.things.values()}
-                return self._note(observation, job.target, sighting_text(seen, kinds), seen.id, seen.position)
+                return self._note(observation, job.target, sighting_text(seen, kinds), seen.id, seen.position, job)
         return self._ask(observation)
 
     def _ask_for_help(self, observation: Observation, job: Job) -> Send | None:
@@ -152,7 +155,7 @@ class MultiObjectFrontier:
         state, name = self.seen.states[job.target], f"help {job.target}"
         if observation.holding != job.target or state.held_by or not self._is_due(observation, name):
             return None
-        return self._note(observation, name, help_carry_text(state.kind, held=True), job.target, state.position)
+        return self._note(observation, name, help_carry_text(state.kind, held=True), job.target, state.position, job)
 
     def _ask(self, observation: Observation) -> Send | None:
         """Ask the person to look inside, in front of a closed door that it cannot open, while an object is missing."""
@@ -165,17 +168,19 @@ class MultiObjectFrontier:
             is_near = outline_distance(thing, here) <= rules.DETECTOR_RANGE_M
             if is_near and thing.id in in_view and self._is_due(observation, thing.id):
                 text = look_inside_text(thing.kind, tuple(_kind(job.target) for job in missing))
-                return self._note(observation, thing.id, text, thing.id, thing.centre)
+                return self._note(observation, thing.id, text, thing.id, thing.centre, missing[0])
         return None
 
     def _is_due(self, observation: Observation, name: str) -> bool:
         timing = self._timings.setdefault(name, MessageTiming(self.briefing, most=_MOST))
         return timing.due(observation.tick, self._answers.get(name))
 
-    def _note(self, observation: Observation, name: str, text: str, about: str, position: Vec3) -> Send:
+    def _note(self, observation: Observation, name: str, text: str, about: str, position: Vec3, job: Job) -> Send:
         self._timings[name].note(observation.tick)
         self._spoken = name
-        return Send(text=text, object=about, position=position)
+        to = self.audience.choose(job, self.seen)
+        self.audience.note(to, job)
+        return Send(text=text, object=about, position=position, to=to)
 
 
 def _kind(target: str) -> str:

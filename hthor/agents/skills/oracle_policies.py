@@ -5,6 +5,7 @@ With an arm the robot does the job itself; without, it goes where the target is 
 
 from collections.abc import Sequence
 
+from hthor.agents.skills.audience import Audience
 from hthor.agents.skills.carrying import Carrier
 from hthor.agents.skills.knowledge import Knowledge
 from hthor.agents.skills.manipulation import Manipulator
@@ -43,7 +44,8 @@ class SingleTaskOracle:
         self.manipulator = Manipulator(briefing.body, self.routes, self.yielding, briefing.tick_s)
         self.follower = Follower(step=0.5)
         others = self.yielding if self.several else None
-        self.messenger = Messenger(briefing, self.routes, self.follower, self.knowledge, others)
+        audience = Audience(self.allocation, briefing.tick_s)
+        self.messenger = Messenger(briefing, self.routes, self.follower, self.knowledge, others, audience)
         self.carrier = Carrier(briefing, self.routes, self.manipulator, self.allocation)
         self.mine: Job | None = None
         self.done: Job | None = None
@@ -248,11 +250,12 @@ class TeamOracle(SingleTaskOracle):
             return []
         reserved = allocation.reserved(self._open_jobs(), knowledge)
         theirs = [job for job in jobs if job.target == reserved and not self.messenger.is_exhausted(job)]
-        if theirs:
+        if theirs and len(allocation.people) < 2:
             return theirs
         owners = {job.target: seat for seat, job in allocation.share(jobs, knowledge).items()}
         jobs = [job for job in jobs if not self._is_anothers(job, owners.get(job.target, HUMAN))]
-        return sorted(jobs, key=lambda job: not is_person(owners.get(job.target, "")))
+        jobs.sort(key=lambda job: not is_person(owners.get(job.target, "")))
+        return theirs + [job for job in jobs if job not in theirs]
 
     def _is_anothers(self, job: Job, owner: str) -> bool:
         """Whether the job is another robot's share, and has not been that for too long."""

@@ -23,7 +23,7 @@ _STILL_M = 0.02
 _NEAR_M = 0.45
 """[m] Distance from its spot within which a load may be put down. Our choice."""
 _BESIDE_M = 1.5
-"""[m] A robot within this distance of the load is assumed to hold it or to be about to. Our choice."""
+"""[m] Somebody within this distance of the load is assumed to hold it or to be about to. Our choice."""
 _AHEAD_M = (0.7, 0.4, 0.0)
 """[m] How far past the spot to walk, so that the load ends up on it; the first free value is used. Our choice."""
 _INSIDE_M = 1.9
@@ -75,8 +75,8 @@ class JointCarrying:
         if seen is None:
             return False
         ends = sorted(_handles(seen), key=lambda end: math.dist(end[:2], self.human.here))
-        robots = [one.position[:2] for one in self.human.now.detections if one.family == "robot"]
-        beside = [spot for spot in robots if math.dist(spot, seen.position[:2]) < _BESIDE_M]
+        others = [one.position[:2] for one in self.human.now.detections if one.family in ("robot", "person")]
+        beside = [spot for spot in others if math.dist(spot, seen.position[:2]) < _BESIDE_M]
         if beside:  # the free handle first
             ends.sort(key=lambda end: -math.dist(end[:2], beside[0]))
         end = ends[self.approach.tries % len(ends)]

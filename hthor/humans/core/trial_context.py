@@ -3,6 +3,7 @@
 from collections.abc import Callable, Generator, Iterator
 
 from hthor import seeds
+from hthor.humans.core.other_people import OtherPeople
 from hthor.humans.core.policy import Policy
 from hthor.humans.core.thoughts import HumanThought
 from hthor.humans.population.parameters import Parameters
@@ -32,7 +33,7 @@ class HumanContext:
 
     Attributes:
         policy: decides in the participant's place; None for the model's own way of deciding.
-        seat: where the participant sits.
+        seat: where the participant sits. others: the other people, as far as they were seen.
         journal: what a headset's recorder would store of this trial.
         listener: called with beliefs and choices; None when nobody asks for them.
     """
@@ -43,6 +44,7 @@ class HumanContext:
         self.traits, self.root, self.task, self.body = traits, root, briefing, briefing.body
         self.seat = briefing.seat
         self.tick_s = briefing.tick_s
+        self.others = OtherPeople(briefing.teammates, briefing.tick_s)
         self.policy = policy
         self.journal: list[JournalEntry] = []
         self.listener: Callable[[HumanThought], None] | None = None

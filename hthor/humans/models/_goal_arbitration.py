@@ -46,6 +46,8 @@ BEGIN, SEARCH, REST = Goal(activity="begin"), Goal(activity="search"), Goal(acti
 class GoalArbiter:
     """Chooses the goal: first the object in hand, then the known or advised object nearest on foot, then search.
 
+    An object that another person seems about to take is left to them.
+
     A choice stands until something changes. ``missing`` are the subgoals whose objects must be searched for.
     """
 
@@ -70,6 +72,7 @@ class GoalArbiter:
         self._follows: dict[int, Goal] = {}
         self._in_hand: Subgoal | None = None
         self._seen_changes = -1
+        self._left: frozenset[str] = frozenset()
         self._choice: Goal | None = None
 
     def goal(self) -> Goal | None:
@@ -82,7 +85,8 @@ class GoalArbiter:
                 return delivery
         elif self._in_hand is not None:
             self._put_down(self._in_hand)
-        if self._changes() != self._seen_changes:
+        moved = self._others_have_moved()
+        if moved or self._changes() != self._seen_changes:
             self._choice = self._choose()
             self._seen_changes = self._changes()
         return self._choice
@@ -91,6 +95,18 @@ class GoalArbiter:
         """A number that grows with everything that could change the choice."""
         places = len(self.memory.places) if self.subgoals.many else 0
         return self.objects.changes + self.advice.changes + places
+
+    def _others_have_moved(self) -> bool:
+        """Whether the objects that are left to other people are not the same as before."""
+        human = self.human
+        if not human.others.seats:
+            return False
+        before = self._left
+        lying = [(one.job, one.known.lies) for one in self.subgoals.unfinished()]
+        free = [(job.target, seen) for job, seen in lying if seen is not None and job.hands - len(seen.bearers) < 2]
+        spots = {target: seen.position[:2] for target, seen in free}
+        self._left = human.others.expected_to_take(human.now.tick, human.here, spots)
+        return self._left != before
 
     def _put_down(self, subgoal: Subgoal) -> None:
         """Note that the object in hand was put down, where it belongs or elsewhere."""
@@ -107,12 +123,14 @@ class GoalArbiter:
         for subgoal in lying:
             self.advice.drop_about(subgoal)
         self.missing = tuple(subgoal for subgoal in unfinished if subgoal.known.seen is None)
-        options = [self._fetches[subgoal.target] for subgoal in lying]
+        options = [self._fetches[subgoal.target] for subgoal in lying if subgoal.target not in self._left]
         options += [self._follow(advice) for advice in self.advice.kept.values() if self._is_open(advice)]
         if len(options) > 1:
             return self._nearest(options)
         if options:
             return options[0]
+        if self._left and not self.missing:
+            return REST
         if not self.missing:
             self.missing = tuple(subgoal for subgoal in self.subgoals.all.values() if subgoal.done != "seen")
         return None if self.missing or not self.subgoals.many else REST

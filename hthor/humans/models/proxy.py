@@ -86,6 +86,8 @@ class Model:
         if observation.tick - self._eyes.at >= GLIMPSE_TICKS or self._eyes.at < 0:
             walker.sense()
             self._eyes.look(observation)
+            if human.others.seats:
+                human.others.see(observation.tick, observation.detections)
         walker.haste, walker.looking = self._haste(), self._is_looking()
         return Action(motion=self._next_motion(), say=say)
 

@@ -1,6 +1,5 @@
 """How a participant walks: at their own pace, on a map of what was seen, assuming that unseen floor is free."""
 
-import copy
 import math
 from collections.abc import Callable
 from itertools import pairwise
@@ -10,10 +9,19 @@ from msgspec import Struct
 from hthor.geometry.plane import wrap
 from hthor.humans.core.trial_context import GAZE_PITCH, Behaviour, HumanContext
 from hthor.humans.memory.spatial_memory import KnownDoorway, SpatialMemory
-from hthor.navigation.grid_map import CELL_M, FREE, GridMap
+from hthor.humans.motor.encounters import (
+    AVOID_S,
+    KEEP_BEHIND_S,
+    Encounters,
+    Obstacle,
+    goes_ahead,
+    person_ahead,
+    planner_around,
+)
+from hthor.navigation.grid_map import FREE, GridMap
 from hthor.navigation.path_follower import toward
 from hthor.navigation.planner import Planner, path_length
-from hthor.types import Motion, Move, Rotate, Vec2, Wait
+from hthor.types import Motion, Move, Rotate, Vec2, Wait, is_person
 
 _TURN_RAD = math.radians(12.0)
 """[rad] Larger direction errors are corrected while standing, smaller errors while walking. Our choice: 12 degrees."""
@@ -80,8 +88,9 @@ class Walker:
     def __init__(self, human: HumanContext, memory: SpatialMemory, x: float, y: float) -> None:
         self.human, self.memory, self.haste, self._bumps = human, memory, 1.0, 0
         self.looking = True
-        self._robot: tuple[float, float, float] | None = None
+        self._robot: Obstacle | None = None
         self._robot_until = -1
+        self.encounters = Encounters(human)
         self._drawn = human.now.tick
         self._stops = 0
         self._until_stop = self._stretch()
@@ -114,6 +123,12 @@ class Walker:
         for _ in range(_REPLANS):
             way = self._way(goal, within)
             budget, here = budget - math.dist(here, self.human.here), self.human.here
+            if (way is None or way.metres > budget) and self.encounters.blocks(goal, within):
+                self._bumps, self._robot_until, budget = self._bumps + 1, -1, math.inf
+                yield from self.encounters.let_by(self.planner)
+                if self._bumps >= _GIVE_UP:
+                    return False
+                continue
             if way is None or way.metres > budget:
                 return False
             budget, bumps = min(budget, _DETOUR * way.metres + _DETOUR_M), self._bumps
@@ -135,7 +150,7 @@ class Walker:
             if math.dist((x, y), goal) <= radius + self.human.body.radius + within:
                 return None
             return _as_way(
-                _planner_with(self.grid, self.human.body.radius, x, y, radius).path(self.human.here, goal, within)
+                planner_around(self.grid, self.human.body.radius, self._robot).path(self.human.here, goal, within)
             )
         hopeful = _as_way(self.planner.path(self.human.here, goal, within))
         if hopeful is None:
@@ -194,6 +209,14 @@ class Walker:
                 moves = 0
             motion = toward(pose, ahead[0], self._pace() * human.tick_s, _TURN_RAD)
             if isinstance(motion, Move):
+                met = person_ahead(human, ahead[0]) if human.others.seats else None
+                if met is not None:
+                    yield Wait(seconds=KEEP_BEHIND_S)
+                    if not goes_ahead(human, met, ahead[0]):
+                        self._avoid(met.spot)
+                        return False
+                    now, checked, left, moves = human.now, human.now.tick, math.inf, 0
+                    continue
                 yield motion
                 now, moves = human.now, moves + 1
                 outcome = now.outcome
@@ -241,11 +264,19 @@ class Walker:
             return True
         obstacle = self._felt(ahead)
         yield Wait(seconds=_POLITE_S)
-        if self._bumps > 1:
+        if bumped and outcome is not None and is_person(outcome.by):
+            self._avoid(obstacle[:2])
+        elif self._bumps > 1:
+            self.encounters.forget()
             self._robot, self._robot_until = obstacle, self.human.now.tick + round(_AVOID_S / self.human.tick_s)
         return True
 
-    def _felt(self, ahead: Vec2) -> tuple[float, float, float]:
+    def _avoid(self, other: Vec2) -> None:
+        """Plan round a person at ``other`` [m] for a while."""
+        self._robot = self.encounters.avoid(other)
+        self._robot_until = self.human.now.tick + round(AVOID_S / self.human.tick_s)
+
+    def _felt(self, ahead: Vec2) -> Obstacle:
         """Middle and radius [m] of the obstacle ahead: assumed to be as large as the participant, and to touch them."""
         (x, y), radius = self.human.here, self.human.body.radius
         share = 2.0 * radius / max(math.dist((x, y), ahead), 1e-9)
@@ -270,13 +301,3 @@ class Walker:
 
 def _as_way(path: tuple[Vec2, ...] | None) -> Route | None:
     return None if path is None else Route(path=path, metres=path_length(path))
-
-
-def _planner_with(grid: GridMap, radius: float, x: float, y: float, size: float) -> Planner:
-    """A planner on a copy of the map in which a disc of radius ``size`` [m] stands at (``x``, ``y``)."""
-    trial = copy.deepcopy(grid)
-    count = math.ceil(2.0 * math.pi * size / CELL_M)
-    for k in range(count):
-        angle = 2.0 * math.pi * k / count
-        trial.mark_blocked(x + size * math.cos(angle), y + size * math.sin(angle))
-    return Planner(trial, radius, optimistic=True)

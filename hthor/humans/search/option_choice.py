@@ -7,6 +7,8 @@ import math
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 
+import msgspec
+
 from hthor.humans.core.trial_context import HumanContext
 from hthor.humans.memory.spatial_memory import KnownPlace, SpatialMemory
 from hthor.humans.motor import approach
@@ -21,6 +23,8 @@ SETTLE_S = 1.0
 """[s] Expected time to stop and turn at a place that is searched, without the look at it. Our choice."""
 _STALE_TICKS = 100
 """[ticks] Time after which people choose again where to stand at a place. Our choice: ten seconds."""
+_LEFT = 0.3
+"""[ratio] Worth of an option that somebody else is nearer to, relative to its worth for a person alone. Our choice."""
 _FRESH_TICKS = 50
 """[ticks] How long the options of the last choice count as current. Our choice: five seconds."""
 
@@ -103,7 +107,14 @@ class OptionChoice:
                 options.append(
                     Option(name=name, value=value, spot=door.beyond, doorway=door, metres=metres, seconds=seconds)
                 )
-        return options
+        return [self._shared(option) for option in options] if self.human.others.seats else options
+
+    def _shared(self, option: Option) -> Option:
+        """The option, worth less if another person is nearer to it and may search it as well."""
+        human = self.human
+        if not human.others.is_nearer(human.now.tick, human.here, option.spot):
+            return option
+        return msgspec.structs.replace(option, value=_LEFT * option.value)
 
     def place_beliefs(self, more: bool, belief: Mapping[str, float] | None = None) -> dict[str, float]:
         """Belief that the object is at each known place before any search, by kinds of furniture (`belief` by default).
