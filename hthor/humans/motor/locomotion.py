@@ -123,19 +123,17 @@ class Walker:
         for _ in range(_REPLANS):
             way = self._way(goal, within)
             budget, here = budget - math.dist(here, self.human.here), self.human.here
-            if (way is None or way.metres > budget) and self.encounters.blocks(goal, within):
+            if way is None or way.metres > budget:
+                if self._bumps >= _GIVE_UP or not self.encounters.blocks(goal, within):
+                    return False
                 self._bumps, self._robot_until, budget = self._bumps + 1, -1, math.inf
                 yield from self.encounters.let_by(self.planner)
-                if self._bumps >= _GIVE_UP:
-                    return False
                 continue
-            if way is None or way.metres > budget:
-                return False
             budget, bumps = min(budget, _DETOUR * way.metres + _DETOUR_M), self._bumps
             ended = yield from self._follow(way.path, stop)
             if ended and (way.doorway is None or stop()):
                 return True
-            if ended and way.doorway is not None:
+            if ended and way.doorway:
                 way.doorway.passed = True
             if self._bumps > bumps:
                 budget = math.inf
@@ -146,8 +144,7 @@ class Walker:
     def _way(self, goal: Vec2, within: float) -> Route | None:
         """The path to the goal: over seen floor if not much longer, else by a doorway, else over unseen floor."""
         if self._robot is not None and self.human.now.tick <= self._robot_until:
-            x, y, radius = self._robot
-            if math.dist((x, y), goal) <= radius + self.human.body.radius + within:
+            if math.dist(self._robot[:2], goal) <= self._robot[2] + self.human.body.radius + within:
                 return None
             return _as_way(
                 planner_around(self.grid, self.human.body.radius, self._robot).path(self.human.here, goal, within)
@@ -264,7 +261,7 @@ class Walker:
             return True
         obstacle = self._felt(ahead)
         yield Wait(seconds=_POLITE_S)
-        if bumped and outcome is not None and is_person(outcome.by):
+        if bumped and outcome and is_person(outcome.by):
             self._avoid(obstacle[:2])
         elif self._bumps > 1:
             self.encounters.forget()
