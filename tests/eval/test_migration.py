@@ -155,6 +155,16 @@ def test_what_was_interrupted_is_finished_by_the_same_command(
     assert contents(runs) == contents(tmp_path / "whole")
 
 
+def test_a_baseline_in_a_runs_folder_and_a_log_in_any_folder_are_found(runs: Path, tmp_path: Path) -> None:
+    shutil.move(runs / "slow", runs / "collect" / "control")
+    done = migrate.migrate([runs / "collect", runs / "collect"], dry=True).done
+    assert [one.path for one in done] == [str(runs / "collect"), str(runs / "collect" / "control")]
+    (runs / "collect" / "run.json").unlink()
+    shutil.rmtree(runs / "collect" / "control")
+    (one,) = migrate.migrate([runs / "collect"], dry=True).done
+    assert one.path == str(runs / "collect" / "trials.jsonl")
+
+
 def test_a_log_without_its_run_is_converted_too(runs: Path) -> None:
     log = runs / "alone.jsonl"
     shutil.copy(OLD / "slow" / "trials.jsonl", log)

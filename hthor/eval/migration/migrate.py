@@ -105,14 +105,12 @@ def _make_plan(path: Path) -> _Plan:
 
 
 def _targets(path: Path) -> Iterator[Path]:
-    """The runs and logs that a path stands for."""
-    if path.is_file() or (path / "run.json").is_file():
-        yield path
-        return
+    """The runs and logs that a path stands for; a run may have its baseline in its folder."""
     runs = sorted(file.parent for file in path.rglob("run.json")) if path.is_dir() else []
     yield from runs
-    if (path / trial_log.NAME).is_file():
-        yield path / trial_log.NAME
+    log = path / trial_log.NAME if path.is_dir() else path
+    if log.is_file() and path not in runs:
+        yield log
     elif not runs:
         problem = "holds no run and no log" if path.is_dir() else "is not there"
         raise RunError(f"{path} {problem}. Name the folder of a run, a folder of runs, or a log such as trials.jsonl.")
@@ -120,9 +118,8 @@ def _targets(path: Path) -> Iterator[Path]:
 
 def _migrate_log(plan: _Plan) -> Migrated:
     """Convert a log."""
-    return plan.report(
-        [_replace(plan.log, (one.line for one in log_file.converted_lines(plan.log)))] if plan.keys else ()
-    )
+    lines = (one.line for one in log_file.converted_lines(plan.log))
+    return plan.report([_replace(plan.log, lines)] if plan.keys else ())
 
 
 def _migrate_run(plan: _Plan) -> Migrated:
