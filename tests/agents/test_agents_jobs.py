@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Mapping
+from types import SimpleNamespace
 from typing import Any
 
 import msgspec
@@ -12,6 +13,7 @@ import pytest
 
 from hthor import catalog, houses, plugins
 from hthor.agents.skills import viewpoints
+from hthor.agents.skills.audience import Audience
 from hthor.agents.skills.knowledge import Knowledge, resting_points
 from hthor.agents.skills.message_timing import help_carry_text, look_inside_text
 from hthor.agents.skills.routes import HouseRoutes
@@ -30,6 +32,7 @@ from hthor.types import (
     Observation,
     Placement,
     Pose,
+    Receipt,
     Reply,
     RobotSeat,
     TaskSpec,
@@ -400,3 +403,31 @@ def test_seats_are_sorted_as_they_are_numbered() -> None:
     from hthor.agents.skills.task_allocation import seat_order
 
     assert sorted(["robot10", "robot2", HUMAN, "robot"], key=seat_order) == [HUMAN, "robot", "robot2", "robot10"]
+
+
+# ------------------------------------------------------------------------------------------------- several people
+
+
+def test_of_several_people_each_is_told_about_another_job() -> None:
+    hands = body("hands", "pick", "open")
+    team, knowledge, jobs = crew("robot", ("one", 1.0), ("two", 2.0), human=hands, human2=hands, robot=hands)
+    team.places |= {"human": (1.0, 0.0), "human2": (6.0, 0.0)}
+    audience = Audience(team, 0.1)
+    assert audience.choose(jobs[0], knowledge) == "human", "the nearer one"
+    audience.note("human", jobs[0])
+    assert audience.choose(jobs[0], knowledge) == "human2", "who has not been told yet"
+    assert audience.choose(jobs[1], knowledge) == "human"
+    accepted = Receipt(message=0, status="accepted", tick=3, by="human")
+    audience.hear(SimpleNamespace(receipt=accepted))
+    assert audience.choose(jobs[1], knowledge) == "human2", "the other is on the way"
+    assert audience.has_somebody_else(jobs[0], knowledge)
+    knowledge.states = {**knowledge.states, "x": ThingState(id="x", kind="mug", position=(0, 0, 1), held_by="human2")}
+    assert not audience.has_somebody_else(jobs[0], knowledge)
+
+
+def test_the_only_person_is_told_as_everybody_is() -> None:
+    hands = body("hands", "pick", "open")
+    team, knowledge, jobs = crew("robot", ("one", 1.0), human=hands, robot=hands)
+    audience = Audience(team, 0.1)
+    assert audience.choose(jobs[0], knowledge) == ""
+    assert not audience.has_somebody_else(jobs[0], knowledge)
