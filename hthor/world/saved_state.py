@@ -1,7 +1,7 @@
 """The state of a world as bytes: made from the records of its parts, and put back into the same or an equal world.
 
 The bytes are a line that names the format, a SHA-256 of the rest, and a compressed `WorldRecord` with the `_Origin` of
-the state, by which another world is refused. They hold numbers and names only, so bytes from anywhere may be loaded.
+the state, by which another world is refused. They hold numbers and names only, no code.
 """
 
 import hashlib
