@@ -189,7 +189,7 @@ class Messenger:
         return message
 
     def _listener(self, job: Job) -> str:
-        """Whom to tell about the job: one of several people, or everybody ("") about the only job there is."""
+        """The person to tell about the job; everybody ("") if it is the only job there is."""
         return self.audience.choose(job, self.knowledge) if self.several else ""
 
     def _found(self, observation: Observation, target: ThingState, job: Job) -> Send | None:

@@ -20,7 +20,7 @@ Obstacle = tuple[float, float, float]
 """Middle and radius [m] of a disc on the floor."""
 
 AVOID_S = 2.0
-"""[s] How long people plan round another person whom they met. Our choice: people move on sooner than robots."""
+"""[s] How long people plan round another person that they met. Our choice: people move on sooner than robots."""
 _GAP_M = 0.35
 """[m] Distance that people keep to a person ahead, from body to body. Our choice."""
 KEEP_BEHIND_S = 0.2
