@@ -24,6 +24,8 @@ _NEAR_M = 0.45
 """[m] Distance from its spot within which a load may be put down. Our choice."""
 _BESIDE_M = 1.5
 """[m] Somebody within this distance of the load is assumed to hold it or to be about to. Our choice."""
+_PATIENCE = 3.0
+"""[ratio] How much longer people hold their end for a helper while another person is beside the load. Our choice."""
 _AHEAD_M = (0.7, 0.4, 0.0)
 """[m] How far past the spot to walk, so that the load ends up on it; the first free value is used. Our choice."""
 _INSIDE_M = 1.9
@@ -47,7 +49,7 @@ class JointCarrying:
         alone, still, here = 0.0, 0.0, self.human.here
         while self._holds(subgoal) and alone <= self.human.traits.partner:
             if not (yield from self._is_up(subgoal)):
-                alone += _WATCH_S
+                alone += _WATCH_S / (_PATIENCE if self._is_somebody_beside(subgoal) else 1.0)
             elif math.dist(self.human.here, here) > _STILL_M:
                 still = 0.0
             else:
@@ -92,6 +94,11 @@ class JointCarrying:
             yield from self.human.look_at(seen.position)
         seen = subgoal.known.seen
         return seen is not None and bool(seen.held_by)
+
+    def _is_somebody_beside(self, subgoal: Subgoal) -> bool:
+        """Whether another person was seen next to the load, who may take the other end."""
+        seen, others = subgoal.known.seen, self.human.others.recent(self.human.now.tick)
+        return seen is not None and any(math.dist(one.spot, seen.position[:2]) < _BESIDE_M for one in others)
 
     def _is_there(self, subgoal: Subgoal) -> bool:
         """Whether the load may be put down here, as far as the participant sees."""

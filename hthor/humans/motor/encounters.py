@@ -45,6 +45,8 @@ _PAST_M = 1.2
 """[m] The other has passed at this distance. Our choice."""
 _PIECE_S = 0.3
 """[s] How often people who wait look whether the other has passed. Our choice."""
+_THERE_M = 0.05
+"""[m] A step back ends this near to its spot. Our choice."""
 _LONGEST_STEP_TICKS = 20
 """[ticks] Time after which a step back is over, wherever it led. Our choice."""
 _CHANCE = 0.5
@@ -137,7 +139,7 @@ def _let_by(human: HumanContext, planner: Planner, other: Vec2, number: int) -> 
     for _ in range(_LONGEST_STEP_TICKS):
         yield shift(human.now.pose, spot, min(human.traits.v_pace, human.body.speed) * human.tick_s)
         outcome = human.now.outcome
-        if math.dist(human.here, spot) < human.body.radius / 4.0 or (outcome is not None and not outcome.ok):
+        if math.dist(human.here, spot) < _THERE_M or (outcome is not None and not outcome.ok):
             break
     for _ in range(round(_LETS_BY_S / _PIECE_S)):
         yield from human.rest(_PIECE_S)
