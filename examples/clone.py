@@ -53,6 +53,8 @@ def read(runs: Iterable[Path]) -> tuple[Decisions, Decisions]:
     for run in runs:
         count = 0
         for _, record in trial_log.read(run / "trials.jsonl" if run.is_dir() else run):
+            if record.log.voided:
+                continue
             side = test if record.spec.session % EVERY == EVERY - 1 else learn
             side.people.add((record.spec.seed, record.spec.session))
             for entry in record.journal:

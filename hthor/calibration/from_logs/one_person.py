@@ -27,7 +27,7 @@ def _side(record: TrialRecord, human: HumanSeat) -> TrialRecord:
         events=tuple(_own(event, seat) for event in record.events if _concerns(event, seat)),
         journal=tuple(_own(entry, seat) for entry in record.journal if entry.seat == seat),
         paths={_name(one, seat): path for one, path in record.paths.items() if one == seat or not is_person(one)},
-        ratings={HUMAN: record.ratings[seat]},
+        ratings={HUMAN: record.ratings.get(seat)},
         idle={_name(one, seat): ticks for one, ticks in record.idle.items() if one == seat or not is_person(one)},
     )
 
