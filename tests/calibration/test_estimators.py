@@ -305,7 +305,7 @@ def test_logs_are_read_from_folders_and_files_each_trial_once(
     ("damage", "words"),
     [
         (lambda lines: b"".join(lines)[:-40], "line 3 is cut off"),
-        (lambda lines: lines[0] + b'{"pose": [1, 2]}\n', "line 2 is not a trial that 'hthor eval' logged: $: "),
+        (lambda lines: lines[0] + b'{"pose": [1, 2]}\n', "line 2 is not a trial that 'hthor eval' logged: schema: "),
         (lambda lines: lines[0].replace(b'"ticks":', b'"tacks":', 1), "ticks"),
         (lambda lines: lines[0] + lines[1].replace(b'"index":1', b'"index":7', 1), "line 2 is not a trial"),
         (lambda lines: b"\x00\xff\n", "line 1 is not a trial"),
