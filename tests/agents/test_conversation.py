@@ -1,4 +1,4 @@
-"""Built-in robots talk with people: they answer questions, address suggestions, and may ask what became of them."""
+"""Built-in robots talk with people: they answer questions, and may ask what became of their suggestions."""
 
 from __future__ import annotations
 
@@ -332,38 +332,6 @@ def test_the_plain_robots_never_ask(name: str) -> None:
     asking = plugins.load("agent", f"asking_{name}")
     assert asking.asks
     assert asking.privileges == plugins.load("agent", name).privileges
-
-
-# ------------------------------------------------------------------------------------------------------- several people
-
-
-def person(seat: str, x: float) -> Detection:
-    return thing(seat, "person", "person", at=(x, 0.0, 0.9))
-
-
-def addressed(talk: Conversation, *seen: Detection, say: Send = FOUND) -> str:
-    said = talk.speak(talk.hear(look(*seen)), Action(say=say)).say
-    assert isinstance(said, Send)
-    return said.to
-
-
-def test_a_suggestion_goes_to_the_nearest_person_who_was_seen() -> None:
-    two = briefing(HUMAN, "human2")
-    assert addressed(conversation(two), person(HUMAN, 9.0), person("human2", 2.0)) == "human2"
-    assert addressed(conversation(two), person(HUMAN, 9.0)) == HUMAN
-    assert addressed(conversation(two)) == ""
-    assert addressed(conversation(), person(HUMAN, 2.0)) == ""
-    busy = thing("mug", held="human2")
-    assert addressed(conversation(two), person(HUMAN, 9.0), person("human2", 2.0), busy) == HUMAN
-    assert addressed(conversation(two, open=()), person(HUMAN, 9.0)) == ""  # a report is for everybody
-    assert addressed(conversation(two), person(HUMAN, 9.0), say=msgspec.structs.replace(FOUND, to="human2")) == "human2"
-
-
-def test_who_declined_is_not_told_again_while_there_is_somebody_else() -> None:
-    talk, people = conversation(briefing(HUMAN, "human2")), (person(HUMAN, 9.0), person("human2", 2.0))
-    assert addressed(talk, *people) == "human2"
-    talk.hear(look(*people, receipt=Receipt(message=0, status="declined", tick=9, by="human2")))
-    assert addressed(talk, *people) == HUMAN
 
 
 def test_only_the_person_who_was_told_is_asked() -> None:

@@ -1,2 +1,1 @@
-"""How built-in robots talk with people: they answer questions, address suggestions, and may ask. Begin with
-`conversation`."""
+"""How built-in robots talk with people: they answer questions, and may ask some. Begin with `conversation`."""

@@ -6,7 +6,6 @@
 The policy gets no questions: the receipt in its observation is that of its own last suggestion.
 """
 
-import math
 from collections.abc import Callable, Collection
 from typing import Literal
 
@@ -15,14 +14,14 @@ import msgspec
 from hthor.agents.skills.conversation.answers import Answers, kind_of
 from hthor.agents.skills.conversation.queries import Queries
 from hthor.agents.skills.conversation.sightings import Sightings
-from hthor.types import Action, Briefing, Observation, Receipt, Send, is_person
+from hthor.types import Action, Briefing, Observation, Receipt, Send
 
 _OPEN = ("sent", "shown")
 _Sort = Literal["suggestion", "answer", "question"]
 
 
 class Conversation:
-    """Answers people's questions, addresses suggestions if there are several people, and may ask what became of them.
+    """Answers people's questions, and may ask what became of the policy's suggestions.
 
     Args:
         unfinished: the objects of the task that are not where they belong yet, as far as the policy knows.
@@ -34,9 +33,6 @@ class Conversation:
         self.sightings = Sightings()
         self.answers = Answers(briefing, self.sightings, unfinished)
         self.queries = Queries(briefing) if asks else None
-        self._targets = {job.target for job in briefing.todo}
-        self._has_several_people = sum(map(is_person, briefing.teammates)) > 1
-        self._declined: set[tuple[str, str]] = set()  # who declined a suggestion about what
         self._said: _Sort = "suggestion"
         self._last: _Sort = "suggestion"  # the sort of the last message that there was a receipt of, and its number
         self._number = -1
@@ -53,8 +49,6 @@ class Conversation:
             self._number, self._last = receipt.message, self._said
         if self._last == "suggestion":
             self._receipt = receipt
-            if receipt.status == "declined" and self._suggestion is not None:
-                self._declined.add((receipt.by, self._suggestion.object))
             return observation
         if self._last == "question" and self.queries is not None and self._receipt is not None:
             self._receipt = self.queries.updated(self._receipt, receipt)
@@ -68,37 +62,12 @@ class Conversation:
         if answer is not None:
             say = self._answer(observation, answer, suggestion)
         elif suggestion is not None:
-            say = self._suggest(observation, suggestion)
+            say = self._suggestion = suggestion
+            self._said = "suggestion"
+            self.sightings.note_told(suggestion.object)
         elif self.queries is not None:
             say = self._ask(observation, self.queries)
         return action if say is action.say else msgspec.structs.replace(action, say=say)
-
-    def _suggest(self, observation: Observation, suggestion: Send) -> Send:
-        if self._has_several_people and not suggestion.to:
-            suggestion = msgspec.structs.replace(suggestion, to=self._addressee(observation, suggestion))
-        self._suggestion, self._said = suggestion, "suggestion"
-        self.sightings.note_told(suggestion.object)
-        return suggestion
-
-    def _addressee(self, observation: Observation, suggestion: Send) -> str:
-        """The person seen nearest to the place of a suggestion, rather one who has not declined it and has free hands.
-
-        It is "", for everybody, if nobody was seen, and for a report that something is done.
-        """
-        object, position = suggestion.object, suggestion.position
-        if position is None or (object in self._targets and object not in self.unfinished()):
-            return ""
-        busy, people = self.sightings.holders(observation), self.sightings.people()
-        return min(
-            people,
-            key=lambda seat: (
-                (seat, object) in self._declined,
-                seat in busy,
-                math.dist(people[seat], position[:2]),
-                seat,
-            ),
-            default="",
-        )
 
     def _answer(self, observation: Observation, answer: Send, suggestion: Send | None) -> Send:
         """Give an answer; an answer about what the policy suggests stands for the suggestion.

@@ -1,13 +1,12 @@
 """What a robot has been close enough to detect in a trial so far."""
 
 import math
-from collections.abc import Collection
 
-from hthor.types import Detection, Observation, ThingState, Vec2, is_person
+from hthor.types import Detection, Observation, ThingState
 
 
 class Sightings:
-    """Things and people that the robot has detected, where they were last.
+    """Things that the robot has detected, where they were last.
 
     A robot that gets true states (`Observation.truth`) knows where a thing is now, but speaks only of things that it
     has been close to: those that it has detected, or has told people about in front of a closed door.
@@ -15,7 +14,6 @@ class Sightings:
 
     def __init__(self) -> None:
         self._things: dict[str, Detection] = {}
-        self._people: dict[str, Vec2] = {}
         self._told: set[str] = set()
         self._last: tuple[Detection, ...] = ()
         self._new: list[tuple[Detection, ...]] = []  # only looked through when something is asked for
@@ -45,23 +43,11 @@ class Sightings:
         seen = self._known().get(thing)
         return "" if seen is None else seen.kind
 
-    def people(self) -> dict[str, Vec2]:
-        """Where each person was seen last [m], by seat."""
-        self._known()
-        return self._people
-
-    def holders(self, observation: Observation) -> set[str]:
-        """The people who have something in hand, as far as the robot sees or knows now."""
-        things: Collection[Detection | ThingState] = (*observation.detections, *observation.truth)
-        return {thing.held_by for thing in things if is_person(thing.held_by)}
-
     def _known(self) -> dict[str, Detection]:
         """The things that were detected, as seen last."""
         for detections in self._new:
             for seen in detections:
-                if seen.family == "person":
-                    self._people[seen.id] = seen.position[:2]
-                elif seen.family in ("object", "furniture"):
+                if seen.family in ("object", "furniture"):
                     self._things[seen.id] = seen
         self._new.clear()
         return self._things
