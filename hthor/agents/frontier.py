@@ -47,7 +47,6 @@ class Agent:
         self.courtesy: Courtesy = Courtesy(briefing.body, self.explorer.fits)
         self.target: Detection | None = None
         self.stands_aside = False
-        self.kinds: dict[str, str] = {}
 
     def act(self, observation: Observation) -> Action:
         """Update the map, tell people what is in view, answer their questions, and move on."""
@@ -61,7 +60,6 @@ class Agent:
     def _search(self, observation: Observation) -> Action:
         """The next motion and message in a task with one object to find."""
         self.explorer.see(observation)
-        self.kinds.update((thing.id, thing.kind) for thing in observation.detections)
         seen = find_detection(observation, self.briefing.target)
         if seen is not None:
             self.target = seen
@@ -79,7 +77,9 @@ class Agent:
         if seen is None or is_person(seen.held_by) or not self.timing.due(observation.tick, observation.receipt):
             return None
         self.timing.note(observation.tick)
-        return Send(text=sighting_text(seen, self.kinds), object=seen.id, position=seen.position)
+        return Send(
+            text=sighting_text(seen, self.conversation.sightings.kinds()), object=seen.id, position=seen.position
+        )
 
     def _watch(self, observation: Observation) -> Motion:
         """Wait where it blocks nobody, facing the target; come back when another message is due."""

@@ -43,6 +43,10 @@ class Sightings:
         seen = self._known().get(thing)
         return "" if seen is None else seen.kind
 
+    def kinds(self) -> dict[str, str]:
+        """The kind of everything that was detected, by id."""
+        return {id: seen.kind for id, seen in self._known().items()}
+
     def _known(self) -> dict[str, Detection]:
         """The things that were detected, as seen last."""
         for detections in self._new:
