@@ -96,7 +96,7 @@ def power(
     shape: Shape = Format.TABLE,
     json: Json = False,
 ) -> None:
-    """Compute how many tasks and participants it takes to detect a difference in success, paired and unpaired."""
+    """Compute how many tasks and sessions it takes to detect a difference in success, paired and unpaired."""
     from hthor.eval.comparison import sample_size
 
     found = sample_size.plan_study(tuple(runs or ()), rates, correlation, difference, wanted)
@@ -104,7 +104,7 @@ def power(
         output.put_json(found)
         return
     rows = [
-        (name, need.trials, need.people) for name, need in (("paired", found.paired), ("not paired", found.unpaired))
+        (name, need.trials, need.sessions) for name, need in (("paired", found.paired), ("not paired", found.unpaired))
     ]
-    output.put_table(("", "tasks, once each, for either robot", "people, ten tasks each"), rows, shape)
+    output.put_table(("", "tasks, once each, for either robot", "sessions, ten tasks each"), rows, shape)
     output.put_line(found.sentence, shape)

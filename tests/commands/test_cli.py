@@ -187,7 +187,7 @@ def test_runs_are_compared_and_a_worse_one_fails(hthor, tmp_path: Path, monkeypa
     assert document["schema"] == "hthor.compare/1"
     assert document["pairs"][0]["better"] == "helper"
     assert "paired" in hthor("power", silent, helper).out
-    assert json.loads(hthor("power", "--rates", "0.7,0.8", "--json").out)["schema"] == "hthor.power/1"
+    assert json.loads(hthor("power", "--rates", "0.7,0.8", "--json").out)["schema"] == "hthor.power/2"
     assert hthor("power").code == 2
     assert hthor("compare", silent).code == 2
 

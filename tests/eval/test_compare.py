@@ -321,7 +321,7 @@ def test_half_a_control_is_none(tmp_path: Path):
 def test_power_of_textbook_size():
     found = power.sample_size(0.73, 0.76)
     assert 3_250 <= found.trials <= 3_350
-    assert found.people == -(-found.trials // 10)
+    assert found.sessions == -(-found.trials // 10)
 
 
 @settings(max_examples=40, deadline=None)

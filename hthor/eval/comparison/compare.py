@@ -55,7 +55,7 @@ class Comparison(Struct, frozen=True, kw_only=True):
 
     Attributes:
         n: how many trials both runs have; ``dropped``: how many of the first and of the second have no partner.
-        tasks, people: how many different tasks and people these trials have.
+        tasks, people, sessions: how many different tasks, people and sessions these trials have.
         differences: the difference in each metric, by its name.
         groups: differences in success by "kind", "split", "difficulty" and "scene", where there are several of these.
         among: how many pairs of runs are compared at once; the verdict is adjusted for this number.
@@ -72,6 +72,7 @@ class Comparison(Struct, frozen=True, kw_only=True):
     dropped: tuple[int, int]
     tasks: int
     people: int
+    sessions: int
     differences: dict[str, Difference]
     mcnemar: McNemar
     tally: WinCounts
@@ -189,6 +190,7 @@ def _pair(one: LoadedRun, other: LoadedRun) -> Comparison:
         dropped=(joined.only_one, joined.only_other),
         tasks=len({pair.one.spec.task.id for pair in pairs}),
         people=len({human.participant for pair in pairs for human in pair.one.spec.humans}),
+        sessions=len({pair.one.spec.session for pair in pairs}),
         differences={metric: difference for metric, difference in found.items() if difference is not None},
         mcnemar=paired_difference.mcnemar(pairs),
         tally=_tally(pairs),
@@ -264,7 +266,7 @@ def verdict_sentence(pair: Comparison) -> str:
     if found.difference == 0.0 or found.more_tasks is None:
         return f"{told}; a difference of {100.0 * (found.mde80 or 0.0):.1f} points would have shown."
     if found.more_tasks == 0:
-        return f"{told}; {pair.people} people are too few to tell, however many tasks they do."
+        return f"{told}; {pair.sessions} sessions are too few to tell, however many tasks they have."
     alone = " to a comparison of these two alone" if pair.among > 1 else ""
     return f"{told}; if it is real, about {power.rounded_count(found.more_tasks)} more tasks would show it{alone}."
 

@@ -13,7 +13,7 @@ from hthor.eval.results.paired_difference import Noise
 from hthor.eval.statistics import power
 from hthor.eval.statistics.power import SampleSize, Scatter
 
-SCHEMA = "hthor.power/1"
+SCHEMA = "hthor.power/2"
 USUAL = 0.5
 """Correlation that is assumed when none was measured; docs/statistics.md has measured values."""
 

@@ -155,6 +155,8 @@ def _migrate_configuration(folder: Path, config: RunConfig) -> list[str]:
     if result.is_file():
         document = documents.read(result, dict[str, Any], RunError)
         new = document | {"mode": config.mode, "hashes": {**document.get("hashes", {}), "run": config.sha256}}
+        if document.get("schema") == result_file.OLD_SCHEMA:
+            new["schema"] = result_file.SCHEMA
         kept += [_replace(result, [jsonio.pretty(new)])] if new != document else []
     kept.append(_replace(folder / "run.json", [jsonio.pretty(config)]))
     return kept

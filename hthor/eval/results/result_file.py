@@ -20,7 +20,9 @@ from hthor.guest import Isolation, Manifest
 from hthor.types import RobotSeat
 from hthor.types.specs import LOCKSTEP, Clock
 
-SCHEMA = "hthor.result/5"
+SCHEMA = "hthor.result/6"
+OLD_SCHEMA = "hthor.result/5"
+"""The schema of results that `hthor migrate` converts: ``mode`` had other words."""
 UPLIFT_METRICS = ("sr", "twsr", "time_s")
 """The metrics that an uplift is given in."""
 
@@ -117,8 +119,8 @@ class RunResult(Struct, frozen=True, kw_only=True):
     """The run's `result.json`.
 
     ``trust_by_trial`` is the rating after the first, second, ... trial of a session, empty without a robot. ``uplift``
-    is None if no complete run without a robot was ever found. ``mode`` is the decision clock of its trials,
-    so that no second run gives the same bytes, else "lockstep". ``agents`` lists the files of every agent that is not
+    is None if no complete run without a robot was ever found. ``mode`` is the decision clock of its trials; with any
+    other than "lockstep", no second run gives the same bytes. ``agents`` lists the files of every agent that is not
     built in, including those that it opened only during trials.
     """
 

@@ -13,20 +13,20 @@ _MOST = 10**7
 
 
 class SampleSize(Struct, frozen=True, kw_only=True):
-    """How many trials (tasks done once each) and how many people (ten tasks each) are needed for each robot."""
+    """How many trials (tasks done once each) and how many sessions (ten tasks each) are needed for each robot."""
 
     difference: float
     correlation: float
     power: float
     trials: int
-    people: int
+    sessions: int
 
 
 class Scatter(Struct, frozen=True, kw_only=True):
     """How much a trial's difference varies: its variance as if trials were independent, and degrees of freedom.
 
     ``freedom`` is the degrees of freedom that each trial adds: 1 for independent trials, less where ten trials are of
-    one person and people differ.
+    one session and sessions differ.
     """
 
     variance: float
@@ -90,7 +90,7 @@ def sample_size(
         correlation=round(correlation, 6),
         power=power,
         trials=trials,
-        people=math.ceil(trials / rules.SESSION_TASKS),
+        sessions=math.ceil(trials / rules.SESSION_TASKS),
     )
 
 

@@ -137,17 +137,17 @@ class TimeSpent(Struct, frozen=True, kw_only=True):
 
 
 class TrustCurve(Struct, frozen=True, kw_only=True):
-    """Trust after each trial of the session: means, their 95 % intervals, and how many people gave a rating.
+    """Trust after each trial of the session: means, their 95 % intervals, and how many sessions have a rating.
 
-    ``slope`` is the mean over people of the least-squares slope [points per trial], ``slope_se`` its standard error;
-    both are None if fewer than two people rated two trials.
+    ``slope`` is the mean over sessions of the least-squares slope [points per trial], ``slope_se`` its standard error;
+    both are None if fewer than two sessions have two ratings. A trial of several people counts with their mean.
     """
 
     arm: str
     trial: tuple[int, ...]
     mean: tuple[float, ...]
     ci95: tuple[tuple[float, float], ...]
-    people: tuple[int, ...]
+    sessions: tuple[int, ...]
     slope: float | None
     slope_se: float | None
 

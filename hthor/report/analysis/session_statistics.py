@@ -44,21 +44,21 @@ def trust_curve(run: Run) -> TrustCurve | None:
         return None
     indices = sorted({index for _, index, _ in rated})
     by_trial = [[float(value) for _, index, value in rated if index == wanted] for wanted in indices]
-    by_person = [[(index, value) for who, index, value in rated if who == person] for person in _people(rated)]
-    slopes = [slope for marks in by_person if (slope := _slope(marks)) is not None]
+    by_session = [[(index, value) for own, index, value in rated if own == one] for one in _sessions(rated)]
+    slopes = [slope for marks in by_session if (slope := _slope(marks)) is not None]
     return TrustCurve(
         arm=run.label,
         trial=tuple(index + 1 for index in indices),
         mean=tuple(round(_mean(values), _DIGITS) for values in by_trial),
         ci95=tuple(one.ci95 for one in aggregate.trust_by_trial(run.records) if one.ci95 is not None),
-        people=tuple(len(values) for values in by_trial),
+        sessions=tuple(len(values) for values in by_trial),
         slope=round(_mean(slopes), _DIGITS) if len(slopes) > 1 else None,
         slope_se=_error(slopes),
     )
 
 
-def _people(rated: Sequence[tuple[int, int, float]]) -> list[int]:
-    return sorted({person for person, _, _ in rated})
+def _sessions(rated: Sequence[tuple[int, int, float]]) -> list[int]:
+    return sorted({session for session, _, _ in rated})
 
 
 def _slope(marks: Sequence[tuple[int, float]]) -> float | None:

@@ -95,7 +95,7 @@ def trust_trend(curves: Sequence[TrustCurve]) -> str:
 
 def _trend(curve: TrustCurve) -> str:
     if curve.slope is None or curve.slope_se is None:
-        return f"Trust in {curve.arm}: too few people for a trend."
+        return f"Trust in {curve.arm}: too few sessions for a trend."
     size = f"{signed(curve.slope, 3)} points a trial, standard error {plain(curve.slope_se, 3)}"
     if abs(curve.slope) < _CLEAR * curve.slope_se or curve.slope == 0.0:
         return f"Trust in {curve.arm} shows no clear trend ({size})."

@@ -124,7 +124,7 @@ def test_a_result_of_an_older_format_is_made_anew(tmp_path):
     _, result, stored = aggregate.rescore(folder)
     assert stored is None
     assert result.counts.trials > 0
-    path.write_bytes(b'{"schema": "hthor.result/5"}')
+    path.write_bytes(b'{"schema": "hthor.result/6"}')
     with pytest.raises(RunError, match="delete the file"):
         aggregate.rescore(folder)
 
@@ -160,7 +160,7 @@ def test_faults_are_counted_and_their_trials_too(tmp_path):
 def test_the_stored_result_says_how_it_came_about(tmp_path):
     _played(tmp_path)
     document = msgspec.json.decode((tmp_path / "result.json").read_bytes())
-    assert document["schema"] == "hthor.result/5"
+    assert document["schema"] == "hthor.result/6"
     assert set(document["versions"]) >= {"hthor", "python", "mujoco", "dm_control", "numpy"}
     assert document["effort"]["trials"] == 20
     assert (tmp_path / "result.json").read_bytes() == jsonio.pretty(document)

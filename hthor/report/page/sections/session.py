@@ -13,7 +13,7 @@ from hthor.report.page import sentences, table_cells
 from hthor.report.page.figures import session
 
 _TIME_HEAD = ("robot", "trials", "minimum", "lower quartile", "median", "upper quartile", "maximum", "unsolved")
-_TRUST_HEAD = ("robot", "people", "after the first trial", "after the last trial", "slope [points a trial]")
+_TRUST_HEAD = ("robot", "sessions", "after the first trial", "after the last trial", "slope [points a trial]")
 
 
 def time_spent(found: Findings, drawings: Mapping[str, str]) -> list[str]:
@@ -46,7 +46,7 @@ def trust(found: Findings, drawings: Mapping[str, str]) -> list[str]:
     rows: list[list[Piece]] = [
         [
             one.arm,
-            str(max(one.people)),
+            str(max(one.sessions)),
             _with_interval(one, 0),
             _with_interval(one, -1),
             "–" if one.slope is None else f"{signed(one.slope, 3)} ± {plain(one.slope_se, 3)}",
@@ -64,7 +64,7 @@ def trust(found: Findings, drawings: Mapping[str, str]) -> list[str]:
             drawings, "trust", f"Mean rating after each trial of a session; bars and bands are 95 % intervals.{cut}"
         ),
         elements.table(
-            _TRUST_HEAD, rows, "Trust from 1 to 7: means over people with 95 % intervals; slopes ± standard error."
+            _TRUST_HEAD, rows, "Trust from 1 to 7: means over sessions with 95 % intervals; slopes ± standard error."
         ),
     ]
 
