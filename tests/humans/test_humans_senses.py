@@ -359,6 +359,15 @@ def test_what_people_are_about_hold_or_head_for_is_not_forgotten():
     assert holder.knows
 
 
+def test_an_object_is_taken_by_whoever_else_holds_it():
+    for owner, others in (("human", ("human2", "robot")), ("human2", ("human", "robot"))):
+        known = ObjectMemory(["apple"], owner).known["apple"]
+        assert not known.taken
+        for holder, taken in (("", False), (owner, False), *((other, True) for other in others)):
+            known.seen = apple(held_by=holder)
+            assert (known.taken, known.lies is None) == (taken, taken)
+
+
 def test_furniture_that_nothing_is_brought_to_stays_where_it_is():
     jobs = tuple(msgspec.structs.replace(job, destinations=("sofa",)) for job in JOBS)
     assert all(one.memory.places["fridge|1"].recalled for one in after(300.0, 40, jobs=jobs))

@@ -38,10 +38,11 @@ class PairedTrials(Struct, frozen=True, kw_only=True):
 
 
 def pairing_key(spec: TrialSpec) -> str:
-    """The key that a trial shares with its counterparts with other robots: the same participant, day and task.
+    """The key that a trial shares with its counterparts with other robots: the same people, day and task.
 
     It is the key of the trial without a robot; trials with equal keys meet equal random draws. Settings that only
-    robots notice are left out: the furniture pack (only they see its pictures), real time, an action's deadline.
+    robots notice are left out: the furniture pack (only they see its pictures), the decision clock, and an action's
+    deadline. So is the attempt.
     """
     left_out = {"clock": msgspec.UNSET, "step_limit_s": msgspec.UNSET, "attempt": msgspec.UNSET}
     return trial_record.key(msgspec.structs.replace(spec, robots=(), assets_sha256="", **left_out))
