@@ -2,7 +2,7 @@
 
 `LockStep` stops the world while an agent decides. `Charged` does so too, but counts the time that the agent took as
 time of the trial, so that its action comes later. `Concurrent` asks every agent in a thread of its own while the world
-goes on, and its action takes effect when it is there. Models of people always answer at once: how long people think is
+goes on, and its action takes effect when it arrives. Models of people always answer at once: how long people think is
 part of the model.
 """
 
@@ -166,7 +166,7 @@ class TimedSenses:
 
 
 class RealTime:
-    """Lets a tick of the trial last as long as `rules.TICK_S` on the clock on the wall.
+    """Lets a tick of the trial last `rules.TICK_S` of wall-clock time.
 
     Attributes:
         late: how many ticks ended after their time, because the world or a person's model took longer.
@@ -193,7 +193,7 @@ class RealTime:
 
 
 class Concurrent:
-    """The world goes on while agents decide, each in a thread of its own; an answer takes effect when it is there.
+    """The world goes on while agents decide, each in a thread of its own; an answer takes effect when it arrives.
 
     Args:
         pace: called with the tick before its answers are handed out; returns when its time is over.

@@ -46,14 +46,14 @@ class Message(Struct, frozen=True, kw_only=True):
 
 
 class Receipt(Struct, frozen=True, kw_only=True):
-    """The status of a seat's last message, for one of those that it is for.
+    """The status of a seat's last message, for one of its readers.
 
-    A message is "sent", then "shown". Its last status is "accepted", "declined", "answered" (a question: ``yes`` says
-    how, unless the answer is a message of its own), or "covered" (replaced by a newer message).
+    A message is "sent", then "shown". Its last status is "accepted", "declined", "answered" (for a question), or
+    "covered" (replaced by a newer message).
 
     Attributes:
-        message: its number. status: its status; tick: when this status began. by: the seat that it is for.
-        yes: the answer to a question, None while there is none.
+        message: its number. status: its status; tick: when this status began. by: the reader's seat.
+        yes: the answer to a question; None while there is none, or if the answer is a message.
     """
 
     message: int
@@ -102,7 +102,7 @@ class Observation(Struct, frozen=True, kw_only=True):
         holding: id of the object that the body has in hand or holds by a handle; empty for none.
         outcome: how the last motion ended; None before any motion has ended.
         inbox: a person's open message, at most one; a robot's new messages and its open questions.
-        receipt: the status of the seat's last message, the latest change first known; None before its first message.
+        receipt: the status of the seat's last message, for the reader whose status changed last; None before its first.
         truth: true states of all objects, only for agents that declare the privilege ``object_poses``.
     """
 

@@ -189,8 +189,8 @@ class TrialSpec(Struct, frozen=True, kw_only=True):
 
     Attributes:
         humans: the people, in the order of their seats.
-        session: the number of the session that the trial belongs to, counted from 0; the tasks and the world's chance
-            depend on it. ``index``: the trial's place in its session, from 0.
+        session: the number of the session that the trial belongs to, counted from 0; the tasks and the world's
+            random numbers depend on it. ``index``: the trial's place in its session, from 0.
         attempt: set only for a repetition: how often the trial was voided before.
         assets_sha256: hash of the looks in robots' pictures and of the code that draws them, empty if no agent is known
             to take pictures.

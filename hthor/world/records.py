@@ -1,7 +1,7 @@
 """The state of a world as records, from which `hthor.world.saved_state` makes bytes.
 
-Every part of a world that changes during an episode states its part here, and takes it back. What can be computed from
-the rest is not stated. Positions are in the house frame [m], angles in [rad].
+Every part of a world that changes during an episode saves its state in a record and can be restored from it. What can
+be computed from the rest is not saved. Positions are in the house frame [m], angles in [rad].
 """
 
 from msgspec import Struct

@@ -95,7 +95,7 @@ def test_the_number_of_participants_comes_out_even() -> None:
     plan = build(suite, crew, humans="proxy,proxy", seed=0, participants=None)
     assert (plan.participants, plan.sessions, plan.trials) == (6, 3, 30)
     assert build(suite, crew, humans="proxy,proxy", seed=0, participants=8).sessions == 4
-    with pytest.raises(HthorError, match="is a multiple of 2, such as 6"):
+    with pytest.raises(HthorError, match="must be a multiple of 2, such as 6"):
         build(suite, crew, humans="proxy,proxy", seed=0, participants=5)
     part = run_config.shard_config(plan, sessions.parse_shard("3/3"), 30)
     assert part.shard.trials == 10

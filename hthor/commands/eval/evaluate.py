@@ -183,11 +183,12 @@ def evaluate(
     clock: Annotated[
         Literal["lockstep", "charged", "concurrent"],
         typer.Option(
-            help="When agents' decisions take effect. lockstep: at once, the world waits for them. charged: as much "
-            "later as the agent took, and the person goes on meanwhile. concurrent: the trial runs in real time, and "
-            "an action starts when it is there. Only lockstep is reproducible byte for byte.",
+            help="When agents' decisions take effect. lockstep: at once; the world waits for them. charged: as much "
+            "later as the agent took to decide; the person goes on meanwhile. concurrent: the trial runs in real time, "
+            "and an action starts when its decision arrives. Only lockstep is reproducible byte for byte.",
         ),
     ] = "lockstep",
+    realtime: Annotated[bool, typer.Option("--realtime", hidden=True)] = False,
     isolation: Annotated[
         str,
         typer.Option(
@@ -228,6 +229,8 @@ def evaluate(
 
     allowed = run_options.parse_max_faults(max_faults)
     talk = output.console(talk=True)
+    if realtime:
+        output.say("warning: --realtime is now called --clock charged", talk)
     watcher = partial(progress.make_watcher, talk, quiet=quiet, live=output.live())
     options = run_options.RunOptions(
         agents=tuple(agent or ()),
@@ -248,7 +251,7 @@ def evaluate(
         engine=engine,
         address=address,
         control=control,
-        clock=clock,
+        clock="charged" if realtime else clock,
         name=name,
         limit=limit,
         houses=tuple(house or ()),

@@ -72,7 +72,7 @@ def split_word(word: str) -> tuple[str, ...]:
     parts = tuple(part.strip() for part in word.split(COMMA))
     if not all(parts):
         raise HthorError(
-            f"--humans '{word}': a comma joins the people of one trial, so there is a population on both sides of it, "
+            f"--humans '{word}': a comma joins the people of one trial, so name a population on both sides of it, "
             "as in proxy,proxy."
         )
     return parts

@@ -53,8 +53,8 @@ def count_sessions(tasks: int, participants: int | None, people: int) -> int:
         return sessions_needed(tasks)
     if participants % people:
         raise HthorError(
-            f"--participants {participants}: there are {people} people in every trial, so their number is a multiple "
-            f"of {people}, such as {people * math.ceil(participants / people)}."
+            f"--participants {participants}: with {people} people in every trial, the number must be a multiple of "
+            f"{people}, such as {people * math.ceil(participants / people)}."
         )
     return participants // people
 

@@ -19,7 +19,7 @@ _KINDS = {"confirmed": "accepted"}
 _ANSWERS = {"confirm": "accept"}
 _PLAIN = (bool, int, float, str)
 _OWN_KINDS = frozenset({"stick", "head", "attempt", "exposure", "choice", "offer", "misled"})
-"""The kinds of the old journal that hthor itself wrote; a human model of one's own could add others."""
+"""The kinds of the old journal that hthor itself wrote; a user's own human model could add others."""
 
 
 def convert_record(old: OldRecord) -> TrialRecord:

@@ -25,7 +25,7 @@ class OldEvent(Struct, frozen=True, kw_only=True):
 
 
 class OldSpec(Struct, frozen=True, kw_only=True):
-    """What decided a trial: one person, ``human`` of the population ``participant`` was drawn from."""
+    """What decided a trial; its one person is the ``participant`` drawn from the population ``human``."""
 
     task: TaskSpec
     robots: tuple[RobotSeat, ...]

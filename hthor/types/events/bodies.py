@@ -110,7 +110,7 @@ class Blocked(LogEntry, frozen=True, kw_only=True, tag="blocked"):
 
 
 class InWay(LogEntry, frozen=True, kw_only=True, tag="in_way"):
-    """From this tick on another body hindered a move of the seat's body; once a move.
+    """From this tick on another body hindered a move of the seat's body; once per move.
 
     Attributes:
         by: the other body's seat.

@@ -43,12 +43,12 @@ class Head(LogEntry, frozen=True, kw_only=True, tag="head"):
 
 
 class Inputs(LogEntry, frozen=True, kw_only=True, tag="inputs"):
-    """Everything that the person's body was told to `Drive`, once per trial in which it was.
+    """Every set-point of `Drive` that the person's body was given; once per trial, if there was any.
 
     Attributes:
-        runs: flat groups of six: the tick, and the step of the tick (0 to `hthor.types.SUBTICKS` - 1), from which on
-            they hold; forward and left [0.1 mm/s] in the frame of the head's yaw; the head's yaw, house frame, and
-            pitch [0.1 mrad].
+        runs: flat groups of six: the tick and the step of the tick (0 to `hthor.types.SUBTICKS` - 1) from which on the
+            set-point holds; forward and left [0.1 mm/s] in the frame of the head's yaw; the head's yaw, house frame,
+            and pitch [0.1 mrad].
     """
 
     runs: tuple[int, ...]
@@ -73,15 +73,15 @@ class Attempt(LogEntry, frozen=True, kw_only=True, tag="attempt"):
 
 
 class Exposure(LogEntry, frozen=True, kw_only=True, tag="exposure"):
-    """The glimpses at one object until it was noticed, or until the trial ended.
+    """The glimpses of one object until it was noticed, or until the trial ended.
 
     Attributes:
         object: its id.
         noticed: whether it was noticed at the last glimpse.
         seconds: [s] how long it was in view.
-        gathered: rows of like glimpses, added up: seconds [s], visual angle [rad], eccentricity [rad], share in view
-            (0 to 1), how many small things were beside it, and whether the person was searching there (0 or 1); the
-            last row is the last glimpse alone.
+        gathered: rows, each for glimpses that were alike: their seconds together [s], visual angle [rad], eccentricity
+            [rad], share in view (0 to 1), how many small things were beside it, and whether the person was searching
+            there (0 or 1). The last row is the last glimpse alone.
     """
 
     object: str
@@ -91,12 +91,13 @@ class Exposure(LogEntry, frozen=True, kw_only=True, tag="exposure"):
 
 
 class Choice(LogEntry, frozen=True, kw_only=True, tag="choice"):
-    """A decision where to search next.
+    """A decision about where to search next.
 
     Attributes:
         aim: what is searched for: "target", "destination" or "room".
-        options: a row for each option, of many a sample: probability by common knowledge and without it (0 to 1), path
-            length [m], exposure so far, whether it must be opened first, and whether it is a doorway (0 or 1).
+        options: a row for each option, or for a sample if there are many: probability by common knowledge and without
+            it (0 to 1), path length [m], exposure so far, whether it must be opened first, and whether it is a doorway
+            (0 or 1).
         chosen: the index of the chosen option.
     """
 
@@ -140,7 +141,7 @@ class Misled(LogEntry, frozen=True, kw_only=True, tag="misled"):
 
 
 class Asked(LogEntry, frozen=True, kw_only=True, tag="asked"):
-    """The person began to ask a question; the event `Sent` follows when it was said.
+    """The person began to ask a question; the event `Sent` follows when it has been said.
 
     Attributes:
         object: id or kind of what it is about.
@@ -172,7 +173,7 @@ class Replied(LogEntry, frozen=True, kw_only=True, tag="replied"):
 
 
 class Note(LogEntry, frozen=True, kw_only=True, tag="note"):
-    """What a human model of one's own records in addition, such as how often a language model was asked.
+    """What a user's own human model records in addition, such as how often a language model was asked.
 
     Attributes:
         topic: what the note is about.

@@ -7,7 +7,7 @@ from hthor.types.house import Vec3
 
 
 class Sent(LogEntry, frozen=True, kw_only=True, tag="sent"):
-    """The seat sent a message; after `Answered` and `Covered` for the messages that it answers and covers.
+    """The seat sent a message. `Answered` and `Covered`, for the messages that it answers and covers, come before.
 
     Attributes:
         message: its number in the trial, from 0.
@@ -91,7 +91,7 @@ class Answered(LogEntry, frozen=True, kw_only=True, tag="answered"):
     Attributes:
         message: the number of the question.
         sender: the seat that asked it.
-        yes: the answer; absent if it is a message of its own, the next `Sent`.
+        yes: the answer; absent if the answer is a message, the next `Sent`.
     """
 
     message: int

@@ -8,7 +8,7 @@ A person's head points where it was measured at once, up to straight up or down;
 rate. A robot has no neck: its body turns to the heading and its camera tilts to the pitch, both at its turn rate. While
 the hands are busy a body stands, and only its head moves.
 
-What the body meets is told once for each contact, not in every step: the event ``in_way`` names another body, also one
+Each contact is reported once, not in every step: the event ``in_way`` names another body, also one
 that it slides past; ``blocked`` names what stops it. A contact ends when the body has gone `CLEAR_M` without sliding
 along anything, or when it is steered elsewhere by more than `AWAY_RAD`, or stands. Its outcome says what stops it, and
 is ok as soon as it goes on.

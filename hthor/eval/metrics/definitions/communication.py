@@ -92,7 +92,7 @@ def interruptions(trial: Trial) -> float | None:
 
 
 def useful(trial: Trial) -> int:
-    """Accepted messages that were true when they were sent and new to who accepted them and could still help."""
+    """Accepted messages that were true when sent, new to a person who accepted them, and could still help."""
     new = {(entry.seat, entry.message) for entry in trial.log.journal if isinstance(entry, Offer) and entry.useful}
     taken = {message for seat, message in _answers(trial.log, Accepted) if (seat, message) in new}
     return len(taken & _true_claims(trial.log) & set(_suggestions(trial.log)))
