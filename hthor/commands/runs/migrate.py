@@ -27,8 +27,8 @@ def migrate(
     """Convert runs and logs of hthor 0.1 to log 1.0.
 
     Every converted file replaces the old one in one step, and the old one is kept beside it, as in
-    trials.before-1.0.jsonl. Keys and checksums are computed again, and so is result.json. What is of log 1.0 already
-    is left alone, so an interrupted command is finished by the same command.
+    trials.before-1.0.jsonl. Keys and checksums are computed again, and so is result.json. Files that are in the new
+    format already are left alone, so the same command finishes an interrupted one.
     """
     from hthor.eval.migration import migrate as migrating
 

@@ -235,7 +235,7 @@ def headline(spec: TrialSpec, log: EpisodeLog, inches: float, size: float) -> st
     seconds = log.ticks * rules.TICK_S
     end = f"done in {seconds:.1f} s" if log.met else f"not done in {seconds:.0f} s"
     if log.voided:
-        end = f"voided after {seconds:.1f} s, {log.voided}"
+        end = f"voided after {seconds:.1f} s, reason: {log.voided}"
     elif not log.met and log.progress is not None:
         end += f", {100.0 * log.progress:.0f} % of it done"
     lines = [f"“{spec.task.instruction}”", f"{agents}: {end} (T* {spec.task.t_star:.1f} s), {spec.task.id}"]

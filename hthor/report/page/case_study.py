@@ -75,8 +75,8 @@ def _same_people(runs: Sequence[Run]) -> None:
         if one.plan.humans.sha256 != runs[0].plan.humans.sha256:
             raise RunError(
                 f"{one.folder / 'run.json'}: humans.sha256 is not that of {runs[0].folder / 'run.json'}: "
-                f"'{one.plan.humans.name}', not '{runs[0].plan.humans.name}'. A case shows the same people; give "
-                "runs with them."
+                f"'{one.plan.humans.name}', not '{runs[0].plan.humans.name}'. A case shows the same people with "
+                "several robots; give runs with the same people."
             )
 
 

@@ -73,7 +73,8 @@ def _suite(one: Provenance) -> str:
 
 def _trials(one: Provenance) -> str:
     whole = str(one.trials) if one.trials == one.whole else f"{one.trials} of {one.whole}, not finished"
-    voided = f"; {one.voided} voided attempts do not count" if one.voided else ""
+    attempts = "attempt does" if one.voided == 1 else "attempts do"
+    voided = f"; {one.voided} voided {attempts} not count" if one.voided else ""
     return f"{whole}; {one.faulty} with a fault{voided}"
 
 
