@@ -51,6 +51,11 @@ class Follower:
         """The way point [m] that the body is heading for."""
         return None if self.done else self.path[self._next]
 
+    @property
+    def rest(self) -> tuple[Vec2, ...]:
+        """The way points [m] that are still to be reached."""
+        return self.path[self._next :]
+
     def next(self, pose: Pose) -> Motion | None:
         """The next motion from ``pose``, or None when the whole path was walked."""
         while not self.done and math.dist(self.path[self._next], (pose.x, pose.y)) <= self.arrived_m:

@@ -2,13 +2,23 @@
 
 import math
 from collections import Counter
+from typing import NamedTuple
 
 from hthor.agents.skills.knowledge import Knowledge
 from hthor.agents.skills.task_allocation import TaskAllocation, seat_order
 from hthor.types import Job, Observation
 
-_BUSY_S = 20.0
-"""How long a person who has accepted a message is assumed to be on the way because of it [s]."""
+_BUSY_S, _PACE_M_S = 20.0, 0.4
+"""A person who has accepted a message is assumed to be on the way because of it for as long as the walk takes at this
+pace, that of people in a headset (docs/humans.md), and at least for so long [s]."""
+
+
+class _Acceptance(NamedTuple):
+    """An accepted message: its object, when it was accepted, and until when the person is on the way [tick]."""
+
+    target: str
+    tick: int
+    until: int
 
 
 class Audience:
@@ -19,19 +29,26 @@ class Audience:
 
     def __init__(self, allocation: TaskAllocation, tick_s: float) -> None:
         self.allocation = allocation
-        self._busy_ticks = round(_BUSY_S / tick_s)
+        self.tick_s = tick_s
         self._told: Counter[tuple[str, str]] = Counter()
         self._latest = ("", "")
-        self._accepted: dict[str, tuple[str, int]] = {}
+        self._accepted: dict[str, _Acceptance] = {}
 
-    def hear(self, observation: Observation) -> None:
+    def hear(self, observation: Observation, knowledge: Knowledge) -> None:
         """Learn from the receipt of the last message who goes where."""
         receipt, (seat, target) = observation.receipt, self._latest
         if receipt is not None and seat == receipt.by:
-            if receipt.status == "accepted":
-                self._accepted[seat] = (target, receipt.tick)
-            elif self._accepted.get(seat, ("", 0))[0] == target:
-                self._accepted.pop(seat, None)
+            known = self._accepted.get(seat)
+            if receipt.status != "accepted":
+                if known is not None and known.target == target:
+                    self._accepted.pop(seat)
+            elif known is None or (known.target, known.tick) != (target, receipt.tick):
+                until = receipt.tick + round(self._walk_s(seat, target, knowledge) / self.tick_s)
+                self._accepted[seat] = _Acceptance(target, receipt.tick, until)
+
+    def is_anybody_free(self, job: Job, knowledge: Knowledge) -> bool:
+        """Whether a message about the job would take nobody from another one; a person alone may always be told."""
+        return len(self.allocation.people) < 2 or bool(self._free(job, knowledge))
 
     def choose(self, job: Job, knowledge: Knowledge) -> str:
         """The person to tell: with free hands, told least often about this job, and nearest; empty for everybody."""
@@ -49,7 +66,7 @@ class Audience:
 
     def has_somebody_else(self, job: Job, knowledge: Knowledge) -> bool:
         """Whether somebody is free to hear about other jobs while somebody does this one."""
-        doing = {seat for seat, (target, _) in self._accepted.items() if target == job.target}
+        doing = {seat for seat, one in self._accepted.items() if one.target == job.target}
         return len(self.allocation.people) > 1 and any(seat not in doing for seat in self._free(job, knowledge))
 
     def _free(self, job: Job, knowledge: Knowledge) -> list[str]:
@@ -64,6 +81,12 @@ class Audience:
         self._told[self._latest] += 1
 
     def _is_on_the_way(self, seat: str, job: Job) -> bool:
-        """Whether a person has accepted a message about another job a short while ago."""
-        target, tick = self._accepted.get(seat, (job.target, 0))
-        return target != job.target and self.allocation.tick < tick + self._busy_ticks
+        """Whether a person is probably on the way because of a message about another job."""
+        known = self._accepted.get(seat)
+        return known is not None and known.target != job.target and self.allocation.tick < known.until
+
+    def _walk_s(self, seat: str, target: str, knowledge: Knowledge) -> float:
+        """How long the walk of a person to an object takes [s]."""
+        if target not in knowledge.states:
+            return _BUSY_S
+        return max(_BUSY_S, self.allocation.distance(seat, knowledge.states[target].position) / _PACE_M_S)

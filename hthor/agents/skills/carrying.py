@@ -10,9 +10,9 @@ from typing import Protocol
 from hthor.agents.skills import viewpoints
 from hthor.agents.skills.knowledge import Knowledge
 from hthor.agents.skills.manipulation import ManipulationGoal, Manipulator, whole_tick_move
+from hthor.agents.skills.right_of_way.yielding import seat_bumped
 from hthor.agents.skills.task_allocation import TaskAllocation, can_do, seat_order
 from hthor.agents.skills.viewpoints import Routes
-from hthor.agents.skills.yielding import seat_bumped
 from hthor.geometry import plane
 from hthor.navigation.path_follower import Follower, face, shift
 from hthor.types import HUMAN, Briefing, Drop, Job, Motion, Observation, Pick, ThingState, Vec2, Vec3, Wait, is_person
@@ -113,9 +113,9 @@ class Carrier:
         stopped = outcome is not None and not outcome.ok and outcome.motion == "move"
         if goal != self._goal or stopped:
             self._goal, self._parked = goal, False
-            self.follower.take(
-                viewpoints.path_to_reach(self.routes, here, (place,), _BY_M, but=[here] if stopped else [])
-            )
+            start = self.routes.loose(here) if stopped and not seat_bumped(observation) else here
+            way = viewpoints.path_to_reach(self.routes, start, (place,), _BY_M, but=[here] if stopped else [])
+            self.follower.take((start, *way) if way else ())
         step = self.follower.next(observation.pose)
         if step is None and not self._parked:
             self._parked = True

@@ -4,10 +4,11 @@ import math
 from collections.abc import Sequence
 from functools import partial
 
-from hthor.agents.skills.yielding import seat_bumped
+from hthor.agents.skills.right_of_way.yielding import seat_bumped
 from hthor.geometry.plane import wrap
+from hthor.navigation.detours import Disc, detour
 from hthor.navigation.frontier import Frontier, Survey
-from hthor.navigation.grid_map import CELL_M, UNKNOWN, GridMap
+from hthor.navigation.grid_map import CELL_M, FREE, UNKNOWN, GridMap
 from hthor.navigation.path_follower import Follower
 from hthor.navigation.planner import Planner
 from hthor.navigation.waiting_spots import retreat
@@ -65,6 +66,11 @@ class Explorer:
             self._place = None
             return Rotate(yaw=0.9 * self.body.fov[0])
         return step
+
+    @property
+    def is_on_the_way(self) -> bool:
+        """Whether it is going somewhere."""
+        return not self.follower.done
 
     def fits(self, a: Vec2, b: Vec2) -> bool:
         """Whether the body can go straight from ``a`` to ``b``, as far as the map tells."""
@@ -156,6 +162,14 @@ class ObservedRoutes:
     def way(self, here: Vec2, spot: Vec2) -> tuple[Vec2, ...]:
         """The shortest known path, () for none."""
         return self.explorer.planner.path(here, spot) or ()
+
+    def past(self, here: Vec2, goal: Vec2, discs: Sequence[Disc], most_m: float) -> tuple[Vec2, ...]:
+        """A known path of at most ``most_m`` [m] that keeps out of the discs; () when there is none."""
+        grid, planner = self.explorer.grid, self.explorer.planner
+        if grid is None:
+            return ()
+        free = (grid.cells == FREE) & (planner.levels < 2)
+        return detour(free, (grid.left * CELL_M, grid.bottom * CELL_M), CELL_M, here, goal, discs, most_m)
 
     def broad(self, here: Vec2, spot: Vec2) -> tuple[Vec2, ...]:
         """The shortest known path: a robot's own map is too coarse to prefer broad ones."""

@@ -8,8 +8,8 @@ from msgspec import Struct
 from hthor import catalog, rules
 from hthor.agents.skills import viewpoints
 from hthor.agents.skills.knowledge import Knowledge, has_door, resting_points
+from hthor.agents.skills.right_of_way.yielding import Yielding, seat_bumped
 from hthor.agents.skills.viewpoints import Routes
-from hthor.agents.skills.yielding import Yielding, seat_bumped
 from hthor.geometry import plane
 from hthor.navigation.path_follower import Follower, face
 from hthor.types import BodySpec, Job, Motion, Observation, Open, Pick, Place, Thing, Vec2, Vec3, Wait

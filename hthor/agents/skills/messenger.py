@@ -36,8 +36,8 @@ from hthor.types import (
 
 if TYPE_CHECKING:
     from hthor.agents.skills.audience import Audience
+    from hthor.agents.skills.right_of_way.yielding import Yielding
     from hthor.agents.skills.routes import HouseRoutes
-    from hthor.agents.skills.yielding import Yielding
     from hthor.navigation.path_follower import Follower
 
 _LOOKS = 3
@@ -96,7 +96,7 @@ class Messenger:
         """Keep the answer to the last message."""
         if self.several and observation.receipt is not None:
             self._answers[self.spoken_about] = observation.receipt
-        self.audience.hear(observation)
+        self.audience.hear(observation, self.knowledge)
 
     def waits(self, observation: Observation, job: Job) -> bool:
         """Whether the person may still act on the message about this job, or has not been sent one."""

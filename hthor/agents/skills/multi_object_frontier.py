@@ -15,10 +15,10 @@ from hthor.agents.skills.message_timing import (
     look_inside_text,
     sighting_text,
 )
+from hthor.agents.skills.right_of_way.passing import Passing
+from hthor.agents.skills.right_of_way.yielding import Yielding
 from hthor.agents.skills.task_allocation import TaskAllocation, can_do
 from hthor.agents.skills.viewpoints import outline_distance
-from hthor.agents.skills.yielding import Yielding
-from hthor.navigation.path_follower import Courtesy
 from hthor.types import Action, Briefing, Job, Motion, Observation, Place, Receipt, Send, ThingState, Vec3
 
 _MOST = 2
@@ -33,8 +33,8 @@ class MultiObjectFrontier:
         self.seen = ObservedKnowledge()
         self.explorer = Explorer(briefing.body)
         routes = ObservedRoutes(self.explorer)
-        self.courtesy = Courtesy(briefing.body, self.explorer.fits)
         self.yielding = Yielding(briefing, routes)
+        self.passing = Passing(briefing, routes, self.yielding)
         self.manipulator = Manipulator(briefing.body, routes, self.yielding, briefing.tick_s)
         self.allocation = TaskAllocation(briefing, lambda here, place: math.dist(here, place[:2]))
         self.audience = Audience(self.allocation, briefing.tick_s)
@@ -52,7 +52,7 @@ class MultiObjectFrontier:
         self.allocation.see(observation, self.seen)
         if observation.receipt is not None:
             self._answers[self._spoken] = observation.receipt
-        self.audience.hear(observation)
+        self.audience.hear(observation, self.seen)
         if observation.idle:
             self._look_back(observation)
             self.mine = self._own(observation)
@@ -72,9 +72,9 @@ class MultiObjectFrontier:
         if self.mine is not None and self.mine.hands > 1 and self.carrier.is_close(observation, self.seen, self.mine):
             self.explorer.drop()
             return self.carrier.motion(observation, self.seen, self.mine)
-        aside = self.yielding.refuge(observation)
-        if aside is None:
-            aside = self.courtesy.motion(observation, observation.tick * self.briefing.tick_s)
+        explores = self.mine is None and self.explorer.is_on_the_way
+        follower = self.explorer.follower if explores else self.manipulator.follower
+        aside = self.passing.motion(observation, follower, is_free=False)
         if aside is None:
             aside = self.yielding.motion(observation)
         if aside is not None:

@@ -11,9 +11,10 @@ from hthor.agents.skills.knowledge import Knowledge
 from hthor.agents.skills.manipulation import Manipulator
 from hthor.agents.skills.message_timing import ASIDE_M
 from hthor.agents.skills.messenger import Messenger
+from hthor.agents.skills.right_of_way.passing import Passing
+from hthor.agents.skills.right_of_way.yielding import Yielding
 from hthor.agents.skills.routes import HouseRoutes
 from hthor.agents.skills.task_allocation import TaskAllocation, can_do
-from hthor.agents.skills.yielding import Yielding
 from hthor.navigation.path_follower import Courtesy, Follower
 from hthor.types import HUMAN, Action, Briefing, Job, Motion, Observation, Send, Wait, is_person
 
@@ -180,6 +181,7 @@ class TeamOracle(SingleTaskOracle):
         self.is_aside = False
         self._shared_since: dict[str, int] = {}  # tick from which an object was another robot's share
         self._patience = round(_PATIENCE_S / briefing.tick_s)
+        self.passing = Passing(briefing, self.routes, self.yielding)
 
     def _update(self, observation: Observation) -> None:
         self.allocation.see(observation, self.knowledge)
@@ -199,9 +201,7 @@ class TeamOracle(SingleTaskOracle):
         return None if best is None else self.messenger.mention(observation, best)
 
     def _step_aside(self, observation: Observation) -> Motion | None:
-        aside = self.yielding.refuge(observation)
-        if aside is None:
-            aside = super()._step_aside(observation)
+        aside = self.passing.motion(observation, self._current_follower(), is_free=self.mine is None)
         if aside is None:
             aside = self.yielding.motion(observation)
         if aside is None and self.mine is None:
@@ -209,6 +209,13 @@ class TeamOracle(SingleTaskOracle):
         if aside is None and self.mine is not None:
             self.is_aside = False
         return aside
+
+    def _current_follower(self) -> Follower:
+        """The follower of the path that the robot is on."""
+        if self.mine is None:
+            return self.follower
+        waits = self.mine.hands > 1 and not self.carrier.follower.done
+        return self.carrier.follower if waits else self.manipulator.follower
 
     def _motion_without_job(self, observation: Observation, topic: Job | None) -> Motion:
         """Go where the topic is; without a topic, go where the robot blocks nobody."""

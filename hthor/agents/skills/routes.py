@@ -13,6 +13,7 @@ from hthor.houses.space.free_space import FreeSpace
 from hthor.houses.space.geodesic import house_geodesics
 from hthor.houses.space.grid_kernel import are_free_points
 from hthor.houses.space.visibility import with_all_open
+from hthor.navigation.detours import Disc, detour
 from hthor.navigation.waiting_spots import park
 from hthor.types import BodySpec, HouseSpec, Room, Thing, Vec2, Vec3
 
@@ -57,6 +58,10 @@ class HouseRoutes:
     def way(self, here: Vec2, spot: Vec2) -> tuple[Vec2, ...]:
         """The shortest path from the body to a free spot; () when there is none."""
         return self.geodesics.path(self.space.nearest_free(*here), spot)
+
+    def past(self, here: Vec2, goal: Vec2, discs: Sequence[Disc], most_m: float) -> tuple[Vec2, ...]:
+        """A path of at most ``most_m`` [m] to a free spot that keeps out of the discs; () when there is none."""
+        return detour(self.space.free, self.space.origin, self.space.cell, here, goal, discs, most_m)
 
     def broad(self, here: Vec2, spot: Vec2) -> tuple[Vec2, ...]:
         """A short path that is broad enough to pull something along, or else the shortest path; () for none."""

@@ -106,7 +106,7 @@ class TaskAllocation:
         shut = knowledge.is_shut(state.support)
         if not can_do(self.bodies[seat], state.kind, job, shut):
             return math.inf
-        way = self._apart(self.place(seat), state.position)
+        way = self.distance(seat, state.position)
         return way + UNKNOWING_M if is_person(seat) else way + (DOOR_M if shut else 0.0) - self._later(job, knowledge)
 
     def _later(self, job: Job, knowledge: Knowledge) -> float:
@@ -124,6 +124,10 @@ class TaskAllocation:
         if key not in self._ways:
             self._ways[key] = self._apart(a[:2], b)
         return self._ways[key]
+
+    def distance(self, seat: str, point: Vec3) -> float:
+        """Walking distance [m] of a seat's body to the floor next to a point."""
+        return self._apart(self.place(seat), point)
 
     def place(self, seat: str) -> Vec2:
         """Position [m] of a seat's body: current, last known, or assumed at the start."""

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from hthor.geometry import plane
 from hthor.houses.space.grid_kernel import cells_within
+from hthor.navigation.detours import Disc
 from hthor.types import Thing, Vec2, Vec3
 
 Floats = NDArray[np.float64]
@@ -24,8 +25,9 @@ class Routes(Protocol):
     """Paths of one body through a house, as far as it knows it; positions and lengths in metres.
 
     `stands` and `standing` say where the body may stand, `fits` whether it can go straight, `lengths` and `way` give
-    shortest paths (inf and () for none), `retreat` one to where it blocks nobody, `loose` where to go first when it is
-    stopped, `open_to` whether no wall is between a spot and an edge, and `sees` whether the camera would see a point.
+    shortest paths (inf and () for none), `past` a short path that keeps out of discs, `retreat` one to where it blocks
+    nobody, `loose` where to go first when it is stopped, `open_to` whether no wall is between a spot and an edge, and
+    `sees` whether the camera would see a point.
     """
 
     def stands(self, spot: Vec2) -> bool: ...
@@ -33,6 +35,7 @@ class Routes(Protocol):
     def fits(self, a: Vec2, b: Vec2) -> bool: ...
     def lengths(self, here: Vec2, spots: Sequence[Vec2]) -> Sequence[float]: ...
     def way(self, here: Vec2, spot: Vec2) -> tuple[Vec2, ...]: ...
+    def past(self, here: Vec2, goal: Vec2, discs: Sequence[Disc], most_m: float) -> tuple[Vec2, ...]: ...
     def retreat(self, here: Vec2, point: Vec2, apart_m: float) -> tuple[Vec2, ...]: ...
     def loose(self, here: Vec2) -> Vec2: ...
     def open_to(self, spot: Vec2, edge: Vec2) -> bool: ...

@@ -89,36 +89,36 @@ class Encounters:
     """The latest person who was in the way, and how the participant gets past them.
 
     A path is planned round them for `AVOID_S`, as if they stood a little farther to the left, so that the right side
-    looks shorter.
+    looks shorter. ``met`` is where they were [m], None when something else was in the way.
     """
 
     def __init__(self, human: HumanContext) -> None:
         self.human = human
-        self._met: Vec2 | None = None
+        self.met: Vec2 | None = None
         self._until = -1
         self._count = 0
 
     def avoid(self, other: Vec2) -> Obstacle:
         """The obstacle to plan round from now on: a person at ``other`` [m]."""
         here, radius = self.human.here, self.human.body.radius
-        self._met, self._until = other, self.human.now.tick + round(AVOID_S / self.human.tick_s)
+        self.met, self._until = other, self.human.now.tick + round(AVOID_S / self.human.tick_s)
         bearing = math.atan2(other[1] - here[1], other[0] - here[0])
         dx, dy = turn((0.0, _TO_THE_RIGHT_M), bearing)
         return (other[0] + dx, other[1] + dy, radius)
 
     def forget(self) -> None:
         """Note that something else is in the way now."""
-        self._met = None
+        self.met = None
 
     def blocks(self, goal: Vec2, within: float) -> bool:
         """Whether it may be the person who leaves no path to ``goal`` [m], and they do not stand there themselves."""
-        if self._met is None or self.human.now.tick > self._until:
+        if self.met is None or self.human.now.tick > self._until:
             return False
-        return math.dist(self._met, goal) > 2.0 * self.human.body.radius + within
+        return math.dist(self.met, goal) > 2.0 * self.human.body.radius + within
 
     def let_by(self, planner: Planner) -> Behaviour:
         """Let the person by, or wait until they make room."""
-        met, self._met = self._met, None
+        met, self.met = self.met, None
         assert met is not None
         self._count += 1
         return (yield from _let_by(self.human, planner, met, self._count))

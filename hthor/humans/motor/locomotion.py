@@ -123,14 +123,17 @@ class Walker:
         for _ in range(_REPLANS):
             way = self._way(goal, within)
             budget, here = budget - math.dist(here, self.human.here), self.human.here
-            if way is None or way.metres > budget:
+            avoids = self._avoids_person()
+            if way is None or way.metres > (min(budget, self._longest_detour(goal, within)) if avoids else budget):
                 if self._bumps >= _GIVE_UP or not self.encounters.blocks(goal, within):
                     return False
                 self._bumps, self._robot_until, budget = self._bumps + 1, -1, math.inf
                 yield from self.encounters.let_by(self.planner)
                 continue
             budget, bumps = min(budget, _DETOUR * way.metres + _DETOUR_M), self._bumps
-            ended = yield from self._follow(way.path, stop)
+            ended = yield from self._follow(way.path, (lambda: stop() or not self._avoids_person()) if avoids else stop)
+            if avoids and not stop() and math.dist(self.human.here, way.path[-1]) > _ARRIVED_M:
+                ended = False  # the person has probably moved on: look for a shorter path
             if ended and (way.doorway is None or stop()):
                 return True
             if ended and way.doorway:
@@ -158,6 +161,15 @@ class Walker:
         if known is not None and known.metres <= _FAMILIAR * hopeful.metres + _FAMILIAR_M:
             return known
         return self._by_doorway(goal, hopeful.metres + _DOORWAY_M) or hopeful
+
+    def _avoids_person(self) -> bool:
+        """Whether paths are planned round another person now."""
+        return self.encounters.met is not None and self.human.now.tick <= self._robot_until
+
+    def _longest_detour(self, goal: Vec2, within: float) -> float:
+        """How long a path round a person may be [m]: for a longer one, people rather wait or step back."""
+        direct = self.planner.path(self.human.here, goal, within)
+        return math.inf if direct is None else _DETOUR * path_length(direct) + _DETOUR_M
 
     def _known(self, goal: Vec2, within: float) -> Route | None:
         """A path over floor that was seen."""

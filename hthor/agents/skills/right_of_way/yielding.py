@@ -6,16 +6,16 @@ from collections.abc import Mapping
 from hthor.agents.skills.task_allocation import seat_order
 from hthor.agents.skills.viewpoints import Routes, keeps_clear
 from hthor.geometry.plane import turn
-from hthor.navigation.path_follower import Follower, shift
+from hthor.navigation.path_follower import shift
 from hthor.types import Briefing, Motion, Move, Observation, Vec2, Wait, is_person
 
 _YIELD_S, _REST_S = 3.0, 2.0
 """How long to make way for another [s], and then not to make way again [s]."""
-_OFTEN_S, _BUMPS, _REFUGE_S, _APART_M = 8.0, 2, 4.0, 1.2
-"""Two collisions with people within 8 s send the robot 1.2 m away, for 4 s."""
 _STEP_M = 0.4
 _ELBOW_M = 0.45
 _BESIDE_M = 0.15
+_STILL_M = 0.02
+"""Whoever has moved less than this between two looks stands still [m]."""
 _SIDEWAYS = 1.5
 """Weight of a step to the side relative to one straight back."""
 _DIRECTIONS = 16
@@ -25,7 +25,7 @@ class Yielding:
     """Behaviour after running into a robot: one of the two makes room, the other goes round it.
 
     A robot with an arm goes first; of equal robots, the one whose seat comes first. For people see
-    `hthor.navigation.path_follower`.
+    `hthor.agents.skills.right_of_way.passing`.
     """
 
     def __init__(self, briefing: Briefing, routes: Routes) -> None:
@@ -35,9 +35,7 @@ class Yielding:
         self._along: Vec2 = (0.0, 0.0)
         self._until = self._rest = -1.0
         self._other: Vec2 | None = None
-        self._follower = Follower(turn_rad=math.pi)
-        self._bumps: list[float] = []
-        self._waited = -1.0
+        self._were: Mapping[str, Vec2] = {}
 
     def note(self, observation: Observation, motion: Motion) -> None:
         """Note the motion that begins now: its direction tells where an unseen body is if the robot runs into it."""
@@ -56,33 +54,21 @@ class Yielding:
             self._other = self.place(observation, by)
         if self._other is None or math.dist(self._other, _here(observation)) > self._room(by):
             return Wait(seconds=0.3)
-        aside = self._aside(_here(observation), self._other)
+        aside = self.aside(_here(observation), self._other)
         return Wait(seconds=0.3) if aside is None else shift(observation.pose, aside, _STEP_M)
 
-    def refuge(self, observation: Observation) -> Motion | None:
-        """After running into people repeatedly: leave the passage and wait; None to carry on."""
-        seconds, by = observation.tick * self.tick_s, seat_bumped(observation)
-        if seconds < self._waited and by:
-            self._follower.take(None)  # no way out: stand still until the person is past
-        elif is_person(by):
-            self._bumps = [when for when in self._bumps if seconds - when < _OFTEN_S] + [seconds]
-        if len(self._bumps) >= _BUMPS and seconds >= self._waited:
-            person = self.place(observation, by) or _here(observation)
-            self._follower.take(self.routes.retreat(_here(observation), person, _APART_M))
-            self._waited, self._bumps = seconds + _REFUGE_S, []
-        if seconds >= self._waited:
-            return None
-        return self._follower.next(observation.pose) or Wait(seconds=0.3)
-
     def give_way(self, observation: Observation, places: Mapping[str, Vec2]) -> Motion | None:
-        """A step away from a robot that comes close, for a robot without a job; None if none comes or no step helps.
+        """A step away from a robot that moves close by, for a robot without a job; None if none does or no step helps.
 
         ``places`` are the positions of the other robots [m].
         """
-        here = _here(observation)
+        here, was, self._were = _here(observation), self._were, dict(places)
+        if seat_bumped(observation):
+            return None
         for seat in sorted(places, key=seat_order):
-            if seat != self.seat and not is_person(seat) and math.dist(here, places[seat]) < self._room(seat):
-                aside = self._aside(here, places[seat])
+            moves = seat not in was or math.dist(was[seat], places[seat]) > _STILL_M
+            if seat != self.seat and not is_person(seat) and moves and math.dist(here, places[seat]) < self._room(seat):
+                aside = self.aside(here, places[seat])
                 if aside is not None:
                     return shift(observation.pose, aside, _STEP_M)
         return None
@@ -95,19 +81,19 @@ class Yielding:
         length = math.hypot(*self._along)
         if seat != seat_bumped(observation) or length == 0.0:
             return None
-        share = self._touching(seat) / length
+        share = self.touching(seat) / length
         return (observation.pose.x + share * self._along[0], observation.pose.y + share * self._along[1])
 
     def _precedence(self, seat: str) -> tuple[bool, tuple[bool, int, str]]:
         body = self.bodies.get(seat)
         return (body is None or "pick" not in body.capabilities, seat_order(seat))
 
-    def _touching(self, seat: str) -> float:
+    def touching(self, seat: str) -> float:
         body = self.bodies.get(seat)
         return self.radius + (self.radius if body is None else body.radius)
 
     def _room(self, seat: str) -> float:
-        return self._touching(seat) + _ELBOW_M
+        return self.touching(seat) + _ELBOW_M
 
     def around(self, observation: Observation, goal: Vec2) -> tuple[Vec2, ...]:
         """A path to ``goal`` past the body that is in the way; () when there is none."""
@@ -115,7 +101,7 @@ class Yielding:
         other = self.place(observation, by)
         if other is None:
             return ()
-        apart = self._touching(by) + _BESIDE_M
+        apart = self.touching(by) + _BESIDE_M
         spots = [
             spot
             for spot in (*_ring(other, apart), *_ring(other, 1.5 * apart))
@@ -133,9 +119,9 @@ class Yielding:
         """Whether the body that is in the way stands at this spot."""
         by = seat_bumped(observation)
         other = self.place(observation, by)
-        return other is not None and math.dist(other, spot) < self._touching(by)
+        return other is not None and math.dist(other, spot) < self.touching(by)
 
-    def _aside(self, here: Vec2, other: Vec2) -> Vec2 | None:
+    def aside(self, here: Vec2, other: Vec2) -> Vec2 | None:
         """The spot a step away that leaves the other most room, preferably to the side; None if no spot does."""
         apart = max(math.dist(here, other), 1e-6)
         ux, uy = (here[0] - other[0]) / apart, (here[1] - other[1]) / apart

@@ -1,0 +1,1 @@
+"""Getting past other bodies: people (`passing`) and robots (`yielding`)."""
