@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hthor.navigation import path_smoothing_kernel
-from hthor.navigation.grid_search_kernel import STEP, nearest
+from hthor.navigation.grid_search_kernel import STEP, nearest, rank
 from hthor.navigation.search_window import SearchWindow
 from hthor.types import Vec2
 
@@ -29,15 +29,14 @@ def detour(
         free: (ny, nx) bool, cells where an axis can be; the corner is at ``origin`` [m], cells are ``cell`` [m] wide.
         discs: radii are those of the other bodies and of this body together [m].
     """
-    cells = np.array(free, dtype=np.uint8)
-    for x, y, radius in discs:
-        _block(cells, _cell((x, y), origin, cell), min(radius, math.dist((x, y), here) - cell) / cell)
+    cells = without(free, origin, cell, here, discs)
     level = np.zeros_like(cells)
     start = _nearest(cells, level, _cell(here, origin, cell))
     end = _nearest(cells, level, _cell(goal, origin, cell))
     if start is None or end is None:
         return ()
-    window = SearchWindow(cells, level, False, _edges(cells.shape, start, end, cell), start)
+    key = rank(abs(start[1] - end[1]), abs(start[0] - end[0]), 0.0)
+    window = SearchWindow(cells, level, False, _edges(cells.shape, start, end, cell), start, key)
     last = window.seek(end[1] + 0.5, end[0] + 0.5, 0.0, math.floor(most_m / cell * STEP) + 1)
     if last < 0:
         return ()
@@ -49,6 +48,14 @@ def detour(
     kept = path_smoothing_kernel.tighten(cells, level, False, bends, kept)
     inner = [(origin[0] + x * cell, origin[1] + y * cell) for x, y in bends[1 : kept - 1].tolist()]
     return (*inner, goal)
+
+
+def without(free: NDArray[np.bool_], origin: Vec2, cell: float, here: Vec2, discs: Sequence[Disc]) -> NDArray[np.uint8]:
+    """(ny, nx) uint8: 1 for the free cells outside of the discs, which are made smaller where ``here`` is inside."""
+    cells = np.array(free, dtype=np.uint8)
+    for x, y, radius in discs:
+        _block(cells, _cell((x, y), origin, cell), min(radius, math.dist((x, y), here) - cell) / cell)
+    return cells
 
 
 def _block(cells: NDArray[np.uint8], middle: Vec2, radius: float) -> None:

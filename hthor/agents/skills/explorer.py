@@ -4,14 +4,17 @@ import math
 from collections.abc import Sequence
 from functools import partial
 
+import numpy as np
+from numpy.typing import NDArray
+
 from hthor.agents.skills.right_of_way.yielding import seat_bumped
 from hthor.geometry.plane import wrap
-from hthor.navigation.detours import Disc, detour
+from hthor.navigation.detours import Disc, detour, without
 from hthor.navigation.frontier import Frontier, Survey
 from hthor.navigation.grid_map import CELL_M, FREE, UNKNOWN, GridMap
 from hthor.navigation.path_follower import Follower
 from hthor.navigation.planner import Planner
-from hthor.navigation.waiting_spots import retreat
+from hthor.navigation.waiting_spots import park, retreat
 from hthor.types import BodySpec, Motion, Observation, Pose, Rotate, Vec2, Vec3
 
 CLOSE_M = 1.15
@@ -25,6 +28,8 @@ _THINK_M = 1.0
 """Distance [m] that it moves before it drops a place that has become uninteresting."""
 _TRIES = 4
 _WALL_M = 0.12
+_REFUGE_M = 5.0
+"""Longest way to a place to wait [m]."""
 _LOW_M, _HIGH_M, _ASIDE_M = 0.4, 1.1, 1.0
 
 
@@ -165,11 +170,21 @@ class ObservedRoutes:
 
     def past(self, here: Vec2, goal: Vec2, discs: Sequence[Disc], most_m: float) -> tuple[Vec2, ...]:
         """A known path of at most ``most_m`` [m] that keeps out of the discs; () when there is none."""
-        grid, planner = self.explorer.grid, self.explorer.planner
+        grid = self.explorer.grid
+        return () if grid is None else detour(self._free(grid), *_frame(grid), here, goal, discs, most_m)
+
+    def refuge(self, here: Vec2, point: Vec2, apart_m: float, discs: Sequence[Disc]) -> tuple[Vec2, ...]:
+        """Like `retreat`, on this side of the discs; () for no place that can be reached."""
+        grid = self.explorer.grid
         if grid is None:
             return ()
-        free = (grid.cells == FREE) & (planner.levels < 2)
-        return detour(free, (grid.left * CELL_M, grid.bottom * CELL_M), CELL_M, here, goal, discs, most_m)
+        spot = park(without(self._free(grid), *_frame(grid), here, discs) > 0, *_frame(grid), here, point, apart_m)
+        return () if spot is None else self.past(here, spot, discs, _REFUGE_M)
+
+    def _free(self, grid: GridMap) -> NDArray[np.bool_]:
+        """(ny, nx) where the body may be, according to the map."""
+        free: NDArray[np.bool_] = (grid.cells == FREE) & (self.explorer.planner.levels < 2)
+        return free
 
     def broad(self, here: Vec2, spot: Vec2) -> tuple[Vec2, ...]:
         """The shortest known path: a robot's own map is too coarse to prefer broad ones."""
@@ -192,6 +207,11 @@ class ObservedRoutes:
         """Whether nothing on the map is between a spot and the edge of a thing."""
         grid = self.explorer.grid
         return grid is not None and not grid.meets(spot, edge, _WALL_M)
+
+
+def _frame(grid: GridMap) -> tuple[Vec2, float]:
+    """The corner of the map and the side of its cells [m]."""
+    return (grid.left * CELL_M, grid.bottom * CELL_M), CELL_M
 
 
 def exploring_pitch(body: BodySpec) -> float:

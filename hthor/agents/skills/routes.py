@@ -13,7 +13,7 @@ from hthor.houses.space.free_space import FreeSpace
 from hthor.houses.space.geodesic import house_geodesics
 from hthor.houses.space.grid_kernel import are_free_points
 from hthor.houses.space.visibility import with_all_open
-from hthor.navigation.detours import Disc, detour
+from hthor.navigation.detours import Disc, detour, without
 from hthor.navigation.waiting_spots import park
 from hthor.types import BodySpec, HouseSpec, Room, Thing, Vec2, Vec3
 
@@ -21,6 +21,8 @@ _MARGIN_M = 0.1
 _MISS_M = 0.4
 _BESIDE_M = 0.2
 _BROAD_M = 0.38
+_REFUGE_M = 5.0
+"""Longest way to a place to wait [m]."""
 
 
 _sight = functools.lru_cache(maxsize=8)(with_all_open)
@@ -62,6 +64,12 @@ class HouseRoutes:
     def past(self, here: Vec2, goal: Vec2, discs: Sequence[Disc], most_m: float) -> tuple[Vec2, ...]:
         """A path of at most ``most_m`` [m] to a free spot that keeps out of the discs; () when there is none."""
         return detour(self.space.free, self.space.origin, self.space.cell, here, goal, discs, most_m)
+
+    def refuge(self, here: Vec2, point: Vec2, apart_m: float, discs: Sequence[Disc]) -> tuple[Vec2, ...]:
+        """Like `retreat`, on this side of the discs; () for no place that can be reached."""
+        grid = self.space.origin, self.space.cell
+        spot = park(without(self.space.free, *grid, here, discs) > 0, *grid, here, point, apart_m)
+        return () if spot is None else self.past(here, spot, discs, _REFUGE_M)
 
     def broad(self, here: Vec2, spot: Vec2) -> tuple[Vec2, ...]:
         """A short path that is broad enough to pull something along, or else the shortest path; () for none."""

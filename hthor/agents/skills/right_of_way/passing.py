@@ -14,11 +14,13 @@ from hthor.types import Briefing, Motion, Observation, Vec2, Wait, is_person
 
 _AHEAD_M = 1.2
 """How much of the path ahead is checked for people [m]."""
+_CLEAR_M = 2.5
+"""How much of it has to be free before a robot that has made way goes on [m]."""
 _MARGIN_M = 0.05
 """Room left between the bodies [m]."""
 _DETOUR_M = 2.0
 """A path round people may be this much longer than the way ahead [m]."""
-_NEAR_M = 2.0
+_NEAR_M = 3.0
 """People within this distance count as obstacles of a detour [m]."""
 _RECENT_S = 3.0
 """How long a person who is out of view is expected to be where they were [s]."""
@@ -26,8 +28,6 @@ _LET_BY_S, _AGAIN_S = 4.0, 2.0
 """How long to make way for somebody in a passage at most, and then not to do so again [s]."""
 _APART_M = 1.2
 """How far from the person to wait [m]."""
-_REFUGE_M = 5.0
-"""Longest way to a place to wait [m]."""
 _ELBOW_M = 0.3
 """Whoever comes closer than this makes the waiting robot step away [m]."""
 _PIECE_S = 0.3
@@ -74,7 +74,7 @@ class Passing:
         if seconds >= self._until and not self._passes and not self._is_blocked((here, *follower.rest), people):
             return None
         way = self.routes.way(here, goal)
-        if not self._is_blocked(way, people):
+        if not self._is_blocked(way, people, _AHEAD_M if seconds >= self._until else _CLEAR_M):
             self._until, self._passes = -1.0, False
             follower.take(way)
             return None
@@ -105,8 +105,7 @@ class Passing:
     def _refuge(self, here: Vec2, people: Mapping[str, Vec2]) -> tuple[Vec2, ...]:
         """A path to a place where the robot blocks nobody; () for none."""
         nearest = min(people.values(), key=lambda person: math.dist(person, here))
-        way = self.routes.retreat(here, nearest, _APART_M)
-        return self.routes.past(here, way[-1], self._discs(people), _REFUGE_M) if way else ()
+        return self.routes.refuge(here, nearest, _APART_M, self._discs(people))
 
     def _make_way(self, observation: Observation, people: Mapping[str, Vec2]) -> Motion:
         """On to where the robot blocks nobody, or a step away from the nearest person, or else a pause."""
@@ -147,13 +146,13 @@ class Passing:
             if one.tick >= least and math.dist(one.spot, here) < _NEAR_M
         }
 
-    def _is_blocked(self, path: Sequence[Vec2], people: Mapping[str, Vec2]) -> bool:
-        """Whether somebody stands on the next part of the path."""
-        return any(self._is_in_way(seat, path, person) for seat, person in people.items())
+    def _is_blocked(self, path: Sequence[Vec2], people: Mapping[str, Vec2], ahead_m: float = _AHEAD_M) -> bool:
+        """Whether somebody stands on the next ``ahead_m`` [m] of the path."""
+        return any(self._is_in_way(seat, path, person, ahead_m) for seat, person in people.items())
 
-    def _is_in_way(self, seat: str, path: Sequence[Vec2], person: Vec2) -> bool:
-        """Whether a person stands on the next part of the path."""
-        left = _AHEAD_M
+    def _is_in_way(self, seat: str, path: Sequence[Vec2], person: Vec2, ahead_m: float) -> bool:
+        """Whether a person stands on the next ``ahead_m`` [m] of the path."""
+        left = ahead_m
         for a, b in itertools.pairwise(path):
             apart = math.dist(a, b)
             if apart == 0.0:
