@@ -125,7 +125,7 @@ class Crosser:
         if self.walk is None:
             self.walker = Walker(self.human, SpatialMemory(tau=600.0), observation.pose.x, observation.pose.y)
             self.walk = self.walker.go(self.goal)
-        self.walker.sense()
+        self.walker.map.sense()
         return Action(motion=next(self.walk, None) or Wait(seconds=0.3))
 
     def rate(self, met: bool, tick: int) -> int | None:

@@ -46,10 +46,6 @@ class Audience:
                 until = receipt.tick + round(self._walk_s(seat, target, knowledge) / self.tick_s)
                 self._accepted[seat] = _Acceptance(target, receipt.tick, until)
 
-    def is_anybody_free(self, job: Job, knowledge: Knowledge) -> bool:
-        """Whether a message about the job would take nobody from another one; a person alone may always be told."""
-        return len(self.allocation.people) < 2 or bool(self._free(job, knowledge))
-
     def choose(self, job: Job, knowledge: Knowledge) -> str:
         """The person to tell: with free hands, told least often about this job, and nearest; empty for everybody."""
         people = self.allocation.people

@@ -133,7 +133,7 @@ class JointCarrying:
         far = max(math.dist(start[:2], spot[:2]), 1e-6)
         ux, uy = (spot[0] - start[0]) / far, (spot[1] - start[1]) / far
         goals = [(spot[0] + ahead * ux, spot[1] + ahead * uy) for ahead in _AHEAD_M]
-        goal = next((goal for goal in goals if self.walker.planner.fits(*goal)), goals[-1])
+        goal = next((goal for goal in goals if self.walker.map.planner.fits(*goal)), goals[-1])
         return (yield from self.walker.go(goal, stop=lambda: not self._holds(subgoal)))
 
     def _deep_inside(self) -> Vec2 | None:
@@ -146,9 +146,9 @@ class JointCarrying:
         spots = [
             spot
             for spot in ring
-            if self.walker.planner.fits(*spot) and self.subgoals.room_of((*spot, 0.0)) == self.human.now.room
+            if self.walker.map.planner.fits(*spot) and self.subgoals.room_of((*spot, 0.0)) == self.human.now.room
         ]
-        far = self.walker.planner.distances(self.human.here, spots) if spots else ()
+        far = self.walker.map.planner.distances(self.human.here, spots) if spots else ()
         ranked = [(way, spot) for way, spot in zip(far, spots, strict=True) if math.isfinite(way)]
         return min(ranked)[1] if ranked else None
 

@@ -82,7 +82,7 @@ class Delivery:
             return None
         spots = [(place.centre[0], place.centre[1]) for place in known]
         reach = [max(place.size[:2]) / 2.0 + _BESIDE_M for place in known]
-        far = [self.walker.planner.distance(self.human.here, spot, r) for spot, r in zip(spots, reach, strict=True)]
+        far = [self.walker.map.planner.distance(self.human.here, spot, r) for spot, r in zip(spots, reach, strict=True)]
         order = sorted(range(len(known)), key=lambda k: (far[k], known[k].id))
         return known[order[self.approach.tries // PATIENCE % len(order)]]
 

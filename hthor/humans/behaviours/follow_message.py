@@ -63,7 +63,7 @@ class MessageFollowing:
                 continue
             if spot is None:
                 break
-            guessed = self.walker.grid.at(*spot) != FREE
+            guessed = self.walker.map.grid.at(*spot) != FREE
             arrived = yield from self.walker.go(
                 spot, stop=partial(self._should_rechoose, position, place, spot, guessed)
             )
@@ -96,7 +96,7 @@ class MessageFollowing:
         yield from self.human.look_at(position)
         if self.memory.at(position) is None:
             yield from self.human.rest(_GLANCE_S)
-        place, here, grid = self.memory.at(position), self.human.here, self.walker.grid
+        place, here, grid = self.memory.at(position), self.human.here, self.walker.map.grid
         if Walls(grid, position[:2], _NEAR_M).hide(here):
             return False
         if place is None:
@@ -112,7 +112,7 @@ class MessageFollowing:
         """Whether it is time to choose again where to stand."""
         if self.memory.at(position) is not place:
             return True
-        return guessed and math.dist(self.human.here, spot) < _NEAR_M and self.walker.grid.at(*spot) == FREE
+        return guessed and math.dist(self.human.here, spot) < _NEAR_M and self.walker.map.grid.at(*spot) == FREE
 
     def _is_short_of(self, spot: Vec2) -> bool:
         return math.dist(self.human.here, spot) > TRIED_M
@@ -125,18 +125,18 @@ class MessageFollowing:
         opens = place is not None and bool(place.state)
         spots = approach.viewpoints_of_place(place, self.walker, front=True) if place is not None and opens else []
         spots = approach.within_reach(spots, position, _NEAR_M) or approach.rings(position, _REACH_M)
-        walls = Walls(self.walker.grid, point, _NEAR_M)
+        walls = Walls(self.walker.map.grid, point, _NEAR_M)
         sides = [math.atan2(old[1] - point[1], old[0] - point[0]) for old in seen]
         new = [
             spot
             for spot in spots
             if all(math.dist(spot, old) > TRIED_M for old in failed)
             and all(abs(wrap(math.atan2(spot[1] - point[1], spot[0] - point[0]) - side)) > _ASIDE_RAD for side in sides)
-            and self.walker.planner.fits(*spot)
+            and self.walker.map.planner.fits(*spot)
             and not walls.hide(spot)
         ]
-        new = [spot for spot in new if self.walker.grid.at(*spot) == FREE] or new
-        ((way, number),) = self.walker.planner.nearest(self.human.here, [new])
+        new = [spot for spot in new if self.walker.map.grid.at(*spot) == FREE] or new
+        ((way, number),) = self.walker.map.planner.nearest(self.human.here, [new])
         return new[number] if math.isfinite(way) and way <= most else None
 
 

@@ -84,7 +84,7 @@ def expected_search_time(options: list[Option], left: float, kappa: float) -> fl
 def walk_to_message(human: HumanContext, walker: Walker, position: Vec3) -> tuple[float, float]:
     """Path length [m] to the named place as far as the house is known, and time [s] to go there and look."""
     point = (position[0], position[1])
-    metres = walker.planner.distance(human.here, point, _BESIDE_M)
+    metres = walker.map.planner.distance(human.here, point, _BESIDE_M)
     if not math.isfinite(metres):
         metres = math.dist(human.here, point)
     return metres, metres * human.traits.k_map / human.traits.v_pace + human.traits.t_look

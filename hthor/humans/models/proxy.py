@@ -84,7 +84,7 @@ class Model:
         if self._memory.visit(human.here, observation.room) and self._goal is not BEGIN:
             self._behaviours.exploration.fresh = human.here
         if observation.tick - self._eyes.at >= GLIMPSE_TICKS or self._eyes.at < 0:
-            walker.sense()
+            walker.map.sense()
             self._eyes.look(observation)
             if human.others.seats:
                 human.others.see(observation.tick, observation.detections)
@@ -126,7 +126,7 @@ class Model:
         return self._walker
 
     def _walking_distances(self, here: Vec2, points: Sequence[Vec2]) -> Sequence[float]:
-        return self._walker.planner.distances(here, points) if self._walker is not None else [0.0] * len(points)
+        return self._walker.map.planner.distances(here, points) if self._walker is not None else [0.0] * len(points)
 
     def _next_motion(self) -> Motion:
         """The next motion; a new behaviour begins when the goal has changed or the old behaviour has ended."""

@@ -83,14 +83,14 @@ def _spread(half: float, wide: bool) -> list[float]:
 
 def _usable(spots: Sequence[Vec2], place: KnownPlace, walker: Walker) -> list[Vec2]:
     """Spots known to be free; when there are none, spots that might be free."""
-    ranks = usable(walker.grid, walker.planner, spots, [_edge(spot, place) for spot in spots], walker.margin)
+    ranks = usable(walker.map.grid, walker.map.planner, spots, [_edge(spot, place) for spot in spots], walker.margin)
     best = YES if YES in ranks else MAYBE
     return [spot for spot, rank in zip(spots, ranks, strict=True) if rank == best]
 
 
 def has_free_line(spot: Vec2, place: KnownPlace, walker: Walker) -> bool:
     """Whether the map shows no wall or other obstacle between a spot and the nearest edge of the place."""
-    return not walker.grid.meets(spot, _edge(spot, place), walker.margin)
+    return not walker.map.grid.meets(spot, _edge(spot, place), walker.margin)
 
 
 def _edge(spot: Vec2, place: KnownPlace) -> Vec2:
@@ -155,7 +155,7 @@ class Approach:
             spot = None if self.tries % _STRAIGHT_EVERY == 0 else self._nearest(spots(), point)
             if spot is None:
                 return (yield from self.walker.go((point[0], point[1]), within=reach, stop=stop))
-            guessed = self.walker.grid.at(*spot) != FREE and math.dist(self.human.here, spot) > _GLIMPSE_M
+            guessed = self.walker.map.grid.at(*spot) != FREE and math.dist(self.human.here, spot) > _GLIMPSE_M
             arrived = yield from self.walker.go(spot, stop=partial(self._halt, stop, spot if guessed else None))
             if not arrived or not guessed or stop() or math.dist(self.human.here, spot) < TRIED_M:
                 break
@@ -172,9 +172,9 @@ class Approach:
             new, self._tried = spots, []
         seen_from = self.eyes.current.spot if self._tried else None
         if seen_from is None:
-            ((far, number),) = self.walker.planner.nearest(self.human.here, [new])
+            ((far, number),) = self.walker.map.planner.nearest(self.human.here, [new])
         else:
-            ways = self.walker.planner.distances(self.human.here, new)
+            ways = self.walker.map.planner.distances(self.human.here, new)
             far, number = min((way + _off_line(new[k], point, seen_from), k) for k, way in enumerate(ways))
         if not math.isfinite(far):
             return None

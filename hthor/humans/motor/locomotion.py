@@ -2,13 +2,9 @@
 
 import math
 from collections.abc import Callable
-from itertools import pairwise
 
-from msgspec import Struct
-
-from hthor.geometry.plane import wrap
 from hthor.humans.core.trial_context import GAZE_PITCH, Behaviour, HumanContext
-from hthor.humans.memory.spatial_memory import KnownDoorway, SpatialMemory
+from hthor.humans.memory.spatial_memory import SpatialMemory
 from hthor.humans.motor.encounters import (
     AVOID_S,
     KEEP_BEHIND_S,
@@ -16,19 +12,14 @@ from hthor.humans.motor.encounters import (
     Obstacle,
     goes_ahead,
     person_ahead,
-    planner_around,
 )
-from hthor.navigation.grid_map import FREE, GridMap
+from hthor.humans.motor.mental_map import MentalMap, Route
 from hthor.navigation.path_follower import toward
-from hthor.navigation.planner import Planner, path_length
+from hthor.navigation.planner import path_length
 from hthor.types import Motion, Move, Rotate, Vec2, Wait, is_person
 
 _TURN_RAD = math.radians(12.0)
 """[rad] Larger direction errors are corrected while standing, smaller errors while walking. Our choice: 12 degrees."""
-_MAP_EVERY_M = 0.4
-"""[m] Distance walked after which the view is added to the map. Our choice."""
-_MAP_EVERY_RAD = 0.6
-"""[rad] Angle turned after which the view is added to the map. Our choice."""
 _ARRIVED_M = 0.03
 """[m] A point of the path this near has been reached. Our choice."""
 _CHECK_TICKS = 5
@@ -39,12 +30,6 @@ _DETOUR = 1.4
 """[ratio] A new path that is longer than this times the first, plus `_DETOUR_M`, is not taken. Our choice."""
 _DETOUR_M = 1.5
 """[m] Part of a permitted detour that does not depend on the path's length. Our choice."""
-_FAMILIAR = 1.5
-"""[ratio] A path over seen floor may be this times as long as one over unseen floor, plus `_FAMILIAR_M`. Our choice."""
-_FAMILIAR_M = 2.0
-"""[m] Part of that permitted length that does not depend on the path's length. Our choice."""
-_DOORWAY_M = 1.0
-"""[m] How much longer a path through a known doorway may be than one over unseen floor. Our choice."""
 _GIVE_UP = 12
 """[count] Bumps after which a walk is given up. Our choice."""
 _REPLANS = 100
@@ -53,22 +38,12 @@ _POLITE_S = 0.5
 """[s] How long people wait for a robot or another person in their way. Our choice."""
 _AVOID_S = 6.0
 """[s] How long people plan around a robot or another person who did not move. Our choice."""
-_TRUSTED_S = 10.0
-"""[s] A map younger than this is not thrown away even if it shows no path. Our choice."""
 _ASIDE_RAD = math.radians(60.0)
 """[rad] Largest turn aside at a stop to look. Our choice: 60 degrees."""
 _FELT_M = 0.05
 """[m] Distance beyond the body's edge at which a bump marks an obstacle. Our choice."""
 MARGIN_M = 0.06
 """[m] Obstacles this near to the end of a line to furniture belong to the furniture. Our choice: walls are thicker."""
-
-
-class Route(Struct, frozen=True, kw_only=True):
-    """A path [m] to a goal ``metres`` away, or only to just behind the ``doorway`` that should lead there."""
-
-    path: tuple[Vec2, ...]
-    metres: float
-    doorway: KnownDoorway | None = None
 
 
 def never() -> bool:
@@ -86,30 +61,14 @@ class Walker:
     margin = MARGIN_M
 
     def __init__(self, human: HumanContext, memory: SpatialMemory, x: float, y: float) -> None:
-        self.human, self.memory, self.haste, self._bumps = human, memory, 1.0, 0
+        self.human, self.haste, self._bumps = human, 1.0, 0
+        self.map = MentalMap(human, memory, x, y)
         self.looking = True
         self._robot: Obstacle | None = None
         self._robot_until = -1
         self.encounters = Encounters(human)
-        self._drawn = human.now.tick
         self._stops = 0
         self._until_stop = self._stretch()
-        self._draw_map(x, y)
-
-    def _draw_map(self, x: float, y: float) -> None:
-        self.grid = GridMap(x, y)
-        self.planner = Planner(self.grid, self.human.body.radius, optimistic=True)
-        self._mapped: tuple[float, float, float] | None = None
-
-    def sense(self) -> None:
-        """Add what is in view to the map, when the view has changed enough."""
-        pose, last = self.human.now.pose, self._mapped
-        if last is not None:
-            near = math.hypot(pose.x - last[0], pose.y - last[1]) < _MAP_EVERY_M
-            if near and abs(wrap(pose.yaw - last[2])) < _MAP_EVERY_RAD:
-                return
-        self._mapped = (pose.x, pose.y, pose.yaw)
-        self.grid.integrate(self.human.now.scan)
 
     def go(self, goal: Vec2, within: float = 0.0, stop: Callable[[], bool] = never) -> Behaviour:
         """Walk to ``goal`` [m], or to within ``within`` metres of it; False when there is no path.
@@ -121,14 +80,14 @@ class Walker:
         """
         self._bumps, budget, here = 0, math.inf, self.human.here
         for _ in range(_REPLANS):
-            way = self._way(goal, within)
+            way = self._route(goal, within)
             budget, here = budget - math.dist(here, self.human.here), self.human.here
             avoids = self._avoids_person()
             if way is None or way.metres > (min(budget, self._longest_detour(goal, within)) if avoids else budget):
                 if self._bumps >= _GIVE_UP or not self.encounters.blocks(goal, within):
                     return False
                 self._bumps, self._robot_until, budget = self._bumps + 1, -1, math.inf
-                yield from self.encounters.let_by(self.planner)
+                yield from self.encounters.let_by(self.map.planner)
                 continue
             budget, bumps = min(budget, _DETOUR * way.metres + _DETOUR_M), self._bumps
             ended = yield from self._follow(way.path, (lambda: stop() or not self._avoids_person()) if avoids else stop)
@@ -144,23 +103,11 @@ class Walker:
                 return False
         return False
 
-    def _way(self, goal: Vec2, within: float) -> Route | None:
-        """The path to the goal: over seen floor if not much longer, else by a doorway, else over unseen floor."""
+    def _route(self, goal: Vec2, within: float) -> Route | None:
+        """The way to the goal, for a while round a robot or a person who did not move."""
         if self._robot is not None and self.human.now.tick <= self._robot_until:
-            if math.dist(self._robot[:2], goal) <= self._robot[2] + self.human.body.radius + within:
-                return None
-            return _as_way(
-                planner_around(self.grid, self.human.body.radius, self._robot).path(self.human.here, goal, within)
-            )
-        hopeful = _as_way(self.planner.path(self.human.here, goal, within))
-        if hopeful is None:
-            return _as_way(self.planner.path(self.human.here, goal, within)) if self._begin_new_map() else None
-        if all(self.grid.seen(a, b) for a, b in pairwise(hopeful.path)):
-            return hopeful
-        known = self._known(goal, within)
-        if known is not None and known.metres <= _FAMILIAR * hopeful.metres + _FAMILIAR_M:
-            return known
-        return self._by_doorway(goal, hopeful.metres + _DOORWAY_M) or hopeful
+            return self.map.route_around(self._robot, goal, within)
+        return self.map.route(goal, within)
 
     def _avoids_person(self) -> bool:
         """Whether paths are planned round another person now."""
@@ -168,33 +115,7 @@ class Walker:
 
     def _longest_detour(self, goal: Vec2, within: float) -> float:
         """How long a path round a person may be [m]: for a longer one, people rather wait or step back."""
-        direct = self.planner.path(self.human.here, goal, within)
-        return math.inf if direct is None else _DETOUR * path_length(direct) + _DETOUR_M
-
-    def _known(self, goal: Vec2, within: float) -> Route | None:
-        """A path over floor that was seen."""
-        if within <= 0.0 and self.grid.at(*goal) != FREE:
-            return None
-        self.planner.optimistic = False
-        try:
-            return _as_way(self.planner.path(self.human.here, goal, within))
-        finally:
-            self.planner.optimistic = True
-
-    def _by_doorway(self, goal: Vec2, most: float) -> Route | None:
-        """The shortest path through an unexplored doorway, if its length is below ``most`` metres."""
-        doors = self.memory.unexplored_doorways()
-        here, best = self.human.here, None
-        least = {door.id: math.dist(here, door.beyond) + math.dist(door.beyond, goal) for door in doors}
-        for door in sorted(doors, key=lambda door: (least[door.id], door.id)):
-            if least[door.id] >= most:
-                break
-            rest = math.dist(door.beyond, goal)
-            path = self.planner.path(here, door.beyond, most=most - rest)
-            if path is not None and path_length(path) + rest < most:
-                most = path_length(path) + rest
-                best = Route(path=path, metres=most, doorway=door)
-        return best
+        return _DETOUR * self.map.length(goal, within) + _DETOUR_M
 
     def _follow(self, path: tuple[Vec2, ...], stop: Callable[[], bool]) -> Behaviour:
         """Walk the path; False when it turns out to be blocked."""
@@ -209,7 +130,7 @@ class Walker:
                 return True
             if now.tick - checked >= _CHECK_TICKS:
                 checked = now.tick
-                if not self.planner.clear((self.human.here, *ahead)):  # the rest of the path is not free any more
+                if not self.map.planner.clear((self.human.here, *ahead)):  # the rest of the path is not free any more
                     return False
                 was, left = left, path_length((here, *ahead))
                 if moves >= _CHECK_TICKS and left > was - _CREEP * moves * self._pace() * human.tick_s:
@@ -296,17 +217,4 @@ class Walker:
         (x, y), apart = self.human.here, math.dist(self.human.here, point)
         if apart > 0.0:
             share = (self.human.body.radius + _FELT_M) / apart
-            self.grid.mark_blocked(x + share * (point[0] - x), y + share * (point[1] - y))
-
-    def _begin_new_map(self) -> bool:
-        """Begin a new map if the map is old, as obstacles may have moved; returns whether a new map began."""
-        if self.human.now.tick < self._drawn + round(_TRUSTED_S / self.human.tick_s):
-            return False
-        self._drawn = self.human.now.tick
-        self._draw_map(*self.human.here)
-        self.sense()
-        return True
-
-
-def _as_way(path: tuple[Vec2, ...] | None) -> Route | None:
-    return None if path is None else Route(path=path, metres=path_length(path))
+            self.map.grid.mark_blocked(x + share * (point[0] - x), y + share * (point[1] - y))

@@ -145,7 +145,7 @@ class Exploration:
             left.pop(self.human.now.room, None)
             if not left:
                 return False
-            far = self.walker.planner.distances(self.human.here, list(left.values()))
+            far = self.walker.map.planner.distances(self.human.here, list(left.values()))
             yield from self.walker.go(left.pop(min(zip(far, left, strict=True))[1]), stop=enough)
             yield from self._look_round_unless(enough)
         return True
@@ -158,7 +158,7 @@ class Exploration:
     def _wander(self, search: OptionChoice, enough: Callable[[], bool]) -> Behaviour:
         """Act without options: go to where the known floor ends, search a place again, or go back and look round."""
         since = self.human.now.tick
-        edges = frontiers(self.walker.grid, self.walker.planner, self.human.now.pose)
+        edges = frontiers(self.walker.map.grid, self.walker.map.planner, self.human.now.pose)
         if edges:
             nearest = min(edges, key=lambda edge: edge.distance)
             arrived = yield from self.walker.go(nearest.centre, stop=self._is_inside)

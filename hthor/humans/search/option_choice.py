@@ -158,7 +158,7 @@ class OptionChoice:
 
     def _nearest(self, groups: Sequence[Sequence[Vec2]]) -> Iterator[tuple[float, int]]:
         """Walking distance [m] to the nearest point of each group, and its index."""
-        return iter(self.walker.planner.nearest(self.human.here, groups) if groups else ())
+        return iter(self.walker.map.planner.nearest(self.human.here, groups) if groups else ())
 
     def _searching(
         self, place: KnownPlace, belief: float, spots: Sequence[Vec2], metres: float, number: int

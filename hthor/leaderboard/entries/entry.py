@@ -12,7 +12,7 @@ from hthor.eval.statistics.intervals import Estimate
 from hthor.guest import File, Isolation, Manifest
 from hthor.types.specs import LOCKSTEP, Clock
 
-SCHEMA: Final = "hthor.entry/6"
+SCHEMA: Final = "hthor.entry/7"
 _FOLLOW = ("metrics", "splits", "uplift")
 
 Sha256 = Annotated[str, Meta(pattern="^[0-9a-f]{64}$")]
@@ -146,7 +146,7 @@ class Entry(Struct, frozen=True, kw_only=True):
         uplift: over the same people at the same tasks without a robot; None if the run has no robot.
     """
 
-    schema: Literal["hthor.entry/6"] = SCHEMA
+    schema: Literal["hthor.entry/7"] = SCHEMA
     id: Annotated[str, Meta(pattern="^[A-Za-z0-9_+.-]+-[0-9a-f]{10}$")]
     reference: bool
     agent: Agent

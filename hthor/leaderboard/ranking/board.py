@@ -11,7 +11,7 @@ from hthor.leaderboard.entries.entry import Agent, Count, Group, Harness, Sha256
 from hthor.leaderboard.entries.verification import Fresh, Replayed
 from hthor.types.specs import Clock
 
-SCHEMA: Final = "hthor.leaderboard/6"
+SCHEMA: Final = "hthor.leaderboard/7"
 
 
 class Standing(Struct, frozen=True, kw_only=True):
@@ -127,6 +127,6 @@ class Struck(Struct, frozen=True, kw_only=True):
 class Board(Struct, frozen=True, kw_only=True):
     """All entries. Ranked sections come first; then sections are sorted by suite, people, mode and code."""
 
-    schema: Literal["hthor.leaderboard/6"] = SCHEMA
+    schema: Literal["hthor.leaderboard/7"] = SCHEMA
     sections: tuple[Section, ...]
     refuted: tuple[Struck, ...] = ()
