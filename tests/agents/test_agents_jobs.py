@@ -15,6 +15,7 @@ from hthor import catalog, houses, plugins
 from hthor.agents.skills import viewpoints
 from hthor.agents.skills.audience import Audience
 from hthor.agents.skills.knowledge import Knowledge, resting_points
+from hthor.agents.skills.leading import Leadership
 from hthor.agents.skills.message_timing import help_carry_text, look_inside_text
 from hthor.agents.skills.routes import HouseRoutes
 from hthor.agents.skills.task_allocation import TaskAllocation
@@ -418,11 +419,49 @@ def test_of_several_people_each_is_told_about_another_job() -> None:
     assert audience.choose(jobs[0], knowledge) == "human2", "who has not been told yet"
     assert audience.choose(jobs[1], knowledge) == "human"
     accepted = Receipt(message=0, status="accepted", tick=3, by="human")
-    audience.hear(SimpleNamespace(receipt=accepted))
+    audience.hear(SimpleNamespace(receipt=accepted), knowledge)
     assert audience.choose(jobs[1], knowledge) == "human2", "the other is on the way"
     assert audience.has_somebody_else(jobs[0], knowledge)
     knowledge.states = {**knowledge.states, "x": ThingState(id="x", kind="mug", position=(0, 0, 1), held_by="human2")}
     assert not audience.has_somebody_else(jobs[0], knowledge)
+
+
+def test_somebody_who_accepted_is_on_the_way_for_as_long_as_the_walk_takes() -> None:
+    hands = body("hands", "pick", "open")
+    team, knowledge, jobs = crew("robot", ("near", 1.0), ("far", 16.0), human=hands, human2=hands, robot=hands)
+    team.places |= {"human": (0.0, 0.0), "human2": (0.0, 0.0)}
+    audience = Audience(team, 0.1)
+    audience.note("human", jobs[1])
+    audience.hear(SimpleNamespace(receipt=Receipt(message=0, status="accepted", tick=0, by="human")), knowledge)
+    team.tick = 390  # 16 m at 0.4 m/s take 40 s
+    assert audience.choose(jobs[0], knowledge) == "human2"
+    team.tick = 410
+    assert audience.choose(jobs[0], knowledge) == "human"
+
+
+@pytest.mark.parametrize(("first", "second"), [("robot", "robot2"), ("robot2", "robot")])
+def test_of_two_robots_with_a_load_the_one_in_front_leads_and_the_other_where_it_sticks(first, second) -> None:
+    places = {first: (1.0, 0.0), second: (0.0, 0.0)}
+    leadership = Leadership(0.1, places.__getitem__, math.dist)
+
+    def leader(tick: int, x: float) -> str:
+        state = ThingState(id="x", kind="trunk", position=(x, 0.0, 0.5), bearers=(second, first))
+        return leadership.leader(tick, state, (9.0, 0.0, 0.0))
+
+    assert leader(0, 0.5) == first
+    places.update({first: (0.0, 0.0), second: (1.0, 0.0)})
+    assert leader(30, 1.0) == first, "who leads is settled when they lift it"
+    assert leader(69, 1.05) == first
+    assert leader(70, 1.05) == second, "it has not moved for four seconds"
+    assert leader(100, 1.2) == second
+    assert leader(140, 1.2) == first
+
+
+def test_a_robot_leads_people_and_alone_people_lead_themselves() -> None:
+    leadership = Leadership(0.1, lambda _: (0.0, 0.0), math.dist)
+    for bearers, leads in ((("human", "robot2"), "robot2"), (("human2", "human"), "human")):
+        state = ThingState(id="x", kind="trunk", position=(0.0, 0.0, 0.5), bearers=bearers)
+        assert leadership.leader(0, state, (9.0, 0.0, 0.0)) == leads
 
 
 def test_the_only_person_is_told_as_everybody_is() -> None:

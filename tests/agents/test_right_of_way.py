@@ -123,3 +123,10 @@ def test_with_nothing_to_do_it_steps_away_from_whoever_comes_close(passing):
     assert isinstance(step, Move)
     assert math.dist((HERE[0] + step.forward, HERE[1] + step.left), (5.5, 1.6)) > 0.6
     assert passing.motion(observe(HERE, person(5.5, 1.6)), Follower(), is_free=False) is None
+
+
+def test_a_robot_that_stands_where_it_would_pass_is_dealt_with_first(passing):
+    follower = on_the_way()
+    assert isinstance(passing.motion(observe(HERE, person(5.5, 1.9)), follower, is_free=False), Move)
+    bumped = Outcome(motion="move", ok=False, reason="robot2 is in the way", by="robot2")
+    assert passing.motion(observe(HERE, person(5.5, 1.9), seconds=0.3, outcome=bumped), follower, is_free=False) is None

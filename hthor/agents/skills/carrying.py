@@ -9,12 +9,14 @@ from typing import Protocol
 
 from hthor.agents.skills import viewpoints
 from hthor.agents.skills.knowledge import Knowledge
+from hthor.agents.skills.leading import Leadership
 from hthor.agents.skills.manipulation import ManipulationGoal, Manipulator, whole_tick_move
 from hthor.agents.skills.right_of_way.yielding import seat_bumped
-from hthor.agents.skills.task_allocation import TaskAllocation, can_do, seat_order
+from hthor.agents.skills.task_allocation import TaskAllocation, can_do
 from hthor.agents.skills.viewpoints import Routes
 from hthor.geometry import plane
 from hthor.navigation.path_follower import Follower, face, shift
+from hthor.navigation.planner import path_length
 from hthor.types import HUMAN, Briefing, Drop, Job, Motion, Observation, Pick, ThingState, Vec2, Vec3, Wait, is_person
 
 _THERE_M = 0.45
@@ -28,6 +30,7 @@ _AIMS = 24
 _STUCK = 4
 """After so many blocked moves in a row, another body may lead for a while."""
 _REST_S = 6.0
+_NOWHERE = ("", 0.0, 0.0)
 
 
 class TowingRoutes(Routes, Protocol):
@@ -54,7 +57,8 @@ class Carrier:
         self._yaw: float | None = None
         self._half = 0.4
         self._parked = self._squeezed = False
-        self._goal: tuple[str, float, float] = ("", 0.0, 0.0)
+        self._goal = _NOWHERE
+        self._leadership = Leadership(briefing.tick_s, allocation.place, self._way_length)
         self._stuck, self._until, self._number = 0, -1, 0
 
     def is_close(self, observation: Observation, knowledge: Knowledge, job: Job) -> bool:
@@ -71,7 +75,8 @@ class Carrier:
         if not state.held_by:
             return self._attend(observation, state)
         place = job.place or self._room(knowledge, job, state)
-        if place is None or self._led_by(state) != self.briefing.seat:
+        if place is None or self._leadership.leader(observation.tick, state, place) != self.briefing.seat:
+            self._goal, self._until = _NOWHERE, -1
             return Wait(seconds=0.3)
         return self._lead(observation, state, place)
 
@@ -142,10 +147,9 @@ class Carrier:
         turn = face(observation.pose, state.position, self.body.eye, self.body.pitch_limit)
         return turn if turn is not None and abs(turn.yaw) > 0.2 else Wait(seconds=0.5)
 
-    def _led_by(self, state: ThingState) -> str:
-        """Who leads: the robot whose seat comes first, or else the person whose seat does."""
-        robots = [seat for seat in state.bearers if not is_person(seat)]
-        return min(robots or state.bearers, key=seat_order, default=HUMAN)
+    def _way_length(self, here: Vec2, spot: Vec2) -> float:
+        way = self.routes.way(here, self.routes.loose(spot))
+        return path_length(way) if way else math.inf
 
     def _lead(self, observation: Observation, state: ThingState, place: Vec3) -> Motion:
         """Pull the thing to its place and put it down there."""

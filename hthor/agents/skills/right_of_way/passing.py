@@ -67,10 +67,14 @@ class Passing:
         if goal is None or follower.done:
             self._until, self._passes = -1.0, False
             return self._step_away(observation, people) if is_free else None
-        if is_person(seat_bumped(observation)):
+        by = seat_bumped(observation)
+        if by:
             self._retreat.take(())
             self._around.take(())
-            return Wait(seconds=_PIECE_S)
+            if is_person(by):
+                return Wait(seconds=_PIECE_S)
+            self._passes = False
+            return None  # another robot stands where the robot would pass
         if seconds >= self._until and not self._passes and not self._is_blocked((here, *follower.rest), people):
             return None
         way = self.routes.way(here, goal)
