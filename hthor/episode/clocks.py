@@ -153,16 +153,20 @@ class TimedSenses:
         self._senses, self._clock, self.spent = senses, clock, 0.0
 
     def __getattr__(self, name: str) -> Callable[..., Any]:
+        return self.timed(name)
+
+    def timed(self, name: str) -> Callable[..., Any]:
+        """The sensor of this name; reading it adds to the time spent."""
         sensor = getattr(self._senses, name)
 
-        def timed(*arguments: Any) -> Any:
+        def read(*arguments: Any) -> Any:
             began = self._clock()
             try:
                 return sensor(*arguments)
             finally:
                 self.spent += self._clock() - began
 
-        return timed
+        return read
 
 
 class RealTime:

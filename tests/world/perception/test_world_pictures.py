@@ -256,7 +256,7 @@ def trial_with_pictures() -> str:
 
         def act(self, observation):
             seen.append((observation.rgb.std() > 1.0, observation.depth.min() > 0.02))
-            seen.extend(message.image().shape for message in observation.inbox)
+            seen.extend(message.image().shape for message in observation.inbox if message.image)  # people send none
             return Action(motion=Rotate(yaw=0.5), say=Send(text="Look.") if observation.tick == 0 else None)
 
         def rate(self, met, ticks):
