@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import msgspec
+import pytest
 
 from hthor.eval.records import trial_record
 
@@ -22,7 +23,8 @@ def rewrite(log: Path) -> None:
     log.write_bytes(b"".join(lines))
 
 
-def test_a_command_says_once_what_it_left_out(hthor, tmp_path: Path) -> None:
+def test_a_command_says_once_what_it_left_out(hthor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
     run = tmp_path / "run"
     assert hthor("eval", "--agent", "none", "--suite", "fake", "--out", str(run), "--quiet").code == 0
     rewrite(run / "trials.jsonl")
