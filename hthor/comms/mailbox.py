@@ -33,7 +33,8 @@ class MailboxState(Struct, frozen=True):
     deliveries: dict[tuple[int, str], Receipt]
     inboxes: dict[str, tuple[int, ...]]
     receipts: dict[str, Receipt]
-    changed: frozenset[tuple[str, str]]
+    new_mail: frozenset[str]
+    new_receipts: frozenset[str]
 
 
 class Mailbox:
@@ -47,7 +48,7 @@ class Mailbox:
 
     def __init__(self, robots: Sequence[str], people: Sequence[str] = (HUMAN,)) -> None:
         self._people, self._robots = tuple(people), tuple(robots)
-        self.load_state(MailboxState((), {}, dict.fromkeys((*people, *robots), ()), {}, frozenset()))
+        self.load_state(MailboxState((), {}, dict.fromkeys((*people, *robots), ()), {}, frozenset(), frozenset()))
 
     def send(self, tick: int, sender: str, send: Send, image: ImageSource = None) -> tuple[Event, ...]:
         """Put a message in the inboxes of those that it is for.
@@ -85,15 +86,16 @@ class Mailbox:
         for reader in readers:
             self._deliveries[number, reader] = Receipt(message=number, status="sent", tick=tick, by=reader)
             self._inboxes[reader] = (*self._inboxes[reader], number)
-            self._changed.add((reader, "inbox"))
+            self._new_mail.add(reader)
         self._receipts[sender] = self._deliveries[number, readers[0]]
-        self._changed.add((sender, "receipt"))
+        self._new_receipts.add(sender)
         return (*events, _sent(message, cut))
 
     def inbox(self, seat: str) -> tuple[Message, ...]:
         """A person's open message; a robot's new messages and its open questions. Reading it resets `changed`."""
-        self._changed.discard((seat, "inbox"))
-        return tuple(self._messages[number] for number in self._inboxes.get(seat, ()))
+        self._new_mail.discard(seat)
+        inbox = self._inboxes.get(seat)
+        return tuple(self._messages[number] for number in inbox) if inbox else ()
 
     def shown(self, tick: int, seat: str = HUMAN) -> tuple[Event, ...]:
         """Record that the seat was shown its inbox; messages that ask a robot for nothing leave it."""
@@ -119,12 +121,12 @@ class Mailbox:
 
     def receipt(self, seat: str) -> Receipt | None:
         """The latest status of this seat's last message, None before its first. Reading it resets `changed`."""
-        self._changed.discard((seat, "receipt"))
+        self._new_receipts.discard(seat)
         return self._receipts.get(seat)
 
     def changed(self, seat: str) -> bool:
         """Whether the seat's inbox or receipt has changed since the seat last read it."""
-        return (seat, "inbox") in self._changed or (seat, "receipt") in self._changed
+        return seat in self._new_mail or seat in self._new_receipts
 
     @property
     def messages(self) -> tuple[tuple[Message, Receipt], ...]:
@@ -138,14 +140,16 @@ class Mailbox:
             dict(self._deliveries),
             dict(self._inboxes),
             dict(self._receipts),
-            frozenset(self._changed),
+            frozenset(self._new_mail),
+            frozenset(self._new_receipts),
         )
 
     def load_state(self, state: MailboxState) -> None:
         """Continue from a copy of this mailbox or of another one with the same seats."""
         self._messages = list(state.messages)
         self._deliveries, self._inboxes = dict(state.deliveries), dict(state.inboxes)
-        self._receipts, self._changed = dict(state.receipts), set(state.changed)
+        self._receipts = dict(state.receipts)
+        self._new_mail, self._new_receipts = set(state.new_mail), set(state.new_receipts)
 
     def _readers(self, sender: str, send: Send) -> tuple[str, ...]:
         """The seats that a message is for, in order."""
@@ -183,7 +187,7 @@ class Mailbox:
         sender = self._sender(number)
         if self._receipts[sender].message == number:
             self._receipts[sender] = receipt
-            self._changed.add((sender, "receipt"))
+            self._new_receipts.add(sender)
 
     def _send_refusal(self, sender: str, send: Send) -> str:
         seats = (*self._people, *self._robots)

@@ -167,7 +167,7 @@ class Episode:
         world, events = self.world, self.events
         first, tick = len(events), world.tick
         for seat in self.seats:
-            if seat in self._observed and self._observed[seat].inbox:
+            if (observation := self._observed.get(seat)) is not None and observation.inbox:
                 events.extend(self._mailbox.shown(tick, seat))
         if self._failed:
             self._dismiss_failed()
@@ -177,7 +177,7 @@ class Episode:
         self._steps = 0
         self._writer.trace(world)
         events.extend(self._goal.judge(world.snapshot(), world.house, has_events=len(events) > first))
-        happened = tuple(events[first:])
+        happened = tuple(events[first:]) if len(events) > first else ()
         for observer in self._observers:
             observer(self, happened)
         return happened
@@ -270,26 +270,26 @@ class Episode:
         """Let every seat that has acted say what it says and begin its motion."""
         idle, actions = self.world.idle, self._actions
         for seat in self._active:
-            if seat not in actions:
-                if idle(seat):
+            given, free = actions.get(seat), idle(seat)
+            if given is None:
+                if free:
                     self._writer.rest.note_unasked(tick, seat)
                 continue
-            action, seen = actions[seat]
+            action, seen = given
             if seen is not None and seen.tick < tick:
                 self.events.append(Thought(tick=tick, seat=seat, ticks=tick - seen.tick))
             if action.say is not None:
                 self.events.extend(say(self.world, self._mailbox, seat, action.say))
-            if isinstance(action.motion, Drive) or ((seen is None or seen.idle) and idle(seat)):
+            if (free and (seen is None or seen.idle)) or isinstance(action.motion, Drive):
                 self._start(seat, action.motion)
-            elif idle(seat):
+            elif free:
                 self._writer.rest.note_unasked(tick, seat)
         self._actions = {}
 
     def _start(self, seat: str, motion: Motion) -> None:
-        if isinstance(motion, Drive):
-            motion = rounded(motion)
-        self.world.start(seat, motion)
-        self._writer.note_motion(self.tick, self._steps, seat, motion, started=not self.world.idle(seat))
+        motion, world = rounded(motion) if isinstance(motion, Drive) else motion, self.world
+        world.start(seat, motion)
+        self._writer.note_motion(world.tick, self._steps, seat, motion, started=not world.idle(seat))
 
     def _check_seat(self, seat: str) -> None:
         if seat not in self.seats:

@@ -9,7 +9,7 @@ from hthor.episode.episode_log import EpisodeLog, Fault
 from hthor.episode.rest_time import RestState, RestTime
 from hthor.episode.trial_world import TrialWorld
 from hthor.humans.core.behaviour_log import BehaviourRecorder, RecorderState
-from hthor.types import HUMAN, BodySpec, Motion, is_person
+from hthor.types import HUMAN, BodySpec, Motion, Pose, is_person
 from hthor.types.events import Event, JournalEntry, Success, Timeout, Voided
 
 _THOUSAND = 1000.0
@@ -38,6 +38,7 @@ class LogWriter:
         self.faults: list[Fault] = []
         self.rest = RestTime(bodies)
         self._paths: dict[str, list[tuple[int, int, int]]] = {seat: [] for seat in bodies}
+        self._traced: dict[str, Pose] = {}  # where each body was when it was traced last
         self._recorders = {
             seat: BehaviourRecorder(seat, body, rules.TICK_S) for seat, body in bodies.items() if is_person(seat)
         }
@@ -48,14 +49,18 @@ class LogWriter:
             return
         for seat, path in self._paths.items():
             pose = world.pose(seat)
+            if pose is self._traced.get(seat):  # the body has not moved
+                path.append(path[-1])
+                continue
+            self._traced[seat] = pose
             path.append((round(pose.x * _THOUSAND), round(pose.y * _THOUSAND), round(pose.gaze * _THOUSAND)))
-            if seat in self._recorders:
-                self._recorders[seat].head(world.tick, pose.pitch)
+            if (recorder := self._recorders.get(seat)) is not None:
+                recorder.head(world.tick, pose.pitch)
 
     def note_motion(self, tick: int, step: int, seat: str, motion: Motion, *, started: bool) -> None:
         """Note a motion that begins at a step of a tick; ``started`` is false if the body is still free after it."""
-        if seat in self._recorders:
-            self._recorders[seat].motion(tick, motion, step)
+        if (recorder := self._recorders.get(seat)) is not None:
+            recorder.motion(tick, motion, step)
         self.rest.note_motion(tick, seat, motion, started=started)
 
     def log(
@@ -96,6 +101,7 @@ class LogWriter:
         """Continue from a copy."""
         self.events[:], self.faults[:] = state.events, state.faults
         self._paths = {seat: list(path) for seat, path in state.paths.items()}
+        self._traced = {}
         self.rest.load_state(state.rest)
         for seat, recorder in self._recorders.items():
             recorder.load_state(state.recorders[seat])

@@ -29,9 +29,11 @@ class RestTime:
             if not started:
                 self.note(tick, seat, resting=self._driving[seat])
             return
-        if isinstance(motion, (Move, Rotate, Wait)):
+        if self._driving and isinstance(motion, (Move, Rotate, Wait)):
             self._driving.pop(seat, None)
-        self.note(tick, seat, resting=isinstance(motion, Wait) or not started)
+        resting = isinstance(motion, Wait) or not started
+        if resting != (self._since[seat] is not None):  # most motions change nothing
+            self.note(tick, seat, resting=resting)
 
     def note_unasked(self, tick: int, seat: str) -> None:
         """Note that a free body begins no motion: it rests, or goes on driving."""

@@ -62,9 +62,9 @@ class GridMap:
         self._cover(origin.x - margin, origin.y - margin, origin.x + margin, origin.y + margin)
         self._reserve(16 * len(scan.ranges) + 64)
         first = self._count
-        ranges = np.array(scan.ranges, dtype=np.float64)  # a copy: arrays from another process are read-only
+        ranges = _as_floats(scan.ranges)
         bearings = self._as_bearings(scan.bearings)
-        tops = np.zeros(len(ranges)) if scan.tops is None else np.array(scan.tops, dtype=np.float64)
+        tops = np.zeros(len(ranges)) if scan.tops is None else _as_floats(scan.tops)
         place = self.left, self.bottom, CELL_M, origin.x, origin.y, origin.yaw
         looks = LOW_M, scan.limit, look_m, look_rad
         known = self.bounds, self._obstacles
@@ -72,7 +72,7 @@ class GridMap:
             self.cells, self.near, *place, bearings, ranges, tops, *looks, *known, self._count
         )
         if scan.beyond is not None:
-            beyond = np.array(scan.beyond, dtype=np.float64)
+            beyond = _as_floats(scan.beyond)
             self._count = scan_kernel.beyond(
                 self.cells, *place, bearings, ranges, beyond, scan.limit, *known, self._count
             )
@@ -161,6 +161,13 @@ class GridMap:
         self.bounds += np.array([left, left, bottom, bottom], dtype=np.int64)
         self.left, self.bottom = self.left - left, self.bottom - bottom
         self.version += 1
+
+
+def _as_floats(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Numbers for compiled loops, copied unless these can read them: arrays from another process are read-only."""
+    if isinstance(values, np.ndarray) and values.dtype == np.float64 and values.flags.carray:
+        return values
+    return np.array(values, dtype=np.float64)
 
 
 def _chunks(missing: int) -> int:

@@ -57,12 +57,11 @@ class GroundTruth:
 
     def _in_view(self, tick: int) -> LazyInView:
         """The people's objects in view; the same record as long as nothing changes."""
-        moment = self._moment
-        if self._view is None or self._view.moment != moment:
-            self._view = LazyInView(self, tuple(self._people), moment, tick)
-        return self._view
+        view, moment = self._view, self._moment()
+        if view is None or view.moment != moment:
+            self._view = view = LazyInView(self, tuple(self._people), moment, tick)
+        return view
 
-    @property
     def _moment(self) -> _Moment:
         if not self._others:
             return (self._objects.changes, self._doors.changes, self._first.pose)
@@ -74,7 +73,7 @@ class GroundTruth:
         Raises:
             StaleObservation: when the world is no longer at this ``moment``.
         """
-        if moment != self._moment:
+        if moment != self._moment():
             raise StaleObservation(
                 f"in_view of the snapshot of tick {tick} was read after the world had moved on; "
                 "read it while the snapshot is new"

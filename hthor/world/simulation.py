@@ -58,6 +58,7 @@ class Simulation:
         house: the floor plan. seats: names of all seats, the people's first. bodies: the body in each seat.
         robots: names of the robots' seats.
         tick: ticks since the last reset. space: each seat's free-space grid.
+        moment: the numbers of the episode, the tick and its step, to which an observation belongs.
     """
 
     def __init__(
@@ -133,8 +134,8 @@ class Simulation:
         self._doors.reset()
         self._doorways.update({})
         self._driven.reset()
-        self.tick = 0
         self._episode += 1
+        self._begin_moment(0)
         self._events: list[Event] = []
 
     def idle(self, seat: str) -> bool:
@@ -174,6 +175,7 @@ class Simulation:
         step of a tick this does nothing until `advance` was called.
         """
         self._events += self._driven.step(self.tick + 1)
+        self._begin_moment(self.tick)
 
     def advance(self) -> tuple[Event, ...]:
         """Let one tick pass: first all bodies that drive move, then every busy body, in the order of the seats, then
@@ -187,10 +189,10 @@ class Simulation:
             PhysicsError: when the engine loses the state. All objects are then at rest where they were a tick before.
                 The next call goes on from there and also returns the other events of this tick.
         """
-        self.tick += 1
         events, self._events = self._events, []
         if self._driven.active or self._driven.steps:
-            events += self._driven.finish(self.tick)
+            events += self._driven.finish(self.tick + 1)
+        self._begin_moment(self.tick + 1)
         for seat in self._seats.values():
             if seat.activity is None:
                 continue
@@ -225,11 +227,6 @@ class Simulation:
     def still(self) -> bool:
         """Whether every door and every object that is not carried is at rest."""
         return self._env.still
-
-    @property
-    def moment(self) -> tuple[int, int, int]:
-        """The numbers of the episode, the tick and its step, to which an observation belongs."""
-        return (self._episode, self.tick, self._driven.steps)
 
     def pose(self, seat: str) -> Pose:
         """The pose of the seat's body."""
@@ -268,5 +265,9 @@ class Simulation:
             HthorError: when the bytes are damaged, or belong to a different world; nothing has changed then.
         """
         record = self._keeper.load(state)
-        self.tick, self._seed, self._events = record.tick, record.seed, list(record.events)
+        self._seed, self._events = record.seed, list(record.events)
         self._episode += 1
+        self._begin_moment(record.tick)
+
+    def _begin_moment(self, tick: int) -> None:
+        self.tick, self.moment = tick, (self._episode, tick, self._driven.steps)

@@ -69,8 +69,6 @@ class ActionDispatch:
 
     def activity(self, seat: BodyState, action: Motion) -> Activity:
         """A motion that has begun, to be carried on tick by tick."""
-        if isinstance(action, Wait):
-            return WaitMotion(duration_ticks(action.seconds))
         load = self._joint_carrying.of(seat) if seat.holding else None
         if isinstance(action, Move):
             left, along = length_and_direction(seat, action)
@@ -81,6 +79,8 @@ class ActionDispatch:
             if load is not None:
                 return CarryRotation(seat, action.yaw, action.pitch)
             return RotateMotion(seat, action, seat.pose)
+        if isinstance(action, Wait):
+            return WaitMotion(duration_ticks(action.seconds))
         assert not isinstance(action, Drive), "see DrivenBodies"
         return HandMotion(seat, action, self._manipulation)
 

@@ -85,7 +85,7 @@ class GoalArbiter:
                 return delivery
         elif self._in_hand is not None:
             self._put_down(self._in_hand)
-        moved = self._others_have_moved()
+        moved = bool(self.human.others.seats) and self._others_have_moved()
         if moved or self._changes() != self._seen_changes:
             self._choice = self._choose()
             self._seen_changes = self._changes()
@@ -98,10 +98,7 @@ class GoalArbiter:
 
     def _others_have_moved(self) -> bool:
         """Whether the objects that are left to other people are not the same as before."""
-        human = self.human
-        if not human.others.seats:
-            return False
-        before = self._left
+        human, before = self.human, self._left
         lying = [(one.job, one.known.lies) for one in self.subgoals.unfinished()]
         free = [(job.target, seen) for job, seen in lying if seen is not None and job.hands - len(seen.bearers) < 2]
         spots = {target: seen.position[:2] for target, seen in free}

@@ -56,6 +56,8 @@ class Conversation:
 
     def speak(self, observation: Observation, action: Action) -> Action:
         """The action with what the robot says: an answer that is due, else the policy's suggestion, else a question."""
+        if action.say is None and not observation.inbox and self.queries is None:
+            return action
         suggestion = action.say if isinstance(action.say, Send) else None
         answer = self.answers.due(observation) if observation.inbox else None
         say: Send | None = None
