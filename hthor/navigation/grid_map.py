@@ -39,6 +39,7 @@ class GridMap:
         self.cells: NDArray[np.uint8] = np.zeros((2 * half, 2 * half), dtype=np.uint8)
         self.near: NDArray[np.uint8] = np.zeros_like(self.cells)
         self.beside: NDArray[np.uint8] = np.zeros_like(self.cells)
+        self._inner = self._inner_rectangle()
         self.bounds: NDArray[np.int64] = np.array([half, half, half, half], dtype=np.int64)
         self.version = 0
         self._given: Any = None
@@ -144,6 +145,9 @@ class GridMap:
 
     def _cover(self, x0: float, y0: float, x1: float, y1: float) -> None:
         """Grow the map by whole chunks until it contains the rectangle [m] and a border of one cell."""
+        west, south, east, north = self._inner
+        if west <= x0 and south <= y0 and x1 <= east and y1 <= north:
+            return
         ny, nx = self.cells.shape
         left, bottom = self.left, self.bottom
         column0, row0 = math.floor(x0 / CELL_M) - left, math.floor(y0 / CELL_M) - bottom
@@ -160,7 +164,14 @@ class GridMap:
         self.cells, self.near, self.beside = grown
         self.bounds += np.array([left, left, bottom, bottom], dtype=np.int64)
         self.left, self.bottom = self.left - left, self.bottom - bottom
+        self._inner = self._inner_rectangle()
         self.version += 1
+
+    def _inner_rectangle(self) -> tuple[float, float, float, float]:
+        """West, south, east and north edge [m] of the map without the two outermost cells."""
+        ny, nx = self.cells.shape
+        west, south = (self.left + 2) * CELL_M, (self.bottom + 2) * CELL_M
+        return west, south, (self.left + nx - 2) * CELL_M, (self.bottom + ny - 2) * CELL_M
 
 
 def _as_floats(values: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -21,6 +21,7 @@ class GroundTruth:
     def __init__(self, objects: Objects, doors: Doors, visibility: Visibility, seats: Sequence[BodyState]) -> None:
         self._objects, self._doors, self._visibility, self._seats = objects, doors, visibility, seats
         self._people = {seat.name: seat for seat in seats if is_person(seat.name)}
+        self._names = tuple(self._people)
         self._first, *self._others = self._people.values()
         self._things: dict[str, ThingState] = {}
         self._version = (-1, -1)
@@ -59,7 +60,7 @@ class GroundTruth:
         """The people's objects in view; the same record as long as nothing changes."""
         view, moment = self._view, self._moment()
         if view is None or view.moment != moment:
-            self._view = view = LazyInView(self, tuple(self._people), moment, tick)
+            self._view = view = LazyInView(self, self._names, moment, tick)
         return view
 
     def _moment(self) -> _Moment:

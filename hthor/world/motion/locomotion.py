@@ -75,6 +75,7 @@ def _finite(**given: object) -> str:
 class WaitMotion:
     """Standing still for so many ticks."""
 
+    __slots__ = ("_left",)
     of_hands = False
 
     def __init__(self, ticks: int) -> None:
@@ -95,6 +96,7 @@ class RotateMotion:
         begun: the pose at the start. done: for how many ticks it has been going on.
     """
 
+    __slots__ = ("_done", "_from", "_limit", "_motion", "_rate", "_seat", "_ticks")
     of_hands = False
 
     def __init__(self, seat: BodyState, motion: Rotate, begun: Pose, done: int = 0) -> None:
@@ -123,6 +125,7 @@ class MoveMotion:
         left: the way left [m]. along: its direction. hindered: whether a body has been in the way.
     """
 
+    __slots__ = ("_along", "_culprit", "_hindered", "_left", "_others", "_seat")
     of_hands = False
 
     def __init__(

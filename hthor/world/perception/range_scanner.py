@@ -1,7 +1,6 @@
 """Range scans of the static obstacles of a house; bodies and movable objects are not in them."""
 
 import math
-from typing import Any
 
 import numba
 import numpy as np
@@ -29,10 +28,11 @@ class RangeScanner:
         """The scan from the head at ``pose``, exact on the obstacle grid ``space`` of 5 cm cells."""
         if pose.head is not UNSET:
             pose = Pose(x=pose.x, y=pose.y, yaw=plane.wrap(pose.gaze), pitch=pose.pitch)
-        place = *space.origin, space.cell, pose.x, pose.y, pose.yaw
-        ranges, tops, walls = _march(space.raw, self._tops, *place, self._bearings, self._limit, self._over)
+        bearings, limit, place = self._bearings, self._limit, (*space.origin, space.cell, pose.x, pose.y, pose.yaw)
+        ranges, tops, walls = np.empty(len(bearings)), np.empty(len(bearings)), np.empty(len(bearings))
+        _march(space.raw, self._tops, *place, bearings, limit, self._over, ranges, tops, walls)
         beyond = walls if self._over else None
-        return Scan(origin=pose, bearings=self._bearings, ranges=ranges, limit=self._limit, tops=tops, beyond=beyond)
+        return Scan(origin=pose, bearings=bearings, ranges=ranges, limit=limit, tops=tops, beyond=beyond)
 
 
 def _tops(house: HouseSpec, space: FreeSpace, height: float) -> np.ndarray:
@@ -53,13 +53,13 @@ def _tops(house: HouseSpec, space: FreeSpace, height: float) -> np.ndarray:
 @numba.njit(cache=True)
 def _march(
     raw: Bools, tops: Floats, ox: float, oy: float, cell: float, x: float, y: float, yaw: float, bearings: Floats,
-    limit: float, over: float,
-) -> Any:  # fmt: skip
-    """Arrays (N,) [m] of a `Scan`: ranges, tops, beyond. Each beam goes from cell edge to cell edge until it enters a
-    cell that is not clear, and then on over obstacles lower than ``over`` [m].
+    limit: float, over: float, ranges: Floats, met: Floats, beyond: Floats,
+) -> None:  # fmt: skip
+    """Fill arrays (N,) [m] of a `Scan`: ``ranges``, tops (``met``), ``beyond``. Each beam goes from cell edge to cell
+    edge until it enters a cell that is not clear, and then on over obstacles lower than ``over`` [m].
     """
     ny, nx = raw.shape
-    out, met, beyond = np.empty(len(bearings)), np.full(len(bearings), np.inf), np.full(len(bearings), limit)
+    met[:], beyond[:] = np.inf, limit
     px, py, far = (x - ox) / cell, (y - oy) / cell, limit / cell
     for k in range(len(bearings)):
         ux, uy = math.cos(yaw + bearings[k]), math.sin(yaw + bearings[k])
@@ -83,5 +83,4 @@ def _march(
                 if tops[j, i] >= over:
                     beyond[k] = t * cell
                     break
-        out[k] = min(t, first) * cell
-    return out, met, beyond
+        ranges[k] = min(t, first) * cell

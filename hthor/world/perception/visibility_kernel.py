@@ -5,7 +5,6 @@ can, so that they compile to vector instructions.
 """
 
 import math
-from typing import Any
 
 import numba
 import numpy as np
@@ -72,9 +71,9 @@ def _mark_moving_target(view: ViewAxes, reach: float, small: bool, points: Float
 def visible_targets(
     x: float, y: float, z: float, yaw: float, pitch: float, wide: float, high: float,
     small: int, points: Floats, wanted: Floats, reach: float, balls: Floats, spots: Floats,
-    groups: Floats, spheres: Floats, boxes: Floats, fixed: int, count: int, order: Ints,
-) -> Any:  # fmt: skip
-    """The targets in view: any of their points is within reach, and any is in the field of view and not hidden.
+    groups: Floats, spheres: Floats, boxes: Floats, fixed: int, count: int, order: Ints, seen: Ints,
+) -> int:  # fmt: skip
+    """Find the targets in view: any of their points is within reach, and any is in the field of view and not hidden.
 
     There are targets that may move, with two points each, and targets that never move.
 
@@ -90,15 +89,16 @@ def visible_targets(
             stays hidden. The eye always has the same height.
         groups, spheres, boxes, fixed, count: `hthor.world.perception.occluders.Occluders.arrays`.
         order: (M + S,) the order in which targets are returned; targets that may move have the lower numbers.
+        seen: filled with the targets in view; it has room for one more than there are targets.
 
     Returns:
-        (N,) the targets in view.
+        how many targets are in view.
     """
     view = view_axes(x, y, z, yaw, pitch, wide, high)
     moving, still = len(points), balls.shape[1] - 1
     out = np.zeros(moving + still, dtype=np.bool_)
     aimed, marked = np.zeros((moving, 2), dtype=np.bool_), np.empty(spots.shape[1], dtype=np.bool_)
-    seen, named, farthest = np.empty(len(out) + 1, dtype=np.int64), 0, 0.0
+    named, farthest = 0, 0.0
     if still and reach > 0.0:
         farthest = _mark_fixed_targets(view, reach, balls, spots, out[moving:], marked)
     for k in range(moving):
@@ -107,7 +107,7 @@ def visible_targets(
             out[k] = most > 0.0
             farthest = max(farthest, most)
     if farthest == 0.0:
-        return seen[:0]
+        return 0
     ids, rel = nearby_occluders(view, math.sqrt(farthest), groups, spheres, fixed, count)
     last = -1  # the solid that hid one point probably hides the next
     for k in range(moving):
@@ -140,4 +140,4 @@ def visible_targets(
     for k in order:
         seen[named] = k
         named += out[k]
-    return seen[:named]
+    return named

@@ -59,9 +59,10 @@ def test_a_look_finds_what_ray_after_ray_finds(seed: int, turns: list[tuple[floa
         bodies = scene.half, scene.pos, scene.mat, scene.radius, scene.ids
         found = slowly(view_frustum.view_vector(pose, BODY), small, [*points, *things], reach, own, *bodies)
         eye = pose.x, pose.y, BODY.eye, pose.yaw, pose.pitch, *view_frustum.half_fov_tangents(BODY)
-        around = occluders.arrays
-        seen = visibility_kernel.visible_targets(*eye, small, points, wanted, far, balls, spots, *around, order)
-        assert seen.tolist() == [k for k in order if k in found]
+        around, seen = occluders.arrays, np.empty(len(order) + 1, np.int64)
+        moving_and_still = small, points, wanted, far, balls, spots
+        count = visibility_kernel.visible_targets(*eye, *moving_and_still, *around, order, seen)
+        assert seen[:count].tolist() == [k for k in order if k in found]
 
 
 def test_the_nearest_of_none_is_nowhere() -> None:
