@@ -31,7 +31,7 @@ class Agent:
     def begin(self, briefing: Briefing) -> None:
         """Start with an empty map."""
         from hthor.agents.skills.explorer import Explorer
-        from hthor.navigation.path_follower import Courtesy
+        from hthor.navigation.path_follower import Courtesy, face
 
         self.briefing = briefing
         self.multi_object: MultiObjectFrontier | None = None
@@ -45,6 +45,7 @@ class Agent:
         self.timing = MessageTiming(briefing, most=2)
         self.explorer: Explorer = Explorer(briefing.body)
         self.courtesy: Courtesy = Courtesy(briefing.body, self.explorer.fits)
+        self.face = face
         self.target: Detection | None = None
         self.stands_aside = False
 
@@ -83,8 +84,6 @@ class Agent:
 
     def _watch(self, observation: Observation) -> Motion:
         """Wait where it blocks nobody, facing the target; come back when another message is due."""
-        from hthor.navigation.path_follower import face
-
         assert self.target is not None
         pose, (x, y, _) = observation.pose, self.target.position
         follower, body = self.explorer.follower, self.briefing.body
@@ -96,4 +95,4 @@ class Agent:
             self.stands_aside = True
             self.explorer.retreat(pose, (x, y), ASIDE_M)
         step = follower.next(pose)
-        return step or face(pose, self.target.position, body.eye, body.pitch_limit) or Wait(seconds=1.0)
+        return step or self.face(pose, self.target.position, body.eye, body.pitch_limit) or Wait(seconds=1.0)

@@ -63,9 +63,9 @@ class GridMap:
         self._cover(origin.x - margin, origin.y - margin, origin.x + margin, origin.y + margin)
         self._reserve(16 * len(scan.ranges) + 64)
         first = self._count
-        ranges = _as_floats(scan.ranges)
+        ranges = np.ascontiguousarray(scan.ranges, dtype=np.float64)
         bearings = self._as_bearings(scan.bearings)
-        tops = np.zeros(len(ranges)) if scan.tops is None else _as_floats(scan.tops)
+        tops = np.zeros(len(ranges)) if scan.tops is None else np.ascontiguousarray(scan.tops, dtype=np.float64)
         place = self.left, self.bottom, CELL_M, origin.x, origin.y, origin.yaw
         looks = LOW_M, scan.limit, look_m, look_rad
         known = self.bounds, self._obstacles
@@ -73,7 +73,7 @@ class GridMap:
             self.cells, self.near, *place, bearings, ranges, tops, *looks, *known, self._count
         )
         if scan.beyond is not None:
-            beyond = _as_floats(scan.beyond)
+            beyond = np.ascontiguousarray(scan.beyond, dtype=np.float64)
             self._count = scan_kernel.beyond(
                 self.cells, *place, bearings, ranges, beyond, scan.limit, *known, self._count
             )
@@ -172,13 +172,6 @@ class GridMap:
         ny, nx = self.cells.shape
         west, south = (self.left + 2) * CELL_M, (self.bottom + 2) * CELL_M
         return west, south, (self.left + nx - 2) * CELL_M, (self.bottom + ny - 2) * CELL_M
-
-
-def _as_floats(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Numbers for compiled loops, copied unless these can read them: arrays from another process are read-only."""
-    if isinstance(values, np.ndarray) and values.dtype == np.float64 and values.flags.carray:
-        return values
-    return np.array(values, dtype=np.float64)
 
 
 def _chunks(missing: int) -> int:

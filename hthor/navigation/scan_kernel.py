@@ -12,6 +12,7 @@ import numpy as np
 
 _BITS = 40
 _ONE = 1 << _BITS
+_READ = "Array(float64, 1, 'C', True)"  # read-only, as arrays from another process are
 
 
 @numba.njit("void(uint8[:,::1], int64, int64, int64[::1])", cache=True)
@@ -60,7 +61,7 @@ def _sweep(cells: Any, x: float, y: float, ux: float, uy: float, count: int, bou
 
 
 @numba.njit(
-    "int64(uint8[:,::1], int64, int64, float64, float64, float64, float64, float64[::1], float64[::1], float64[::1],"
+    f"int64(uint8[:,::1], int64, int64, float64, float64, float64, float64, {_READ}, {_READ}, {_READ},"
     " float64, int64[::1], int32[:,::1], int64)",
     cache=True,
 )
@@ -95,8 +96,8 @@ def beyond(
 
 
 @numba.njit(
-    "int64(uint8[:,::1], uint8[:,::1], int64, int64, float64, float64, float64, float64, float64[::1], float64[::1],"
-    " float64[::1], float64, float64, float64, float64, int64[::1], int32[:,::1], int64)",
+    f"int64(uint8[:,::1], uint8[:,::1], int64, int64, float64, float64, float64, float64, {_READ}, {_READ}, {_READ},"
+    " float64, float64, float64, float64, int64[::1], int32[:,::1], int64)",
     cache=True,
 )
 def integrate(

@@ -76,6 +76,8 @@ class AdviceTracker:
     @property
     def destination(self) -> Vec3 | None:
         """The destination [m] that a robot advised for the object in hand."""
+        if not self.kept:
+            return None
         positions = [advice.position for advice in self.kept.values() if advice.request == "bring"]
         return positions[-1] if positions else None
 

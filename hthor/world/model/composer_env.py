@@ -188,6 +188,8 @@ class LazyComposerEnv(Environment):
         """The engine's warnings since the last reset or `recover`, such as a bad acceleration, and their places: for a
         bad state, the number of a degree of freedom.
         """
+        if not self.data.warning.number.any():
+            return {}
         found = enumerate(self.data.warning)
         return {mujoco.mjtWarning(kind).name: int(one.lastinfo) for kind, one in found if one.number}
 

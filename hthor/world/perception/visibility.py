@@ -79,6 +79,7 @@ class Visibility:
         names = [*moving, *(landmark.id for landmark in self._landmarks)]
         self._order = np.array(sorted(range(len(names)), key=names.__getitem__), np.int64)
         self._seen = np.empty(len(names) + 1, np.int64)
+        self._seen_view = self._seen.data  # to read few numbers fast
         self._moving_count, self._object_count = len(moving), len(self._items)
         self._points = np.zeros((len(moving), 2, 3))
         self._flat_points = self._points.data.cast("B").cast("d")  # to write single numbers fast
@@ -222,9 +223,9 @@ class Visibility:
         if self._occluders.version != self._world_version:
             self._occluders.follow(self._world_version)
         targets = self._object_count, points, wanted, reach, balls, spots
-        eye, seen = self._eye_numbers(view), self._seen
-        count = visibility_kernel.visible_targets(*eye, *targets, *self._occluders.arrays, order, seen)
-        return seen[:count].tolist()  # type: ignore[no-any-return]
+        eye = self._eye_numbers(view)
+        count = visibility_kernel.visible_targets(*eye, *targets, *self._occluders.arrays, order, self._seen)
+        return self._seen_view[:count].tolist()
 
     @staticmethod
     def _eye_numbers(view: _SeatView) -> tuple[float, float, float, float, float, float, float]:
