@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import itertools
 import math
+import os
 import shutil
+from collections.abc import Iterator
 from pathlib import Path
 from unittest import mock
 
@@ -313,6 +315,23 @@ def test_half_a_control_is_none(tmp_path: Path):
     lines = (alone / "trials.jsonl").read_bytes().splitlines(keepends=True)
     (alone / "trials.jsonl").write_bytes(b"".join(lines[:-1]))
     assert baseline.find_baseline(folder, RunFolder(folder).config) is None
+
+
+@pytest.mark.slow
+def test_a_folder_of_another_program_that_vanishes_during_the_search_is_no_error(tmp_path: Path, monkeypatch):
+    def scan(path: str | Path | int = ".") -> Iterator[os.DirEntry[str]]:
+        if Path(str(path)).name == "vanishing":
+            raise FileNotFoundError(2, "No such file or directory", str(path))
+        return scandir(path)
+
+    scandir = os.scandir
+    folder = _run(tmp_path / "runs", "helper", count=20)
+    alone = _run(tmp_path / "zzz", "alone", absent=True, count=20)
+    (tmp_path / "vanishing").mkdir()
+    monkeypatch.setattr(os, "scandir", scan)
+    found = baseline.measure_uplift(folder, RunFolder(folder).config, RunFolder(folder).records())
+    assert found is not None
+    assert found.control == RunFolder(alone).config.sha256
 
 
 # -------------------------------------------------------------------------------------------------------------- power

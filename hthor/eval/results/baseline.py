@@ -1,5 +1,6 @@
 """Finds the baseline of a run: the run of the same participants at the same tasks without a robot."""
 
+import glob
 import itertools
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
@@ -112,9 +113,11 @@ def _anywhere(folder: Path) -> Iterator[Path]:
 
 
 def _runs_in(place: Path, patterns: Sequence[str], *, but: Path) -> Iterator[Path]:
-    """Folders below a place that hold runs, sorted by name."""
+    """Folders below a place that hold runs, sorted by name; folders that vanish during the search are left out."""
     for pattern in patterns:
-        yield from sorted(path.parent for path in place.glob(f"{pattern}/run.json") if path.parent.resolve() != but)
+        found = glob.glob(f"{pattern}/run.json", root_dir=place, include_hidden=True)  # Path.glob would raise
+        runs = sorted((place / path).parent for path in found)
+        yield from (run for run in runs if run.resolve() != but)
 
 
 def _records(folder: Path) -> list[TrialRecord]:
