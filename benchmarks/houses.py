@@ -14,9 +14,9 @@ from collections.abc import Sequence
 from typing import Any
 
 from msgspec import Struct
-from tqdm import tqdm
 
 from hthor import jsonio
+from hthor.console import progress_bar
 from hthor.houses import generator, loader
 from hthor.world.validation import house_soundness
 from hthor.world.validation.house_soundness import check_soundness
@@ -47,7 +47,7 @@ def main() -> None:
     given = options.parse_args()
     house_soundness.generate_valid_home(given.first, 5)  # so that compiling is not counted
     seeds = range(given.first, given.first + given.seeds)
-    tries = [_try(seed, 4 + seed % 4) for seed in tqdm(seeds, disable=None, leave=False)]
+    tries = [_try(seed, 4 + seed % 4) for seed in progress_bar.watched(seeds, "seeds", len(seeds), "seeds")]
     _print(tries, given.reasons)
 
 

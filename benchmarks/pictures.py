@@ -21,23 +21,44 @@ import sys
 import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 import cv2
+import numpy as np
 
 from hthor import houses, jsonio, rules, tasks
 from hthor.eval.config import robot_team, sessions, task_selection
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner import trial_runner
-from hthor.report.drawing import lettering, trial_figure
+from hthor.report.drawing import figure_file, trial_figure
+from hthor.report.drawing.person_display import panel_picture
 from hthor.types import TaskSpec
+from hthor.types.events import Sent
+from hthor.world import World
 
 ROOT = Path(__file__).resolve().parents[1]
 FOLDER = ROOT / "docs" / "images"
 MANIFEST = FOLDER / "pictures.json"
 _REFERENCE = "hthor/eval/doctor/reference.json"
-_DRAWING = ("floor_plan", "lettering", "text_fit", "trial_figure", "trial_legend", "trial_timeline", "trial_trace")
+_DRAWING = (
+    "figure_file",
+    "floor_plan",
+    "lettering",
+    "text_fit",
+    "trial_figure",
+    "trial_legend",
+    "trial_timeline",
+    "trial_trace",
+    "person_display/timeline_bars",
+)
+_DISPLAY = ("hthor/report/drawing/person_display/panel_picture.py", "hthor/comms/map_picture.py")
+_DISPLAY_TASK, _DISPLAY_PX = "smoke/birch/manipulation-01", (320, 240)
+"""Of which task the picture of a display is, and the size of each of its parts [pixels]."""
 _SHEETS = ("hthor/world/rendering/contact_sheet.py", "hthor/world/rendering/opengl_renderer.py")
-BY_HAND = ("robots.png",)
+LOOK_BELOW = 0.98
+"""Pictures that are less similar than this to those that they replace are named for a person to look at."""
+_OVERVIEWS = tuple(f"hthor/world/rendering/{part}.py" for part in ("ray_renderer", "shading", "viewpoint"))
+BY_HAND = ("robots.png", "loose_things.jpg")
 """Pictures that need a stage and a camera of their own."""
 AGENTS, SUITE, CASE = ("none", "frontier", "oracle"), "smoke", "smoke/birch/manipulation-01"
 """Of which runs the pictures of a report and of a case are, and of which task the case is."""
@@ -53,11 +74,30 @@ TRIALS = {
     "carry.png": "carry/rowan/01",
 }
 """Trials with the oracle, in the bodies that the kind of task is made for: a task, whose suite is its first word."""
+TASKS = {"vln_task.png": "vln/juniper/01"}
+"""Tasks as `hthor tasks draw` draws them."""
+
+
+EYES = "paper"
+"""Of which suite's first trial the strip through a person's eyes is."""
+OF_TASKS = {
+    "angles.jpg": ("rearrange/elder/01", "--angles"),
+    "pipeline.jpg": ("paper/alder/manipulation-01", "--pipeline"),
+}
+"""Figures of tasks in three dimensions: a task, and the option of `hthor tasks draw`."""
 
 
 def names() -> list[str]:
     """All pictures that this makes."""
-    return [*TRIALS, *_OF_RUNS, *(f"scenes/{name}.jpg" for name in houses.names())]
+    return [
+        *TRIALS,
+        *OF_TASKS,
+        *TASKS,
+        "eyes.jpg",
+        *_OF_RUNS,
+        "display.png",
+        *(f"scenes/{name}.jpg" for name in houses.names()),
+    ]
 
 
 def origin(name: str) -> str:
@@ -67,10 +107,26 @@ def origin(name: str) -> str:
         code = [f"hthor/report/drawing/{part}.py" for part in _DRAWING]
         facts = [TRIALS[name], task, houses.load(task.house).sha256, rules.sha256(), _sha256(ROOT / _REFERENCE)]
         return jsonio.sha256([*facts, *(_code_sha256(ROOT / path) for path in code)])
+    if name in OF_TASKS:
+        task = _task(OF_TASKS[name][0])
+        code = [*sorted((ROOT / "hthor/report/drawing/overviews").glob("*.py")), *(ROOT / path for path in _OVERVIEWS)]
+        facts = [OF_TASKS[name], task, houses.load(task.house).sha256]
+        return jsonio.sha256([*facts, *map(_code_sha256, code)])
+    if name == "eyes.jpg":
+        code = [*sorted((ROOT / "hthor/report/first_person").glob("*.py")), *(ROOT / path for path in _OVERVIEWS)]
+        facts = [EYES, tasks.load_suite(EYES).sha256, rules.sha256(), _sha256(ROOT / _REFERENCE)]
+        return jsonio.sha256([*facts, *map(_code_sha256, code)])
+    if name in TASKS:
+        task, code = _task(TASKS[name]), [f"hthor/report/drawing/{part}.py" for part in (*_DRAWING, "task_figure")]
+        facts = [task, houses.load(task.house).sha256, rules.sha256()]
+        return jsonio.sha256([*facts, *(_code_sha256(ROOT / path) for path in code)])
     if name in _OF_RUNS:
         return jsonio.sha256(
             [AGENTS, CASE, tasks.load_suite(SUITE).sha256, rules.sha256(), *map(_code_sha256, _code_of_pages())]
         )
+    if name == "display.png":
+        facts = [_task(_DISPLAY_TASK), rules.sha256(), _sha256(ROOT / _REFERENCE)]
+        return jsonio.sha256([*facts, *(_code_sha256(ROOT / path) for path in _DISPLAY)])
     return jsonio.sha256([houses.load(Path(name).stem).sha256, *(_code_sha256(ROOT / path) for path in _SHEETS)])
 
 
@@ -100,9 +156,26 @@ def make(wanted: Sequence[str], folder: Path = FOLDER) -> None:
         print(f"{name} ...", file=sys.stderr)
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
+        before = cv2.imread(str(path)) if path.is_file() else None
         _maker(name)(path)
+        if before is not None:
+            print(f"{name}: {likeness(before, cv2.imread(str(path)))}", file=sys.stderr)
         known[name] = {"origin": origin(name), "sha256": _sha256(path)}
         jsonio.write(manifest, jsonio.pretty({one: known[one] for one in names() if one in known}))
+
+
+def likeness(before: Any, after: Any) -> str:
+    """In words how like a picture is to the one that it replaces, (H, W, 3) uint8 each: which ones to look at.
+
+    The number is the structural similarity of Wang et al. (2004), 1 for equal pictures: other bytes of another
+    version of OpenGL or of a browser hardly change it, another content does.
+    """
+    from skimage.metrics import structural_similarity
+
+    if before.shape != after.shape:
+        return f"has another size, {after.shape[1]} x {after.shape[0]} instead of {before.shape[1]} x {before.shape[0]}"
+    share = structural_similarity(before, after, channel_axis=2)
+    return f"similarity to the picture before {share:.3f}{', look at it' if share < LOOK_BELOW else ''}"
 
 
 def played(task_id: str) -> TrialRecord:
@@ -126,15 +199,23 @@ def _code_of_pages() -> list[Path]:
 def _maker(name: str) -> Callable[[Path], None]:
     if name in _OF_RUNS:
         return _OF_RUNS[name]
+    if name == "eyes.jpg":
+        return _draw_eyes
+    if name in TASKS:
+        return lambda path: _hthor("tasks", "draw", TASKS[name], "--out", path)
     if name in TRIALS:
         return lambda path: _draw_trial(path, TRIALS[name])
+    if name in OF_TASKS:
+        return lambda path: _draw_smaller(path, "tasks", "draw", *OF_TASKS[name])
+    if name == "display.png":
+        return _draw_display
     return _draw_scene
 
 
 def _draw_trial(path: Path, task_id: str) -> None:
     record = played(task_id)
     made = trial_figure.trial_figure(record.spec, record.log, houses.load(record.spec.task.house))
-    lettering.save_figure(made, path, metadata={"Software": None})
+    figure_file.write_figure(made, path)
 
 
 @functools.cache
@@ -164,9 +245,21 @@ def _draw_report(path: Path) -> None:
 
 def _draw_case(path: Path) -> None:
     """One task under the three conditions, as `hthor case --nice` draws it."""
+    _draw_smaller(path, "case", *_runs(), CASE, "--nice")
+
+
+def _draw_eyes(path: Path) -> None:
+    """A trial with the oracle through the person's eyes, as `hthor replay --eyes` draws it."""
     with tempfile.TemporaryDirectory() as folder:
-        _hthor("case", *_runs(), CASE, "--nice", "--out", folder)
-        (drawn,) = Path(folder).glob("*.png")
+        _hthor("eval", "--agent", "oracle", "--suite", EYES, "--participants", "1", "--limit", "1", "--out", folder)
+        _draw_smaller(path, "replay", folder, "0", "--eyes", "human")
+
+
+def _draw_smaller(path: Path, *words: str | Path) -> None:
+    """The picture that a command writes to its option --out, as a JPEG of the width of the docs' pages."""
+    with tempfile.TemporaryDirectory() as folder:
+        drawn = Path(folder) / "drawn.png"
+        _hthor(*words, "--out", drawn)
         whole = cv2.imread(str(drawn))
     assert whole is not None
     high, wide = whole.shape[:2]
@@ -174,7 +267,29 @@ def _draw_case(path: Path) -> None:
     cv2.imwrite(str(path), small, [cv2.IMWRITE_JPEG_QUALITY, 88])
 
 
-_OF_RUNS: dict[str, Callable[[Path], None]] = {"report.png": _draw_report, "case.jpg": _draw_case}
+_OF_RUNS: dict[str, Callable[[Path], None]] = {
+    "report.png": _draw_report,
+    "case.jpg": _draw_case,
+}
+
+
+def _draw_display(path: Path) -> None:
+    """What a person sees, the panel with a robot's message, and the map after they confirmed it."""
+    task = _task(_DISPLAY_TASK)
+    world = World(task.house, robots=["scout"])
+    world.reset(task)
+    target, (wide, high) = task.goal.target, _DISPLAY_PX
+    world.robot.go_to(target)
+    world.robot.send(f"I found the {target} here.", target, world.position(target))
+    message = world.human.display.message
+    sent = next(event for event in world.events if isinstance(event, Sent))
+    assert message is not None
+    assert message.image is not None
+    panel = panel_picture.draw_panel(sent, wide, high, message.image())
+    world.human.reply(accept=True)
+    gap = np.full((high, 12, 3), 255, dtype=np.uint8)
+    whole = np.hstack([world.human.rgb(_DISPLAY_PX), gap, panel, gap, world.human.map_view(high)])
+    cv2.imwrite(str(path), whole[:, :, ::-1])
 
 
 def _draw_scene(path: Path) -> None:

@@ -1,7 +1,7 @@
 """What a second person adds: the same tasks by two people together and by each of the two alone, with the same robots.
 
-``python -m benchmarks.second_person tidy rearrange --robots scout,scout`` prints one line for every suite. Unlike two
-runs of ``hthor eval``, this compares two people with themselves, so that nobody's pace counts as an effect.
+``python -m benchmarks.second_person tidy rearrange-record --robots scout,scout`` prints one line for every suite.
+Unlike two runs of ``hthor eval``, this compares two people with themselves, so that nobody's pace counts as an effect.
 """
 
 from __future__ import annotations

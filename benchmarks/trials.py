@@ -17,7 +17,7 @@ AGENTS = {"none": "no robot that does anything", "frontier": "frontier robot", "
 BAR_MS = 90.0
 CREWS = {
     "collect": "tall:oracle,small:oracle",
-    "rearrange": "tender:oracle",
+    "rearrange-record": "tender:oracle",
     "tidy": "tender:oracle",
     "carry": "porter:oracle",
 }

@@ -13,7 +13,7 @@ from typing import Annotated
 import typer
 
 from hthor import __version__, activity
-from hthor.commands import assets, calibrate, compare, doctor, houses, priors, replay, report, score, suite
+from hthor.commands import assets, calibrate, compare, correct, doctor, houses, priors, replay, report, score, suite
 from hthor.commands.agent import agent, serve
 from hthor.commands.eval import evaluate
 from hthor.commands.humans import humans
@@ -34,6 +34,7 @@ app.command("eval")(evaluate.evaluate)
 app.command("merge")(merge.merge)
 app.command("migrate")(migrate.migrate)
 app.command("score")(score.score)
+app.command("correct")(correct.correct)
 app.command("compare")(compare.compare)
 app.command("power")(compare.power)
 app.command("replay")(replay.replay)

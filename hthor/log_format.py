@@ -17,7 +17,7 @@ from hthor import activity, documents
 from hthor.documents import Unreadable
 from hthor.types.events import Event, JournalEntry
 
-SCHEMA = "hthor.trial/1.0"
+SCHEMA = "hthor.trial/1.1"
 """The version of the log that is written."""
 _MAJOR = "hthor.trial/1."
 _MISSING = re.compile(r"Object missing required field `([^`]+)`")

@@ -16,8 +16,9 @@ os.environ.setdefault("NUMBA_CACHE_DIR", str(code_identity.compiled()))  # befor
 
 _OUTSIDE = re.compile(r"\bL3\b|bwrap|bubblewrap|chromium|\bnode\b|hthor\.guest|guest_fakes|Guest\(|import guest\b")
 """A file of tests in which one of these stands may depend on programs that not every machine has."""
-settings.register_profile("hthor", deadline=None)  # how long a case takes is no matter of tests
-settings.load_profile("hthor")
+settings.register_profile("hthor", deadline=None, derandomize=True)  # a change breaks a test, or it does not
+settings.register_profile("explore", deadline=None)  # other cases each time: HYPOTHESIS_PROFILE=explore make test
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "hthor"))
 
 ROOT = Path(__file__).resolve().parents[1]
 SAMPLES = ROOT.parent / "shared" / "houses"

@@ -249,6 +249,7 @@ def test_a_circle_of_modules_has_a_hash(tmp_path: Path) -> None:
         ("navigation", "oracle", "scout", "greedy"),
         ("tidy", "oracle", "tender", "proxy"),
         ("carry", "oracle", "tender", "random"),
+        ("vln", "frontier", "scout", "proxy"),
     ],
 )
 def test_everything_that_a_trial_runs_counts(sources: Sources, suite: str, agent: str, robot: str, model: str) -> None:

@@ -16,7 +16,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hthor import code_identity, documents, jsonio
+from hthor import code_identity, documents, jsonio, log_corrections
 from hthor.calibration import evidence, targets
 from hthor.calibration.simulation import session_store
 from hthor.catalog import procthor
@@ -74,6 +74,7 @@ READERS: dict[str, tuple[str, type[HthorError], Callable[[Path], Any]]] = {
     "population": ("pop.json", PopulationError, lambda path: population_file._read(path)),
     "people": ("pop.json", HthorError, lambda path: resolve.resolve_humans(str(path))),
     "kind of people": ("quick.json", PopulationError, kinds.load),
+    "corrections": (log_corrections.NAME, RunError, _lines(lambda path: log_corrections.load(path.parent))),
     "past trials": ("past.jsonl", HthorError, _lines(lambda path: _logged_trials._read(str(path)))),
     "suite": ("suite.json", TaskError, library.read_suite),
     "commitment": ("commitment.json", TaskError, commitment.load_commitment),

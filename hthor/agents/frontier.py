@@ -13,6 +13,8 @@ from hthor.types import Action, Briefing, Detection, Motion, Observation, Send, 
 if TYPE_CHECKING:
     from hthor.agents.skills.explorer import Explorer
     from hthor.agents.skills.multi_object_frontier import MultiObjectFrontier
+    from hthor.agents.skills.touring.tour import Tour
+    from hthor.agents.skills.walking.frontier_walk import FrontierWalk
     from hthor.navigation.path_follower import Courtesy
 
 
@@ -21,6 +23,7 @@ class Agent:
 
     When it sees the target, it tells the person once where that is, and again ten seconds after a declined message.
     Then it watches the target from a place where it blocks nobody. It answers questions from what it has seen so far.
+    If the task begins with a tour, it explores the house and records where the objects of the task are.
     """
 
     privileges = ("ideal_detector",)
@@ -30,17 +33,29 @@ class Agent:
 
     def begin(self, briefing: Briefing) -> None:
         """Start with an empty map."""
+        self.tour: Tour | None = _tour(briefing) if briefing.phases else None
+        if self.tour is None:
+            self._begin_task(briefing)
+        else:
+            self.conversation = Conversation(briefing, self.tour.unfinished, self.asks)
+
+    def _begin_task(self, briefing: Briefing) -> None:
         from hthor.agents.skills.explorer import Explorer
         from hthor.navigation.path_follower import Courtesy, face
 
         self.briefing = briefing
-        self.multi_object: MultiObjectFrontier | None = None
+        self.multi_object: MultiObjectFrontier | FrontierWalk | None = None
         self.conversation = Conversation(briefing, self._unfinished, self.asks)
+        if briefing.relation == "go":
+            from hthor.agents.skills.walking.frontier_walk import FrontierWalk
+
+            self.multi_object = FrontierWalk(briefing)
+            return
         carries = "pick" in briefing.body.capabilities and briefing.relation != "find"
         if carries or briefing.kind not in PAPER_KINDS:
             from hthor.agents.skills.multi_object_frontier import MultiObjectFrontier
 
-            self.multi_object = MultiObjectFrontier(briefing)
+            self.multi_object = MultiObjectFrontier(briefing, self.tour)
             return
         self.timing = MessageTiming(briefing, most=2)
         self.explorer: Explorer = Explorer(briefing.body)
@@ -51,7 +66,12 @@ class Agent:
 
     def act(self, observation: Observation) -> Action:
         """Update the map, tell people what is in view, answer their questions, and move on."""
+        if self.tour is not None and not observation.phase:
+            self._begin_task(self.tour.briefing_after())
+            self.tour = None
         heard = self.conversation.hear(observation)
+        if self.tour is not None:
+            return self.conversation.speak(heard, self.tour.act(heard))
         action = self._search(heard) if self.multi_object is None else self.multi_object.act(heard)
         return self.conversation.speak(heard, action)
 
@@ -96,3 +116,9 @@ class Agent:
             self.explorer.retreat(pose, (x, y), ASIDE_M)
         step = follower.next(pose)
         return step or self.face(pose, self.target.position, body.eye, body.pitch_limit) or Wait(seconds=1.0)
+
+
+def _tour(briefing: Briefing) -> Tour:
+    from hthor.agents.skills.touring.tour import Tour
+
+    return Tour(briefing)

@@ -1,6 +1,6 @@
 """No robot: the control condition."""
 
-from hthor.types import Action, Briefing, Observation, Wait
+from hthor.types import Action, Briefing, Observation, Ready, Wait
 
 
 class Agent:
@@ -12,6 +12,6 @@ class Agent:
     def begin(self, briefing: Briefing) -> None:
         """Do nothing."""
 
-    def act(self, observation: Observation) -> Action:  # noqa: ARG002
-        """Stand still, if there is a body."""
-        return Action(motion=Wait(seconds=1.0))
+    def act(self, observation: Observation) -> Action:
+        """Stand still, if there is a body, always ready for the next phase."""
+        return Action(motion=Wait(seconds=1.0), signals=(Ready(),) if observation.phase else ())

@@ -155,6 +155,7 @@ def _fit_logs(targets: Sequence[str], prior: str, folder: Path, json: bool) -> N
         return
     output.put_table(("parameter", "before", "after", "estimate", "data", "how"), [_cells(row) for row in found.rows])
     output.put_line(f"{found.trials} trials, {found.sessions} sessions, {found.people} people; before: {found.prior}.")
+    output.put_line(found.display.words)
     for note in found.notes:
         output.put_line(note)
     output.put_line(f"files: {folder}/population.json, population.npz, estimates.json")

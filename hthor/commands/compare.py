@@ -14,7 +14,7 @@ from hthor.console.formats import Format, Shape
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from hthor.eval.comparison.compare import Comparison
+    from hthor.eval.comparison.comparison import Comparison
 
 _WORSE_EXIT = 6
 
@@ -34,7 +34,7 @@ def compare(
 ) -> None:
     """Compare runs trial by trial: which is better, by how much, or that the data cannot tell."""
     from hthor.eval.comparison import compare as comparing
-    from hthor.report.terminal import result_tables
+    from hthor.report.terminal import corrections, result_tables
 
     found = comparing.compare_runs(runs)
     if json := formats.asks_json(json, shape):
@@ -56,6 +56,8 @@ def compare(
             output.say(f"{party.name}: {party.planned - party.trials} of {party.planned} trials are not played yet.")
         if party.voided:
             output.say(f"{result_tables.voided_words(party.name, party.voided)}.")
+        if party.corrections:
+            output.say(f"{corrections.corrections_note(party.name, party.corrections)}.")
     if fail_if_worse and found.worse:
         raise typer.Exit(_WORSE_EXIT)
 

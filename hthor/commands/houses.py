@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from hthor.commands.options import Json
-from hthor.console import formats, output
+from hthor.console import formats, output, progress_bar
 from hthor.console.formats import Format, Shape
 
 if TYPE_CHECKING:
@@ -124,25 +124,22 @@ def generate(
 @app.command("show")
 def show(
     house: House,
-    out: Annotated[Path | None, typer.Option(help="The PNG file to write. [default: HOUSE.png]")] = None,
+    out: Annotated[Path | None, typer.Option(help="The file: .png, .svg or .pdf. [default: HOUSE.png]")] = None,
     scale: Annotated[float, typer.Option(min=5.0, max=200.0, help="Resolution [pixels per metre].")] = 60.0,
     plain: Annotated[bool, typer.Option("--plain", help="Leave out the names of rooms.")] = False,
     json: Json = False,
 ) -> None:
     """Draw a house from above, without ceilings, with room names and a scale."""
-    import cv2
-
-    from hthor import houses, jsonio
-    from hthor.report.drawing import floor_plan
+    from hthor import houses
+    from hthor.report.drawing import figure_file, floor_plan
     from hthor.world import World
 
     spec = houses.load(house)
     path = out or Path(f"{spec.id}.png")
-    if path.suffix.lower() != ".png":
-        raise typer.BadParameter(f"'{path}' does not end in .png", param_hint="--out")
+    figure_file.check_name(path)
     world = World(spec)
-    picture = floor_plan.with_labels(world.top_view(scale), spec, world.top_view_bounds, named=not plain)
-    jsonio.write(path, cv2.imencode(".png", picture[:, :, ::-1])[1].tobytes())
+    made = floor_plan.labelled_figure(world.top_view(scale), spec, world.top_view_bounds, named=not plain)
+    figure_file.write_figure(made, path)
     output.put_files([path], json, house=spec.id)
 
 
@@ -205,13 +202,10 @@ def _put_findings(findings: Sequence[Finding]) -> None:
 
 def _made(seed: int, rooms: int | None, count: int) -> Iterable[ValidHome]:
     """The homes of ``count`` seeds one by one, with progress on standard error if it is a terminal."""
-    from tqdm import tqdm
-
     from hthor.world.validation import house_soundness
 
     low, high = _ROOMS
-    watched = output.live() and count > 1
-    for number in tqdm(range(seed, seed + count), disable=not watched, leave=False, unit="house"):
+    for number in progress_bar.watched(range(seed, seed + count), "houses", count, "houses", shown=count > 1):
         yield house_soundness.generate_valid_home(
             number, rooms if rooms is not None else low + number % (high - low + 1)
         )

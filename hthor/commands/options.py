@@ -1,7 +1,7 @@
 """Arguments and options that several commands share."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
@@ -55,5 +55,14 @@ CameraSize = Annotated[
         help="Size of the camera's images [pixels], such as 320x240. Pixels are square, so an image of another shape "
         "than the field of view is cropped to its middle.",
         show_default="the camera's own",
+    ),
+]
+
+Design = Annotated[
+    Literal["paired", "between"],
+    typer.Option(
+        help="Who meets which robot. paired: every robot meets the same people, each time as if it were the first. "
+        "between: everybody meets one robot; the people are divided at random and evenly among the agents and, unless "
+        "--no-control is given, no robot. --participants is then the number of people in all groups."
     ),
 ]

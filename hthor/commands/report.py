@@ -14,7 +14,10 @@ _PAPER = "paper"
 
 
 def report(
-    runs: Runs, out: Annotated[Path, typer.Option(help="Folder of the report.")] = Path("report"), json: Json = False
+    runs: Runs,
+    out: Annotated[Path, typer.Option(help="Folder of the report.")] = Path("report"),
+    pdf: Annotated[bool, typer.Option("--pdf", help="Also write every figure as figures/*.pdf.")] = False,
+    json: Json = False,
 ) -> None:
     """Write a report on runs of one suite: results against no robot and the paper, figures, best and worst trials.
 
@@ -38,6 +41,7 @@ def report(
             figures={name: round(value / 100.0, 6) for name, value in study.published.items()},
             counts={name: Share(k=one.k, n=one.n, inferred=one.inferred) for name, one in counts.items()},
         ),
+        pdf=pdf,
     )
     page = out / "report.html"
     output.put_files([page, out / "report.json", out / "figures"] if json else [page], json)
@@ -46,7 +50,9 @@ def report(
 def case(
     runs: Runs,
     task: Annotated[str, typer.Argument(metavar="TASK", help="A task id, such as smoke/maple/navigation-02.")],
-    out: Annotated[Path, typer.Option(help="Folder for the two files.")] = Path("report"),
+    out: Annotated[Path, typer.Option(help="The file: .png, .svg or .pdf; or a folder for an SVG and a PNG.")] = Path(
+        "report"
+    ),
     person: Annotated[
         int | None,
         typer.Option(help="The participant, by number.", show_default="the first who did the task in every run"),
@@ -70,7 +76,7 @@ def case(
 ) -> None:
     """Draw one task with several robots: paths from above, and the views of people and robots at key moments.
 
-    One row per run, as SVG and as PNG. The session is played again for the views, and must equal the log.
+    One row per run. The session is played again for the views, and must equal the log.
     """
     from hthor.guest.agent import inputs
     from hthor.report.page import case_study as cases

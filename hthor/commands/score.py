@@ -40,7 +40,7 @@ def score(
             output.put_rich(result_tables.kinds_table(result), shape)
     for note in result_tables.result_notes([result]):
         output.say(note)
-    missing = plan.trials - result.counts.trials
+    missing = plan.trials - result.over
     if missing:
         output.say(f"{missing} of {plan.trials} trials are missing, so the result is incomplete and was not stored.")
         return

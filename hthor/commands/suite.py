@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from hthor.commands.options import Json
-from hthor.console import output
+from hthor.console import output, progress_bar
 
 if TYPE_CHECKING:
     from hthor.tasks.generation.secret_suites import MapHouses, Proof
@@ -167,14 +167,12 @@ def _each(jobs: int | None, total: int) -> MapHouses:
     from concurrent.futures import ProcessPoolExecutor
     from multiprocessing import get_context
 
-    from tqdm import tqdm
-
     from hthor import code_identity
 
     count = min(jobs or len(os.sched_getaffinity(0)), total)
 
     def each(work: Callable[[Any], Any], items: Iterable[Any]) -> Iterator[Any]:
-        watched = functools.partial(tqdm, total=total, disable=not output.live(), leave=False, unit="house")
+        watched = functools.partial(progress_bar.watched, name="houses", total=total, unit="houses")
         if count == 1:
             yield from watched(map(work, items))
             return

@@ -119,6 +119,10 @@ class Mailbox:
         answer = Accepted if reply.accept else Declined
         return (answer(tick=tick, seat=seat, message=number, sender=self._sender(number)),)
 
+    def message(self, number: int) -> Message:
+        """The message with this number."""
+        return self._messages[number]
+
     def receipt(self, seat: str) -> Receipt | None:
         """The latest status of this seat's last message, None before its first. Reading it resets `changed`."""
         self._new_receipts.discard(seat)

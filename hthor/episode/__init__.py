@@ -2,9 +2,10 @@
 
 from hthor.episode.clocks import Charged, Concurrent, DecisionClock, LockStep
 from hthor.episode.episode import Episode, Observer
-from hthor.episode.episode_log import EpisodeLog, Fault
 from hthor.episode.episode_state import EpisodeState
 from hthor.episode.play import play
+from hthor.episode.recording.episode_log import EpisodeLog, Fault
+from hthor.episode.recording.task_part import task_began, task_part
 from hthor.episode.trial_world import TrialWorld
 
 __all__ = [
@@ -19,4 +20,6 @@ __all__ = [
     "Observer",
     "TrialWorld",
     "play",
+    "task_began",
+    "task_part",
 ]

@@ -12,24 +12,26 @@ All seats that observe in one tick observe the same moment, and the order of cal
 only `advance` lets messages be read and sent, motions begin, and time pass.
 """
 
-import traceback
 from collections.abc import Callable, Mapping, Sequence
 
 import msgspec
 
-from hthor import rules, seeds
+from hthor import seeds
 from hthor.comms.mailbox import Mailbox
-from hthor.episode.episode_log import EpisodeLog, Fault
 from hthor.episode.episode_state import EpisodeState
 from hthor.episode.goal_judge import GoalJudge
-from hthor.episode.log_writer import LogWriter, end_event
+from hthor.episode.participants import Participants
+from hthor.episode.phases import PhaseClock
+from hthor.episode.recording.episode_log import EpisodeLog
+from hthor.episode.recording.log_writer import LogWriter, end_event
+from hthor.episode.recording.set_points import rounded
 from hthor.episode.seat_inputs import make_briefing, make_observation
-from hthor.episode.set_points import rounded
+from hthor.episode.signals import SignalReceiver
 from hthor.episode.speech import say
 from hthor.episode.trial_world import TrialWorld
 from hthor.errors import HthorError
 from hthor.types import HUMAN, Action, Briefing, Drive, Motion, Observation, TrialSpec, is_person
-from hthor.types.events import AgentFault, Event, JournalEntry, Paused, Resumed, Thought
+from hthor.types.events import Event, JournalEntry, Paused, Resumed, Thought
 
 Observer = Callable[["Episode", Sequence[Event]], None]
 """Called after `Episode.reset` and after every tick, with the events since its last call; it must change nothing."""
@@ -54,24 +56,23 @@ class Episode:
         self.people = tuple(seat for seat in self.seats if is_person(seat))
         self._seed = seeds.derive(trial.seed, "world", trial.session, trial.index, trial.task.id)
         self._privileges = {robot.seat: robot.agent.privileges for robot in trial.robots}
-        self._limit = round(self.task.time_limit / rules.TICK_S)
         self._observers: list[Observer] = []
 
     def reset(self) -> None:
         """Begin the trial at tick 0, whatever has happened before."""
-        self.world.reset(self.task, seed=self._seed)
         self.voided, self.paused = "", False
         self._mailbox = Mailbox([seat for seat in self.seats if seat not in self.people], self.people)
-        self._goal = GoalJudge(self.task)
         self._writer = LogWriter({seat: self.world.bodies[seat] for seat in self.seats})
+        self._goal = GoalJudge(self.task)
+        self._phases = PhaseClock(self.task, self._goal, self._writer.rest)
+        self.world.reset(self._phases.arrangement, seed=self._seed)
         self.events, self.faults = self._writer.events, self._writer.faults
-        self._active = self.seats  # without those that were retired
+        self._signals = SignalReceiver(self.people, self.events, self._phases)
+        self._participants = Participants(self.seats)
         self._steps = 0  # of this tick, that bodies that drive have made
         self._observed: dict[str, Observation] = {}
-        self._actions: dict[str, tuple[Action, Observation | None]] = {}
-        self._failed: dict[str, Fault] = {}
         self._writer.trace(self.world)
-        self.events.extend(self._goal.begin(self.world.snapshot(), self.world.house))
+        self.events.extend(self._phases.begin(self.world))
         for observer in self._observers:
             observer(self, tuple(self.events))
 
@@ -88,13 +89,13 @@ class Episode:
     @property
     def done(self) -> bool:
         """Whether the goal is met, the time is over, or the trial was voided."""
-        return self._goal.met or bool(self.voided) or self.world.tick >= self._limit
+        return self._goal.met or bool(self.voided) or self.world.tick >= self._phases.end
 
     @property
     def waiting(self) -> tuple[str, ...]:
         """The seats that are to be asked now: their body is free for a new motion, or their mail has changed."""
         idle, changed = self.world.idle, self._mailbox.changed
-        return tuple([seat for seat in self._active if idle(seat) or changed(seat)])
+        return tuple([seat for seat in self._participants.active if idle(seat) or changed(seat)])
 
     def briefing(self, seat: str) -> Briefing:
         """What the seat's agent or human model is told before the trial."""
@@ -112,15 +113,17 @@ class Episode:
             return known
         if self._steps:
             raise HthorError("observe before the first step of a tick, so that all seats observe the same moment")
-        privileges = self._privileges.get(seat, ())
-        observation = make_observation(self.world, self._mailbox, seat, privileges, frozen=frozen)
+        privileges, phase = self._privileges.get(seat, ()), self._phases.name
+        display = self._signals.displays.state(seat)
+        observation = make_observation(self.world, self._mailbox, display, seat, privileges, phase, frozen=frozen)
         self._observed[seat] = observation
         return observation
 
     def submit(self, seat: str, action: Action, observation: Observation | None = None) -> None:
-        """Let a seat act: what it says takes effect in the next `advance`, and its motion too if the body is free.
+        """Let a seat act: its words and signals take effect in the next `advance`; its motion too, if the body is free.
 
-        A second action in the same tick replaces the first; if it says nothing, what the first says is kept.
+        A second action in the same tick replaces the first; if it says nothing, what the first says is kept, and so
+        are its signals.
 
         Args:
             observation: what the seat saw when it decided, if that was in an earlier tick; a motion counts only if the
@@ -133,9 +136,7 @@ class Episode:
         if not isinstance(action, Action):
             raise TypeError(f"submit needs an hthor.types.Action, got {type(action).__name__}")
         self._check_seat(seat)
-        if seat in self._actions and action.say is None:
-            action = msgspec.structs.replace(action, say=self._actions[seat][0].say)
-        self._actions[seat] = (action, observation)
+        self._participants.submit(seat, action, observation)
 
     def steer(self, seat: str, drive: Drive) -> None:
         """Let a seat drive like this from its next step on, as a live person does between two ticks."""
@@ -153,15 +154,13 @@ class Episode:
 
     def retire(self, seat: str, error: Exception) -> None:
         """Take a failed agent out of the trial: its body stays where it is from now on, and its fault is logged."""
-        kind = str(getattr(error, "kind", type(error).__name__))
-        detail = str(getattr(error, "detail", "")) or "".join(traceback.format_exception(error, limit=-4))
-        self._failed.setdefault(seat, Fault(seat=seat, kind=kind, tick=self.tick, detail=detail))
+        self._participants.retire(self.tick, seat, error)
 
     def advance(self) -> tuple[Event, ...]:
         """Let one tick pass, and return its events. Raises HthorError when the trial is over or paused.
 
         Messages that were observed count as shown, and failed agents leave. Then every seat in order says what it has
-        to say and begins its motion. Then the world moves on, and the goal is judged.
+        to say and begins its motion. Then the world moves on, the next phase may begin, and the goal is judged.
         """
         self._check_running()
         world, events = self.world, self.events
@@ -169,12 +168,13 @@ class Episode:
         for seat in self.seats:
             if (observation := self._observed.get(seat)) is not None and observation.inbox:
                 events.extend(self._mailbox.shown(tick, seat))
-        if self._failed:
-            self._dismiss_failed()
+        if self._participants.failed:
+            self._dismiss_failed(tick)
         self._act(tick)
         events.extend(world.advance())
         self._observed.clear()
         self._steps = 0
+        events.extend(self._phases.advance(world, self._participants.active))
         self._writer.trace(world)
         events.extend(self._goal.judge(world.snapshot(), world.house, has_events=len(events) > first))
         happened = tuple(events[first:]) if len(events) > first else ()
@@ -213,12 +213,11 @@ class Episode:
             mailbox=self._mailbox.save_state(),
             log=self._writer.save_state(),
             goal=self._goal.save_state(self.world.snapshot()),
+            phases=self._phases.save_state(),
             voided=self.voided,
             paused=self.paused,
-            active=self._active,
+            participants=self._participants.save_state(),
             observed={seat: msgspec.structs.replace(one, senses=None) for seat, one in self._observed.items()},
-            actions=dict(self._actions),
-            failed=dict(self._failed),
             steps=self._steps,
         )
 
@@ -232,9 +231,11 @@ class Episode:
         self.world.load_state(state.world)
         self._mailbox.load_state(state.mailbox)
         self._writer.load_state(state.log)
+        self._signals.displays.reset()
         self.voided, self.paused = state.voided, state.paused
+        self._phases.load_state(state.phases)
         self._goal.load_state(state.goal, self.world.snapshot())
-        self._active, self._actions, self._failed = state.active, dict(state.actions), dict(state.failed)
+        self._participants.load_state(state.participants)
         self._steps = state.steps
         self._observed = {
             seat: msgspec.structs.replace(one, senses=self.world.senses(seat)) for seat, one in state.observed.items()
@@ -255,21 +256,17 @@ class Episode:
         end = end_event(self.tick, winner, self.voided) if self.done else None
         return self._writer.log(self.tick, end, self._goal.progress, ratings or {}, journals or {})
 
-    # ----------------------------------------------------------------------------------------------- within one tick
-
-    def _dismiss_failed(self) -> None:
-        for seat in self._active:
-            if (fault := self._failed.get(seat)) is not None:
-                self.faults.append(fault)
-                self.events.append(AgentFault(tick=self.tick, seat=seat, fault=fault.kind))
-                self._writer.rest.note(self.tick, seat, resting=True)
-        self._active = tuple(seat for seat in self._active if seat not in self._failed)
-        self._failed = {}
+    def _dismiss_failed(self, tick: int) -> None:
+        faults, events = self._participants.dismiss_failed(tick)
+        self.faults.extend(faults)
+        self.events.extend(events)
+        for fault in faults:
+            self._writer.rest.note(tick, fault.seat, resting=True)
 
     def _act(self, tick: int) -> None:
         """Let every seat that has acted say what it says and begin its motion."""
-        idle, actions = self.world.idle, self._actions
-        for seat in self._active:
+        idle, actions = self.world.idle, self._participants.actions
+        for seat in self._participants.active:
             given, free = actions.get(seat), idle(seat)
             if given is None:
                 if free:
@@ -280,11 +277,13 @@ class Episode:
                 self.events.append(Thought(tick=tick, seat=seat, ticks=tick - seen.tick))
             if action.say is not None:
                 self.events.extend(say(self.world, self._mailbox, seat, action.say))
+            for signal in action.signals:
+                self.events.extend(self._signals.receive(tick, seat, signal))
             if (free and (seen is None or seen.idle)) or isinstance(action.motion, Drive):
                 self._start(seat, action.motion)
             elif free:
                 self._writer.rest.note_unasked(tick, seat)
-        self._actions = {}
+        self._participants.actions = {}
 
     def _start(self, seat: str, motion: Motion) -> None:
         motion, world = rounded(motion) if isinstance(motion, Drive) else motion, self.world

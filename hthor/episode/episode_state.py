@@ -3,10 +3,11 @@
 from msgspec import Struct
 
 from hthor.comms.mailbox import MailboxState
-from hthor.episode.episode_log import Fault
 from hthor.episode.goal_judge import GoalState
-from hthor.episode.log_writer import LogState
-from hthor.types import Action, Observation
+from hthor.episode.participants import ParticipantsState
+from hthor.episode.phases import PhaseState
+from hthor.episode.recording.log_writer import LogState
+from hthor.types import Observation
 
 
 class EpisodeState(Struct, frozen=True, kw_only=True):
@@ -16,10 +17,9 @@ class EpisodeState(Struct, frozen=True, kw_only=True):
     mailbox: MailboxState
     log: LogState
     goal: GoalState
+    phases: PhaseState
     voided: str
     paused: bool
-    active: tuple[str, ...]
+    participants: ParticipantsState
     observed: dict[str, Observation]
-    actions: dict[str, tuple[Action, Observation | None]]
-    failed: dict[str, Fault]
     steps: int

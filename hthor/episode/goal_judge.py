@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from msgspec import Struct
 
 from hthor import plugins, rules
+from hthor.episode.standstill import StandState, Standstill
 from hthor.tasks.kind import TaskKind
 from hthor.types import HUMAN, HouseSpec, Snapshot, TaskSpec, ThingState
 from hthor.types.events import Event, Progress
@@ -14,11 +15,17 @@ _EVERY_TICKS = round(1.0 / rules.TICK_S)
 
 
 class GoalState(Struct, frozen=True):
-    """A copy of what a `GoalJudge` knows; ``current``: its progress is that of the world's present objects."""
+    """A copy of what a `GoalJudge` knows.
+
+    ``current``: its progress is that of the world's present objects; ``last``: the last tick of the task; ``stand`` is
+    the state of its `Standstill`, if the goal is met by standing still.
+    """
 
     met: bool
     progress: float | None
     current: bool
+    last: int
+    stand: StandState = (None, 0)
 
 
 class GoalJudge:
@@ -30,28 +37,47 @@ class GoalJudge:
 
     def __init__(self, task: TaskSpec) -> None:
         self._kind: TaskKind = plugins.load("task kind", task.kind)
-        self._task, self._last = task, round(task.time_limit / rules.TICK_S)
+        self._task, self._last = task, 0
         self.met = False
         self.progress: float | None = None if type(self._kind).progress is TaskKind.progress else 0.0
+        seat = self._kind.stopper(task.goal)
+        self._stand = Standstill(seat, round(self._kind.stop_s / rules.TICK_S)) if seat else None
         self._things: Mapping[str, ThingState] | None = None
 
     def begin(self, snapshot: Snapshot, house: HouseSpec) -> tuple[Event, ...]:
-        """Compute the progress before the first tick; a goal is not met before something was done."""
+        """Compute the progress before the first tick of the task; a goal is not met before something was done."""
+        self._last = snapshot.tick + round(self._task.time_limit / rules.TICK_S)
         return self._update(snapshot, house, has_events=True) if self.progress is not None else ()
 
     def judge(self, snapshot: Snapshot, house: HouseSpec, *, has_events: bool) -> tuple[Event, ...]:
-        """Judge the goal after a tick; the event "progress" if the share changed.
+        """Judge the goal after a tick, but not before `begin`; the event "progress" if the share changed.
 
         Args:
             has_events: whether anything happened in this tick.
         """
+        if not self._last:
+            return ()
         self.met = self._kind.met(self._task, snapshot, house)
+        if self._stand is not None:
+            self._judge_stop(self._stand, snapshot)
         return self._update(snapshot, house, has_events=has_events) if self.progress is not None else ()
 
     def winner(self, snapshot: Snapshot, people: Sequence[str]) -> str:
-        """The person who has an object that was to be found in view; the first person if nothing was to be found."""
+        """Who met the goal: the person who has an object that was to be found in view, or who stopped at a place.
+
+        The first person if nothing was to be found and nobody had to stop.
+        """
+        if self._stand is not None:
+            return self._stand.seat
         wanted = {job.target for job in self._task.goal.todo if job.relation == "find"}
         return next((seat for seat in people if wanted & set(snapshot.in_view.get(seat, ()))), HUMAN)
+
+    def _judge_stop(self, stand: Standstill, snapshot: Snapshot) -> None:
+        """The goal is met only when the body that is in the right place has stood still for long enough."""
+        if self.met:
+            self.met = stand.lasts(snapshot)
+        else:
+            stand.leave()
 
     def _update(self, snapshot: Snapshot, house: HouseSpec, *, has_events: bool) -> tuple[Event, ...]:
         changed = snapshot.things is not self._things and (has_events or not any(snapshot.holding.values()))
@@ -67,9 +93,12 @@ class GoalJudge:
 
     def save_state(self, snapshot: Snapshot) -> GoalState:
         """A copy of what was judged; ``snapshot`` is that of the present tick."""
-        return GoalState(self.met, self.progress, snapshot.things is self._things)
+        stand = self._stand.state if self._stand is not None else (None, 0)
+        return GoalState(self.met, self.progress, snapshot.things is self._things, self._last, stand)
 
     def load_state(self, state: GoalState, snapshot: Snapshot) -> None:
         """Continue from a copy, in a world with this snapshot."""
-        self.met, self.progress = state.met, state.progress
+        self.met, self.progress, self._last = state.met, state.progress, state.last
         self._things = snapshot.things if state.current else None
+        if self._stand is not None:
+            self._stand.state = state.stand

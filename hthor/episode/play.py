@@ -1,13 +1,14 @@
 """Plays a trial with human models and agents, from its beginning to its end."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from hthor.episode.clocks import DecisionClock, make_clock
 from hthor.episode.episode import Episode
-from hthor.episode.episode_log import EpisodeLog
+from hthor.episode.recording.episode_log import EpisodeLog
 from hthor.episode.trial_world import TrialWorld
 from hthor.humans.model import HumanModel
 from hthor.types import Mind, TrialSpec
+from hthor.types.events import Event, Predicted
 
 
 def play(
@@ -40,11 +41,19 @@ def play(
                 elif not clock.busy(seat):
                     clock.ask(seat, robots[seat], episode.observe(seat, frozen=clock.frozen))
             take_answers(episode, clock)
-            episode.advance()
+            if happened := episode.advance():
+                record_beliefs(happened, humans)
     finally:
         clock.close()
     ratings = {seat: human.rate(episode.met, episode.tick) for seat, human in humans.items() if not episode.voided}
     return episode.log(ratings, {seat: getattr(human, "journal", ()) for seat, human in humans.items()})
+
+
+def record_beliefs(events: Sequence[Event], humans: Mapping[str, HumanModel]) -> None:
+    """Let human models that know their beliefs record those that a robot has predicted."""
+    for event in events:
+        if isinstance(event, Predicted) and (tell := getattr(humans[event.person], "record_belief", None)) is not None:
+            tell(event.tick, event.object)
 
 
 def begin(episode: Episode, humans: Mapping[str, HumanModel], robots: Mapping[str, Mind], clock: DecisionClock) -> None:

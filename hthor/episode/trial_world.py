@@ -3,7 +3,18 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
 
-from hthor.types import BodySpec, HouseSpec, Motion, Outcome, Pose, Senses, Snapshot, TaskSpec, ThingState
+from hthor.types import (
+    BodySpec,
+    HouseSpec,
+    Motion,
+    Outcome,
+    Placement,
+    Pose,
+    Senses,
+    Snapshot,
+    TaskSpec,
+    ThingState,
+)
 from hthor.types.events import Event
 from hthor.types.sensors import RgbImage
 
@@ -39,6 +50,12 @@ class TrialWorld(Protocol):
             task: a task in this world's house, with this world's objects.
             seed: the root of all random draws of the world, such as detection errors.
         """
+
+    def restart(self, task: TaskSpec) -> None:
+        """Begin a task as `reset` does, but between two ticks: the ticks and the random draws go on."""
+
+    def rearrange(self, before: Sequence[Placement], after: Sequence[Placement]) -> None:
+        """Move the objects whose places differ between two arrangements, between two ticks; also out of hands."""
 
     def idle(self, seat: str) -> bool:
         """Whether `start` may be called: the body carries out no motion, or drives with its hands free."""

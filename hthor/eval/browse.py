@@ -9,16 +9,18 @@ from pathlib import Path
 from msgspec import Struct
 
 from hthor import rules
+from hthor.episode import task_part
 from hthor.errors import HthorError
 from hthor.eval.config import cli_command
 from hthor.eval.config.run_config import RunConfig
-from hthor.eval.records import attempts, trial_log
+from hthor.eval.records import attempts, corrected_log
 from hthor.eval.records.attempts import VoidedTrial
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
-from hthor.eval.results import aggregate, result_file
+from hthor.eval.results import aggregate, applied_corrections, result_file
 from hthor.eval.results.result_file import RunResult
 from hthor.eval.runner import fault_report
+from hthor.log_corrections import CorrectAdoption, VoidTrial
 
 LIST_SCHEMA, VIEW_SCHEMA = "hthor.runs/1", "hthor.run-view/2"
 _DEPTH = 6
@@ -109,7 +111,7 @@ def _tally(run: Path, plan: RunConfig) -> tuple[int, float, int]:
     if result is not None and result.metrics["sr"].mean is not None and result.hashes.run == plan.sha256:
         trials = result.counts.trials
         return trials, result.metrics["sr"].mean * trials, result.counts.faults
-    kept = attempts.select_records(record for _, record in trial_log.read(run / "trials.jsonl"))
+    kept = attempts.select_records(record for _, record in corrected_log.read(run / "trials.jsonl"))
     return len(kept), float(sum(one.met for one in kept)), sum(bool(one.faults) for one in kept)
 
 
@@ -166,7 +168,8 @@ class TrialLine(Struct, frozen=True, kw_only=True):
 class RunView(Struct, frozen=True, kw_only=True):
     """The document of `hthor runs view`. ``result`` is None while trials are missing, or if none was played.
 
-    ``voided`` lists the attempts that do not count.
+    ``voided`` lists the attempts that do not count, ``corrections`` the corrections in effect. Trials that a correction
+    voided for good are not among the ``total``.
     """
 
     schema: str = VIEW_SCHEMA
@@ -177,6 +180,7 @@ class RunView(Struct, frozen=True, kw_only=True):
     result: RunResult | None
     trials: tuple[TrialLine, ...]
     voided: tuple[VoidedTrial, ...]
+    corrections: tuple[VoidTrial | CorrectAdoption, ...] = ()
     next: tuple[str, ...]
 
 
@@ -188,12 +192,14 @@ def view_run(folder: Path, wanted: TrialFilter) -> tuple[RunView, RunResult | No
     """
     run = RunFolder(folder)
     plan = run.config
-    _, records = run.digest()
-    total = plan.expected_trials
+    played = run.played()
+    records = [one for one in played if not one.log.voided]
+    total = plan.expected_trials - run.given_up
     whole = len(records) >= total
     stored = result_file.load_current(folder)
-    so_far = stored if whole and stored else aggregate.rescore(folder)[1] if records else None
-    lines = tuple(_line(number, one) for number, one in enumerate(records) if wanted.fits(one))
+    fresh = stored is not None and (stored.corrections or None) == applied_corrections.applied(run)
+    so_far = stored if whole and fresh else aggregate.rescore(folder)[1] if records else None
+    lines = tuple(_line(number, one) for number, one in enumerate(played) if not one.log.voided and wanted.fits(one))
     view = RunView(
         folder=str(folder),
         name=plan.name,
@@ -202,6 +208,7 @@ def view_run(folder: Path, wanted: TrialFilter) -> tuple[RunView, RunResult | No
         result=so_far if whole and not plan.shard else None,
         trials=lines,
         voided=run.voided,
+        corrections=run.corrections.in_effect,
         next=tuple(_next(folder, plan, records, whole=whole)),
     )
     return view, so_far
@@ -216,7 +223,7 @@ def _line(number: int, record: TrialRecord) -> TrialLine:
         house=spec.task.house,
         session=spec.session,
         met=record.met,
-        time_s=round(record.ticks * rules.TICK_S, 1),
+        time_s=round(task_part(record.log).ticks * rules.TICK_S, 1),
         sent=int(record.metrics["sent"] or 0),
         accepted=int(record.metrics["accepted"] or 0),
         trust=record.metrics["trust"],

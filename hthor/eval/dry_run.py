@@ -7,7 +7,7 @@ import math
 import os
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing
 from itertools import pairwise
 from pathlib import Path
@@ -18,8 +18,8 @@ from msgspec import Struct
 
 from hthor import rules
 from hthor.errors import RunError
+from hthor.eval.comparison import sample_size
 from hthor.eval.config.run_config import RunConfig
-from hthor.eval.records import attempts, trial_log
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.results import result_file
 from hthor.eval.runner import engines, run_options
@@ -166,6 +166,19 @@ class Setting(Struct, frozen=True, kw_only=True):
     origin: str
 
 
+class DesignForecast(Struct, frozen=True, kw_only=True):
+    """The groups of a between-subjects study, and what that design costs.
+
+    ``wider`` is about how many times as wide the intervals of differences are as if all conditions had the people of
+    one group, for outcomes with the correlation that `hthor power` assumes when none was measured.
+    """
+
+    participants: int
+    groups: dict[str, int]
+    wider: float
+    sentence: str
+
+
 class Forecast(Struct, frozen=True, kw_only=True):
     """All runs that would be played, and how submitted agents would be isolated."""
 
@@ -176,6 +189,7 @@ class Forecast(Struct, frozen=True, kw_only=True):
     trials: int
     played: int
     seconds: float | None
+    design: DesignForecast | msgspec.UnsetType = msgspec.UNSET
 
 
 def make_forecast(
@@ -204,6 +218,26 @@ def make_forecast(
         trials=sum(run.trials for run in runs),
         played=sum(run.played for run in runs),
         seconds=None if None in seconds else round(sum(filter(None, seconds)), 1),
+        design=_design_forecast([run.config for run in resolved.runs]),
+    )
+
+
+def _design_forecast(configs: Sequence[RunConfig]) -> DesignForecast | msgspec.UnsetType:
+    design, first = configs[0].design, configs[0].humans.name
+    if not design:
+        return msgspec.UNSET
+    groups = {config.label: config.participants for config in configs if config.humans.name == first}
+    wider = round(1.0 / math.sqrt(1.0 - sample_size.USUAL), 2)
+    sizes = ", ".join(f"{label} {people}" for label, people in groups.items())
+    return DesignForecast(
+        participants=design.participants,
+        groups=groups,
+        wider=wider,
+        sentence=(
+            f"between subjects: {design.participants} people in groups ({sizes}). Intervals of differences are "
+            f"about {wider:.1f} times as wide as if all robots met the people of one group (outcomes that correlate by "
+            f"{sample_size.USUAL:g}; 'hthor power' tells how many people that takes)."
+        ),
     )
 
 
@@ -211,7 +245,8 @@ def _run_forecast(
     run: ScheduledRun, workers: int, houses: int, sampler: CostSampler | None, *, control: bool
 ) -> RunForecast:
     trials = run.config.expected_trials
-    played = len(attempts.select_records(record for _, record in trial_log.read(run.folder.log_file)))
+    given_up = run.folder.corrections.given_up
+    played = sum(not one.log.voided or one.key in given_up for one in run.folder.played())
     left = trials - played
     cost = measured_cost(run)
     if cost is None and left and sampler is not None:

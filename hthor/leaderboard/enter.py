@@ -63,6 +63,12 @@ def make_entry(folder: Path, submission: Submission | None = None) -> Entry:
     """Make the entry of one run."""
     run = RunFolder(folder)
     config = run.config
+    if corrections := run.corrections.in_effect:
+        raise BoardError(
+            f"{folder} has {len(corrections)} corrections in effect, and cannot stand on the leaderboard: an entry is "
+            f"what a machine plays again, and a correction is a person's judgement. 'hthor correct {folder}' lists "
+            "them; withdraw them, or play the run again into another folder."
+        )
     lines, kept = run.lines()
     _whole(folder, config, len(kept))
     if run.voided:

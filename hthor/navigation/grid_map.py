@@ -15,6 +15,8 @@ LOW_M = 2.1
 """[m] Obstacles lower than this are furniture, with things on or in them; higher obstacles are walls."""
 _BESIDE_CELLS = 8
 _CHUNK = 64
+_AROUND_M = 3.0
+"""[m] How far a map reaches beyond a point that it is extended to: paths there may be roundabout."""
 
 
 class GridMap:
@@ -79,6 +81,10 @@ class GridMap:
             )
         scan_kernel.surround(self.beside, self._obstacles, first, self._count, self.left, self.bottom, _BESIDE_CELLS)
         self.version += 1
+
+    def include(self, x: float, y: float) -> None:
+        """Extend the map with unknown cells up to (``x``, ``y``) [m] and a few metres beyond."""
+        self._cover(x - _AROUND_M, y - _AROUND_M, x + _AROUND_M, y + _AROUND_M)
 
     def mark_blocked(self, x: float, y: float) -> None:
         """Mark the cell at (``x``, ``y``) [m] as occupied, for an obstacle that no scan showed."""

@@ -25,10 +25,13 @@ class Follower:
     Args:
         step: longest move [m]. turn_rad: heading error above which it turns first [rad].
         arrived_m: distance at which a way point counts as reached [m].
+        sidestep_m: a way point nearer than this is reached sideways or backwards, without turning first [m].
     """
 
-    def __init__(self, step: float = 0.5, turn_rad: float = TURN_RAD, arrived_m: float = _ARRIVED_M) -> None:
-        self.step, self.turn_rad, self.arrived_m = step, turn_rad, arrived_m
+    def __init__(
+        self, step: float = 0.5, turn_rad: float = TURN_RAD, arrived_m: float = _ARRIVED_M, sidestep_m: float = 0.0
+    ) -> None:
+        self.step, self.turn_rad, self.arrived_m, self.sidestep_m = step, turn_rad, arrived_m, sidestep_m
         self.path: tuple[Vec2, ...] = ()
         self._next = 0
 
@@ -62,7 +65,9 @@ class Follower:
             self._next += 1
         if self.done:
             return None
-        return toward(pose, self.path[self._next], self.step, self.turn_rad)
+        point = self.path[self._next]
+        near = math.dist(point, (pose.x, pose.y)) < self.sidestep_m
+        return toward(pose, point, self.step, math.pi if near else self.turn_rad)
 
 
 def toward(pose: Pose, point: Vec2, step: float = 0.5, turn_rad: float = TURN_RAD) -> Motion:

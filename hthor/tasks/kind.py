@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from hthor import rules, seeds
 from hthor.errors import HthorError
-from hthor.types import Goal, HouseSpec, Placement, Snapshot, TaskSpec
+from hthor.types import Goal, HouseSpec, Phase, Placement, Snapshot, TaskSpec
 
 if TYPE_CHECKING:
     import numpy as np
@@ -35,16 +35,25 @@ class TaskKind(ABC):
         short: the kind's name in task ids, and the name of its suite if it has one.
         crew: names of the robots in a trial, unless the caller chooses other robots.
         time_limit: time limit of its tasks [s].
+        intended_s: the sizes (`size_of`) intended for the easiest and the hardest task of a house [s]; a small house
+            does not reach the latter.
+        stop_s: how long whoever meets the goal has to stand still [s]; 0 if the goal is met at once.
         t_star_base, t_star_slowness: T* is ``t_star_base`` [s] plus ``t_star_slowness`` times the least time; by
             default the least time itself.
+        medium_from, hard_from: scores (`hthor.tasks.generation.difficulty`) at which medium and hard tasks begin, so
+            that each stratum has about a third of the kind's tasks.
     """
 
     name: str
     short: str
     crew: tuple[str, ...] = ("scout",)
     time_limit: float = rules.TIME_LIMIT_S
+    intended_s: tuple[float, float] = (4.0, 20.5)
+    stop_s: float = 0.0
     t_star_base: float = 0.0
     t_star_slowness: float = 1.0
+    medium_from: float = 22.0
+    hard_from: float = 29.0
 
     @abstractmethod
     def goals(self, house: HouseSpec) -> tuple[Goal, ...]:
@@ -109,6 +118,50 @@ class TaskKind(ABC):
             raise HthorError(f"house '{house.id}' has nothing for a task of kind '{self.name}'")
         goal = known[seeds.choice([1.0] * len(known), root, "goal")]
         return goal, arrange(house, root, {goal.target: goal.destination})
+
+    def phases(self, task: TaskSpec, house: HouseSpec, root: int) -> tuple[Phase, ...]:  # noqa: ARG002
+        """What comes before a task of this kind, such as a tour of the house before things are moved; by default
+        nothing.
+
+        Args:
+            task: the task as drawn, without phases. house: its house.
+            root: of all random draws, the one that `draw` got.
+        """
+        return ()
+
+    def told_goal(self, task: TaskSpec) -> Goal:
+        """The goal as people and robots are told it, by default all of it.
+
+        A job that they have to remember from an earlier phase has the relation "back", and neither destinations nor a
+        place.
+        """
+        return task.goal
+
+    def completed(self, task: TaskSpec, house: HouseSpec) -> TaskSpec:  # noqa: ARG002 - most kinds add nothing
+        """A drawn task with what depends on its start poses, such as an instruction that describes the way."""
+        return task
+
+    def stopper(self, goal: Goal) -> str:  # noqa: ARG002 - the same for most goals
+        """The seat that has to stand still for `stop_s` where `met` holds; empty for none."""
+        return ""
+
+    def doubt(self, task: TaskSpec, house: HouseSpec) -> float:  # noqa: ARG002 - only of kinds without objects
+        """For a task that is not about objects: the share [0, 1] of wrong ways that somebody may take first."""
+        return 0.0
+
+    def size_of(
+        self,
+        house: HouseSpec,  # noqa: ARG002 - most kinds need only the least times
+        objects: tuple[Placement, ...],  # noqa: ARG002
+        goal: Goal,  # noqa: ARG002
+        least: NDArray[np.float64],
+    ) -> NDArray[np.float64]:
+        """(N,) [s] The size of a task, by default its least time; generation draws tasks of different sizes.
+
+        Args:
+            least: (N,) least times [s] of the task from N starts.
+        """
+        return least
 
     def misfit(self, task: TaskSpec, house: HouseSpec) -> str:  # noqa: ARG002 - most kinds accept any
         """Why a valid task is still unsuitable, in words; empty when it is suitable. If not, generation draws again."""

@@ -7,6 +7,7 @@ import math
 import shlex
 from collections.abc import Iterator, Sequence
 
+import msgspec
 from msgspec import Struct
 
 from hthor import catalog, plugins
@@ -81,6 +82,7 @@ def task_faults(task: TaskSpec, house: HouseSpec) -> Iterator[tuple[str, str]]:
         yield "house_sha256", f"the task was made for {task.house_sha256}, the house '{task.house}' is {house.sha256}"
         return
     yield from _objects(task, house)
+    yield from _phases(task, house)
     yield from _goal(task, house)
     yield from _starts(task, house)
     for field, value in (("time_limit", task.time_limit), ("t_star", task.t_star)):
@@ -119,6 +121,22 @@ def _objects(task: TaskSpec, house: HouseSpec) -> Iterator[tuple[str, str]]:
                 yield f"{where}.position", f"'{placement.id}' and '{other.id}' are in one another"
 
 
+def _phases(task: TaskSpec, house: HouseSpec) -> Iterator[tuple[str, str]]:
+    kinds, names = {placement.id: placement.kind for placement in task.objects}, [phase.name for phase in task.phases]
+    for number, phase in enumerate(task.phases):
+        where = f"phases[{number}]"
+        if not phase.name or phase.name in names[:number]:
+            yield f"{where}.name", f"'{phase.name}' is empty or the name of an earlier phase"
+        if not (math.isfinite(phase.time_limit) and phase.time_limit > 0.0):
+            yield f"{where}.time_limit", f"must be a positive number of seconds, got {phase.time_limit}"
+        for placement in phase.objects:
+            if kinds.get(placement.id) != placement.kind:
+                problem = f"'{placement.id}', a {placement.kind}, is not one of the task's objects"
+                yield f"{where}.objects", f"{problem}; valid: {', '.join(kinds)}"
+        shown = msgspec.structs.replace(task, objects=phase.objects)
+        yield from ((f"{where}.{field}", problem) for field, problem in _objects(shown, house))
+
+
 def _support(
     where: str, placement: Placement, shelves: SupportSurfaces, task: TaskSpec, house: HouseSpec
 ) -> Iterator[tuple[str, str]]:
@@ -142,7 +160,7 @@ def _goal(task: TaskSpec, house: HouseSpec) -> Iterator[tuple[str, str]]:
         yield "kind", str(error)
         return
     ids = [placement.id for placement in task.objects]
-    if task.goal.target not in ids:
+    if task.goal.target not in ids and task.goal.relation != "go":
         yield "goal.target", f"'{task.goal.target}' is not one of the task's objects; valid: {', '.join(ids)}"
         return
     try:

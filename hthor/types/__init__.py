@@ -21,6 +21,7 @@ from hthor.types.actions import (
     Send,
     Wait,
 )
+from hthor.types.display import DisplayMap, MapBody, MapPlace
 from hthor.types.house import (
     HUMAN,
     HouseSpec,
@@ -38,15 +39,28 @@ from hthor.types.house import (
     is_person,
 )
 from hthor.types.mind import Mind
-from hthor.types.observations import Briefing, Message, Observation, Outcome, Receipt, Status, ThingState
+from hthor.types.observations import (
+    Briefing,
+    Display,
+    Message,
+    Observation,
+    Outcome,
+    PhaseBriefing,
+    Receipt,
+    Status,
+    ThingState,
+)
 from hthor.types.sensors import Camera, CameraSpec, Detection, DetectorSpec, Scan, Senses, Sighting, View
+from hthor.types.signals import Predict, Ready, Show, Signal
 from hthor.types.snapshot import Snapshot
 from hthor.types.specs import (
+    WALKERS,
     AgentRef,
     BodySpec,
     Goal,
     HumanSeat,
     Job,
+    Phase,
     Placement,
     RobotSeat,
     RobotSpec,
@@ -57,6 +71,7 @@ from hthor.types.specs import (
 __all__ = [
     "HUMAN",
     "SUBTICKS",
+    "WALKERS",
     "Action",
     "AgentRef",
     "BodySpec",
@@ -66,6 +81,8 @@ __all__ = [
     "Close",
     "Detection",
     "DetectorSpec",
+    "Display",
+    "DisplayMap",
     "Drive",
     "Drop",
     "Goal",
@@ -73,6 +90,8 @@ __all__ = [
     "HumanSeat",
     "Job",
     "Joint",
+    "MapBody",
+    "MapPlace",
     "Message",
     "Mind",
     "Motion",
@@ -82,10 +101,14 @@ __all__ = [
     "Opening",
     "Outcome",
     "Part",
+    "Phase",
+    "PhaseBriefing",
     "Pick",
     "Place",
     "Placement",
     "Pose",
+    "Predict",
+    "Ready",
     "Receipt",
     "Reply",
     "Rgba",
@@ -96,7 +119,9 @@ __all__ = [
     "Scan",
     "Send",
     "Senses",
+    "Show",
     "Sighting",
+    "Signal",
     "Snapshot",
     "Status",
     "Surface",

@@ -3,6 +3,7 @@
 from msgspec import Struct
 
 from hthor.types.house import Vec3
+from hthor.types.signals import Signal
 
 SUBTICKS = 6
 """Steps of a tick in which a body that drives is moved: 60 a second, about as often as a headset shows a picture."""
@@ -112,7 +113,8 @@ class Reply(Struct, tag="reply", frozen=True, kw_only=True):
 
 
 class Action(Struct, frozen=True, kw_only=True):
-    """One motion and at most one utterance; an utterance never interrupts a motion."""
+    """One motion, at most one utterance, and any signals; only the motion occupies the body."""
 
     motion: Motion = Wait()
     say: Send | Reply | None = None
+    signals: tuple[Signal, ...] = ()

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from msgspec import Struct
 
+from hthor.types.display import DisplayMap
 from hthor.types.house import HUMAN, HouseSpec, Pose, Vec3
 from hthor.types.sensors import Camera, DepthImage, Detection, LabelImage, RgbImage, Scan, Senses
 from hthor.types.specs import RELATIONS, BodySpec, Job
@@ -43,6 +44,19 @@ class Message(Struct, frozen=True, kw_only=True):
     to: str = ""
     question: bool = False
     answers: int | None = None
+
+
+class Display(Struct, frozen=True, kw_only=True):
+    """What a person's display shows at one moment; both parts can be hidden and shown again, see `Show`.
+
+    Attributes:
+        message: the message on the panel; None while the panel is hidden, or before the first message.
+        map: where the senders of confirmed messages and the places that they named are, seen from the person; None
+            while the map is hidden, or before the first confirmed message.
+    """
+
+    message: Message | None = None
+    map: DisplayMap | None = None
 
 
 class Receipt(Struct, frozen=True, kw_only=True):
@@ -103,7 +117,10 @@ class Observation(Struct, frozen=True, kw_only=True):
         outcome: how the last motion ended; None before any motion has ended.
         inbox: a person's open message, at most one; a robot's new messages and its open questions.
         receipt: the status of the seat's last message, for the reader whose status changed last; None before its first.
-        truth: true states of all objects, only for agents that declare the privilege ``object_poses``.
+        truth: true states of all objects, only for agents that declare the privilege ``object_poses``; empty in phases
+            before the task itself, in which everybody knows only what they see.
+        display: what a person's display shows; None for robots, which have none.
+        phase: name of the phase of the task, see `Briefing.phases`; empty in the task itself.
     """
 
     tick: int
@@ -116,6 +133,8 @@ class Observation(Struct, frozen=True, kw_only=True):
     inbox: tuple[Message, ...] = ()
     receipt: Receipt | None = None
     truth: tuple[ThingState, ...] = ()
+    display: Display | None = None
+    phase: str = ""
 
     @property
     def detections(self) -> tuple[Detection, ...]:
@@ -148,15 +167,25 @@ class Observation(Struct, frozen=True, kw_only=True):
         return self.senses.camera()
 
 
+class PhaseBriefing(Struct, frozen=True, kw_only=True):
+    """What is said before a trial about a phase: its name, what to do in it, and its time limit [s]."""
+
+    name: str
+    instruction: str
+    time_limit: float
+
+
 class Briefing(Struct, frozen=True, kw_only=True):
     """The information that an agent or a human model gets before a trial.
 
     Attributes:
         seat: its own seat. body: its own body. teammates: all other seats. crew: the body in every seat, its own too.
-        instruction: the task in words. kind: the task kind. time_limit: [s] of the trial. tick_s: [s] of one tick.
-        target, destination, relation: of the first job: the object's id, the kind of thing to place it in or on (empty
-            for a search), and "find", "on", "in" or "at".
-        jobs: all jobs of the task.
+        instruction: the task in words. kind: the task kind. time_limit: [s] of the task. tick_s: [s] of one tick.
+        target, destination, relation: of the first job: the object's id (for "go", one of `WALKERS`), the kind of thing
+            to place it in or on or to go to (empty for a search), and "find", "on", "in", "at", "back" or "go".
+        jobs: all jobs of the task. The relation "back" says that the object belongs where it was in an earlier phase.
+        phases: what comes before the task itself, in order; empty for most tasks. A phase ends early when every seat
+            has sent the signal `Ready`.
         privileges: declared and granted. house: the floor plan, only with the privilege ``house_map``.
     """
 
@@ -174,6 +203,7 @@ class Briefing(Struct, frozen=True, kw_only=True):
     kind: str = ""
     jobs: tuple[Job, ...] = ()
     crew: dict[str, BodySpec] = {}
+    phases: tuple[PhaseBriefing, ...] = ()
 
     @property
     def todo(self) -> tuple[Job, ...]:

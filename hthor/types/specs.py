@@ -5,12 +5,16 @@ from typing import Final, Literal
 import msgspec
 from msgspec import Struct
 
-from hthor.types.house import Pose, Vec2, Vec3
+from hthor.types.house import HUMAN, Pose, Vec2, Vec3
 
-Relation = Literal["find", "on", "in", "at"]
-"""What a job demands of an object: to be found anywhere, to lie on or in a thing, or to be at a place."""
+Relation = Literal["find", "on", "in", "at", "back", "go"]
+"""What a job demands of an object: to be found anywhere, to lie on or in a thing, to be at a place, or to be back where
+it was in an earlier phase of the task, which nobody is told; of a body: to go to a thing and stop there. A `Goal` never
+has "back"; only briefings do."""
 LOCKSTEP: Final = "lockstep"
-RELATIONS: tuple[Relation, ...] = ("find", "on", "in", "at")
+RELATIONS: tuple[Relation, ...] = ("find", "on", "in", "at", "back", "go")
+WALKERS = {"person_1": HUMAN, "robot_1": "robot"}
+"""The targets of jobs with the relation "go", and the seats of these bodies: the first person, the first robot."""
 Clock = Literal["lockstep", "charged", "concurrent"]
 """Decision clocks: the world waits for agents; it charges their time to the trial; or it goes on while they decide."""
 
@@ -87,6 +91,8 @@ _DEFAULTS = tuple(
 class Job(Struct, frozen=True, kw_only=True, omit_defaults=True):
     """One job with one object, ``target``: to find it, or to bring it on, in or to a destination.
 
+    With the relation "go" the target is one of `WALKERS`, a body that has to go to a thing of the destination's kind.
+
     ``destinations`` are kinds or ids of things, or ids of rooms; one of them is enough. ``place`` [m], house frame, is
     the exact place if that matters. ``hands`` is the number of bodies that are needed to carry the object.
     """
@@ -101,13 +107,15 @@ class Job(Struct, frozen=True, kw_only=True, omit_defaults=True):
 class Goal(Struct, frozen=True, kw_only=True, omit_defaults=True):
     """The goal of a task: to find or place ``target`` (an object's id). ``destination`` is a *kind* of thing.
 
-    With several jobs, ``jobs`` lists them all and the other fields describe the first.
+    With several jobs, ``jobs`` lists them all and the other fields describe the first. ``route`` [m], house frame, is
+    the way that the instruction describes, for the relation "go"; nobody in the trial is given it.
     """
 
     target: str
     relation: Relation
     destination: str = ""
     jobs: tuple[Job, ...] = ()
+    route: tuple[Vec2, ...] = ()
 
     @property
     def todo(self) -> tuple[Job, ...]:
@@ -118,8 +126,32 @@ class Goal(Struct, frozen=True, kw_only=True, omit_defaults=True):
         return (Job(target=self.target, relation=self.relation, destinations=destinations),)
 
 
+class Phase(Struct, frozen=True, kw_only=True, omit_defaults=True):
+    """A part of a trial before the task itself, with an arrangement of its own, such as a tour of the tidy house.
+
+    It ends when every seat has signalled `Ready`, and at its time limit. Time limit, T* and metrics of the task count
+    from the end of its last phase.
+
+    Attributes:
+        name: unique within the task, such as "tour"; `Observation.phase` has it.
+        instruction: what people and robots are told to do in this phase.
+        time_limit: [s]. objects: the arrangement when it begins; an object that it leaves out is not in the house yet.
+        restarts: how the next phase begins. If true, as a trial does: all objects in place, bodies at their starts with
+            empty hands, things closed. If not, bodies and doors stay as they are, and of the objects only those are
+            moved whose places differ between the two arrangements, even out of somebody's hands.
+    """
+
+    name: str
+    instruction: str
+    time_limit: float
+    objects: tuple[Placement, ...]
+    restarts: bool = True
+
+
 class TaskSpec(Struct, frozen=True, kw_only=True, omit_defaults=True):
     """One task, as frozen data; ``t_star`` [s] is the reference time, see `hthor.tasks.kind`.
+
+    A trial begins with the task's ``phases``, if it has any; all other fields describe what comes after them.
 
     The first person begins at ``human_start``, the others at ``other_human_starts``; those who have no place there
     begin at the free places nearest to the first. ``difficulty`` is easy, medium or hard, and depends on the task
@@ -141,6 +173,12 @@ class TaskSpec(Struct, frozen=True, kw_only=True, omit_defaults=True):
     t_star: float
     difficulty: Literal["", "easy", "medium", "hard"] = ""
     split: Literal["", "seen", "new"] = ""
+    phases: tuple[Phase, ...] = ()
+
+    @property
+    def longest(self) -> float:
+        """The longest time [s] that a trial of the task can take, with all its phases."""
+        return self.time_limit + sum(phase.time_limit for phase in self.phases)
 
 
 class AgentRef(Struct, frozen=True, kw_only=True):

@@ -3,11 +3,14 @@
 import math
 from collections.abc import Sequence
 
-from hthor.types import Pose, Vec2
+from hthor.errors import HthorError
+from hthor.types import Placement, Pose, TaskSpec, Vec2
 from hthor.world import numbers
 from hthor.world.motion import spawn
 from hthor.world.simulation import Simulation
 from hthor.world.state.body_state import BodyState
+
+_AT_REST = (0.0, 0.0, 0.0)
 
 
 class EditableSimulation(Simulation):
@@ -32,6 +35,55 @@ class EditableSimulation(Simulation):
         copy.pose = Pose(x=place[0], y=place[1], yaw=math.atan2(y - place[1], x - place[0]))
         return copy
 
+    def restart(self, task: TaskSpec) -> None:
+        """Begin a task as `reset` does, but between two ticks: the ticks and the random draws go on.
+
+        Raises:
+            TaskError: as `reset`.
+        """
+        spawn.check_task(task, self.house)
+        tick, seed = self.tick, self._seed
+        self._begin({placement.id: placement for placement in task.objects}, task.id)
+        self._seed = seed
+        people = (task.human_start, *task.other_human_starts)
+        spawn.place_bodies(tuple(self._seats.values()), people, task.robot_starts)
+        self._begin_moment(tick)
+
+    def rearrange(self, before: Sequence[Placement], after: Sequence[Placement]) -> None:
+        """Move the objects whose places differ between two arrangements, also out of hands, and let them rest there.
+
+        Everything else stays as it is: bodies, doors, and objects that have the same place in both arrangements, even
+        if they were carried elsewhere. An object that ``after`` leaves out leaves the house. Where somebody has put
+        something in the meantime, an object gets the free place nearest to its own on the same support.
+
+        Raises:
+            UnknownName: when there is no object with this id. HthorError: when there is no room for an object.
+        """
+        was = {placement.id: (placement.position, placement.yaw) for placement in before}
+        moved = [one for one in after if was.get(one.id) != (one.position, one.yaw)]
+        gone = was.keys() - {placement.id for placement in after}
+        for id in sorted(gone | {placement.id for placement in moved}):
+            self._take_away(id)
+        for placement in moved:
+            try:
+                self._editor.put(placement.id, placement.position, "", placement.yaw, _AT_REST)
+            except HthorError:
+                if not placement.support:
+                    raise
+                self._editor.put(placement.id, placement.position, placement.support, 0.0, _AT_REST)
+
+    def _take_away(self, id: str) -> None:
+        """Take an object out of the episode, and out of the hands that hold it; what these hands do ends."""
+        for body in self._seats.values():
+            if body.holding == id:
+                if body.activity is not None and body.activity.of_hands:
+                    body.activity = None
+                self._joint_carrying.release(body, self.tick)
+                if body.holding:
+                    body.holding = ""
+                    self._objects.put(id, self._objects.pose(id), "")
+        self._editor.remove(id)
+
     def teleport(self, seat: str, pose: Pose) -> None:
         """Put a body somewhere at once; its motion under way, and its drive, end.
 
@@ -43,10 +95,12 @@ class EditableSimulation(Simulation):
         spawn.check_fits(body, pose, self._seats.values())
         body.pose, body.activity = pose, None
         self._driven.stop(body)
+        self._loose_things.make_way(body, (0.0, 0.0))
         self._door_handling.release(seat)
         self._joint_carrying.release(body, self.tick)
         if body.holding:
             self._objects.follow(body.holding)
+        self._mocap.write()
 
     def put_object(
         self,

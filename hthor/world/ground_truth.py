@@ -25,15 +25,17 @@ class GroundTruth:
         self._first, *self._others = self._people.values()
         self._things: dict[str, ThingState] = {}
         self._version = (-1, -1)
-        self._view: LazyInView | None = None
+        self._view: LazyInView | None = None  # the same record as long as nothing changes
 
     def snapshot(self, tick: int) -> Snapshot:
         """The true state at this tick."""
         poses, holding = {}, {}
         for seat in self._seats:  # called at every tick: one loop is cheaper than two comprehensions
             poses[seat.name], holding[seat.name] = seat.pose, seat.holding
-        view, things = self._in_view(tick), self.states()
-        return Snapshot(tick=tick, poses=poses, things=things, in_view=view, holding=holding)
+        view, moment = self._view, self._moment()
+        if view is None or view.moment != moment:
+            self._view = view = LazyInView(self, self._names, moment, tick)
+        return Snapshot(tick=tick, poses=poses, things=self.states(), in_view=view, holding=holding)
 
     def states(self) -> dict[str, ThingState]:
         """States by id; the same dict as before if nothing has changed, else a new one."""
@@ -55,13 +57,6 @@ class GroundTruth:
         if doors:
             things.update((state.id, state) for state in self._doors.states())
         return {id: things[id] for id in sorted(things)} if gone or len(things) != known else things
-
-    def _in_view(self, tick: int) -> LazyInView:
-        """The people's objects in view; the same record as long as nothing changes."""
-        view, moment = self._view, self._moment()
-        if view is None or view.moment != moment:
-            self._view = view = LazyInView(self, self._names, moment, tick)
-        return view
 
     def _moment(self) -> _Moment:
         if not self._others:

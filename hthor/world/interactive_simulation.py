@@ -2,11 +2,18 @@
 
 from collections.abc import Iterable
 
+import numpy as np
+from numpy.typing import NDArray
+
 from hthor import catalog, rules
+from hthor.comms import map_picture
+from hthor.comms.display import Displays
+from hthor.comms.display_contents import display_contents
 from hthor.comms.mailbox import Mailbox
 from hthor.errors import HthorError, UnknownName
 from hthor.geometry import plane
 from hthor.types import (
+    Display,
     Drive,
     Message,
     Motion,
@@ -22,7 +29,6 @@ from hthor.types import (
 )
 from hthor.types.events import Event
 from hthor.world import numbers
-from hthor.world.motion import spawn
 from hthor.world.sensing_simulation import SensingSimulation
 
 _MOTION_TICKS_MAX = 36_000
@@ -36,6 +42,7 @@ class InteractiveSimulation(SensingSimulation):
 
     Attributes:
         mail: the mailbox that `hthor.world.actor.Actor` uses.
+        displays: which parts of the people's displays are shown.
         events: everything that has happened since the last reset, in order.
     """
 
@@ -46,7 +53,7 @@ class InteractiveSimulation(SensingSimulation):
             return
         self._begin({})
         self._seed = seed
-        spawn.place_bodies(tuple(self._seats.values()), (self.house.start,), ())
+        self._place_bodies((self.house.start,), ())
 
     def objects(self, kind: str = "", room: str = "") -> tuple[ThingState, ...]:
         """True states of the objects that can be picked up, by id; only of ``kind`` and in ``room`` (id) if given.
@@ -145,6 +152,33 @@ class InteractiveSimulation(SensingSimulation):
         """Every message since the last reset, each with its status."""
         return self.mail.messages
 
+    def display(self, seat: str) -> Display:
+        """What a person's display shows now.
+
+        Raises:
+            HthorError: for a seat that has no display, because it is a robot's.
+        """
+        state = self.displays.state(seat)
+        if state is None:
+            raise HthorError(f"{seat} has no display; only people have: {', '.join(self.displays.people)}")
+        return display_contents(state, self.mail, self.pose)
+
+    def map_view(self, seat: str, size: int = map_picture.SIZE_PX) -> NDArray[np.uint8]:
+        """The picture of the map on a person's display now, (size, size, 3) uint8.
+
+        The person is in the middle and looks up; around them are the senders of the messages that they confirmed, where
+        they are now, and the places that these messages name.
+
+        Raises:
+            HthorError: while no map is shown to this seat, or for a size that is no whole number from 40 to 4000.
+        """
+        shown, side = self.display(seat).map, numbers.whole_number("size", size, 40, 4000)
+        if shown is None:
+            has = self.displays.state(seat)
+            what = "it is hidden: show('map') shows it" if has and has.confirmed else "no message was confirmed yet"
+            raise HthorError(f"there is no map on the display of {seat}; {what}")
+        return map_picture.draw_map(shown, side)
+
     def note(self, events: Iterable[Event]) -> None:
         """Add events to `events`."""
         self.events.extend(events)
@@ -154,6 +188,7 @@ class InteractiveSimulation(SensingSimulation):
         people = tuple(seat for seat in self.seats if is_person(seat))
         self.mail = Mailbox(self.seats[len(people) :], people)
         self.events: list[Event] = []
+        self.displays = Displays(people, self.events)
 
     def _room(self, name: str) -> Room:
         """A room by its id or its name."""

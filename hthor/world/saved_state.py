@@ -99,6 +99,7 @@ class StateKeeper:
         parts.driven.steps = record.steps
         for seat, body in parts.seats.items():
             self._resume(body, record.bodies[seat])
+        parts.mocap.rewrite()
         return record
 
     def _body(self, body: BodyState) -> BodyRecord:

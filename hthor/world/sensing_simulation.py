@@ -28,6 +28,7 @@ from hthor.world.editable_simulation import EditableSimulation
 from hthor.world.model import inventory
 from hthor.world.perception import view_frustum
 from hthor.world.rendering.lazy_images import LazyImages, Size
+from hthor.world.rendering.viewpoint import Viewpoint
 from hthor.world.seat_senses import FrozenSenses, SeatSenses
 
 
@@ -154,6 +155,18 @@ class SensingSimulation(EditableSimulation):
     def top_view(self, pixels_per_metre: float = 50.0, profile: str | None = None) -> NDArray[np.uint8]:
         """The house from above without its ceilings, (H, W, 3) uint8, covering `top_view_bounds`; north (+y) is up."""
         return self._pictures.top_view(pixels_per_metre, profile)
+
+    def overview(
+        self, viewpoint: Viewpoint, mode: str = "rgb", size: tuple[int, int] = (640, 480), profile: str | None = None
+    ) -> NDArray[Any]:
+        """The house now from any viewpoint, without its ceilings; for figures, no seat ever sees it.
+
+        Args:
+            mode: rgb (H, W, 3) uint8, or depth (H, W) float32 [m] along the optical axis.
+            size: (width, height) [pixels]. profile: "fast", which cuts walls at 1 m, "nice", which shows them whole, or
+                None for the world's own.
+        """
+        return self._pictures.overview(viewpoint, mode, size, profile)
 
     def _studio(self) -> Any:
         """The renderer of the profile "nice"; its module loads OpenGL, so it is imported only now."""

@@ -1,6 +1,6 @@
 """The simulation of a house with bodies and objects, one tick at a time."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from hthor import houses
@@ -31,6 +31,7 @@ from hthor.world import numbers
 from hthor.world.interaction import manipulation
 from hthor.world.model import inventory
 from hthor.world.model.bodies import avatar, bodies
+from hthor.world.model.composer_env import LazyComposerEnv
 from hthor.world.motion import spawn
 from hthor.world.perception import detector_noise
 from hthor.world.saved_state import StateKeeper
@@ -87,15 +88,21 @@ class Simulation:
         self._door_handling, self._joint_carrying = parts.door_handling, parts.joint_carrying
         self._manipulation, self._dispatch, self._editor = parts.manipulation, parts.dispatch, parts.editor
         self._scanners, self._visibility, self._detectors = parts.scanners, parts.visibility, parts.detectors
-        self._driven, self._keeper = parts.driven, StateKeeper(self.house, parts, self.bodies, self.detectors)
+        self._loose_things, self._mocap, self._driven = parts.loose_things, parts.mocap, parts.driven
+        self._keeper = StateKeeper(self.house, parts, self.bodies, self.detectors)
         self.tick, self._episode = 0, 0
-        spawn.place_bodies(tuple(self._seats.values()), (self.house.start,), ())
         self._begin({})
+        self._place_bodies((self.house.start,), ())
 
     @property
     def model(self) -> Any:
         """The compiled `mujoco.MjModel`; changing it makes results undefined."""
         return self._env.model
+
+    @property
+    def environment(self) -> LazyComposerEnv:
+        """The composer environment in which everything is, for `hthor.envs` and for programs that use dm_control."""
+        return self._env
 
     def reset(self, task: TaskSpec, seed: int = 0) -> None:
         """Begin a task: all objects in place and at rest, things closed, doorways open.
@@ -111,8 +118,7 @@ class Simulation:
         spawn.check_task(task, self.house)
         self._begin({placement.id: placement for placement in task.objects}, task.id)
         self._seed = seed
-        people = (task.human_start, *task.other_human_starts)
-        spawn.place_bodies(tuple(self._seats.values()), people, task.robot_starts)
+        self._place_bodies((task.human_start, *task.other_human_starts), task.robot_starts)
 
     def _begin(self, placements: dict[str, Placement], task: str = "") -> None:
         movables = {movable.id: movable for movable in self._contents.movables}
@@ -128,7 +134,7 @@ class Simulation:
             elif movable.home is not None:
                 begin[id] = (movable.home, movable.yaw, movable.support)
         self._task.starts = {id: begin[id][:2] for id in placements}
-        self._env.reset()
+        self._env.begin()
         self._objects.reset(begin)
         self._joint_carrying.reset()
         self._doors.reset()
@@ -137,6 +143,10 @@ class Simulation:
         self._episode += 1
         self._begin_moment(0)
         self._events: list[Event] = []
+
+    def _place_bodies(self, people: Sequence[Pose], robots: Sequence[Pose]) -> None:
+        spawn.place_bodies(tuple(self._seats.values()), people, robots)
+        self._mocap.rewrite()
 
     def idle(self, seat: str) -> bool:
         """Whether the seat's body is free for a new motion; a body that drives is, while its hands are free."""
@@ -175,6 +185,7 @@ class Simulation:
         step of a tick this does nothing until `advance` was called.
         """
         self._events += self._driven.step(self.tick + 1)
+        self._mocap.write()
         self._begin_moment(self.tick)
 
     def advance(self) -> tuple[Event, ...]:
@@ -204,9 +215,10 @@ class Simulation:
                 seat.activity, seat.outcome = None, outcome
             if seat.holding and seat.pose is not pose:
                 self._objects.follow(seat.holding)
+        self._mocap.write()
         if self._env.tick():
             self._check(events)
-            self._objects.settle()
+            self._loose_things.keep_off(self._objects.settle())
         return tuple(sorted(events, key=lambda event: event.tick)) if events else ()
 
     def _check(self, events: list[Event]) -> None:
@@ -216,6 +228,7 @@ class Simulation:
             return
         lost = [f"{name} at {self._objects.at(where) or where}" for name, where in complaints.items()]
         self._env.recover()
+        self._mocap.rewrite()
         self._objects.reread()
         self._events = events
         raise PhysicsError(

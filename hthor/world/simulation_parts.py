@@ -38,12 +38,15 @@ from hthor.world.motion.locomotion import (
     duration_ticks,
     length_and_direction,
 )
+from hthor.world.motion.loose_things import LooseThings
+from hthor.world.motion.push_plan import Floor
 from hthor.world.perception.detector_noise import NoisyDetector
 from hthor.world.perception.range_scanner import RangeScanner
 from hthor.world.perception.visibility import Visibility
 from hthor.world.records import ActivityState, Handling, Rotating, Turning, Waiting
 from hthor.world.state.body_state import Activity, BodyState, BodyStates, RoomTracker
 from hthor.world.state.doors import Doors, Doorways
+from hthor.world.state.mocap_poses import MocapPoses
 from hthor.world.state.objects import Objects
 from hthor.world.state.overlap_test import OverlapTest
 from hthor.world.state.support_surfaces import SupportSurfaces
@@ -52,7 +55,15 @@ from hthor.world.state.support_surfaces import SupportSurfaces
 class ActionDispatch:
     """Checks the motions of one world's bodies and starts them."""
 
-    def __init__(self, house: HouseSpec, manipulation: Manipulation, doors: Doors, seats: Sequence[BodyState]) -> None:
+    def __init__(
+        self,
+        house: HouseSpec,
+        manipulation: Manipulation,
+        doors: Doors,
+        seats: Sequence[BodyState],
+        loose_things: LooseThings,
+    ) -> None:
+        self._loose_things = loose_things
         self._manipulation, self._doors, self._obstacles = manipulation, doors, ObstacleFootprints(house)
         self._joint_carrying = manipulation.joint_carrying
         self._others = {seat.name: tuple(other for other in seats if other is not seat) for seat in seats}
@@ -100,9 +111,13 @@ class ActionDispatch:
         return MoveMotion(seat, others, self.culprit, state.left, state.along, state.hindered)
 
     def culprit(self, seat: BodyState, step: Vec2) -> str:
-        """The obstacle that the body would have hit: the nearest thing's id, or "wall"."""
-        shut = self._doors.shut().values()
-        return self._obstacles.nearest((seat.pose.x + step[0], seat.pose.y + step[1]), seat.spec.height, shut)
+        """The obstacle that the body would have hit: a loose thing's id, the nearest thing's id, or "wall"."""
+        place = (seat.pose.x + step[0], seat.pose.y + step[1])
+        if seat.space.segment_free((seat.pose.x, seat.pose.y), place):
+            loose = self._loose_things.stops(seat, step)
+            if loose:
+                return loose
+        return self._obstacles.nearest(place, seat.spec.height, self._doors.shut().values())
 
 
 class SimulationParts:
@@ -132,6 +147,7 @@ class SimulationParts:
         self.doors = Doors(self.task.doors, env=self.env, surfaces=surfaces)
         self.seats = BodyStates((name, BodyState(name, spec, space[name])) for name, spec in bodies.items())
         seats = tuple(self.seats.values())
+        self.mocap = MocapPoses(self.env, seats)
         self.rooms = RoomTracker(house, tuple(self.seats))
         self.doorways = Doorways(seats, space)
         geoms, objects, doors = self.geoms, self.objects, self.doors
@@ -140,7 +156,10 @@ class SimulationParts:
         self.manipulation = Manipulation(
             house, geoms, objects, doors, surfaces, overlap, self.door_handling, self.joint_carrying
         )
-        self.dispatch = ActionDispatch(house, self.manipulation, doors, seats)
+        self.loose_things = LooseThings(Floor(house, self.env, geoms, objects, overlap, seats))
+        for seat in seats:
+            seat.loose = self.loose_things
+        self.dispatch = ActionDispatch(house, self.manipulation, doors, seats, self.loose_things)
         self.driven = DrivenBodies(seats, self.joint_carrying, self.dispatch.culprit, objects.follow)
         self.editor = SceneEditor(house, self.task, self.env, geoms, objects, surfaces, overlap)
         self.scanners = {seat.name: RangeScanner(seat.spec, seat.space, house) for seat in seats}

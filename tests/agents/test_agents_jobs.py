@@ -14,8 +14,8 @@ import pytest
 from hthor import catalog, houses, plugins
 from hthor.agents.skills import viewpoints
 from hthor.agents.skills.audience import Audience
+from hthor.agents.skills.joint_carrying.leadership import Leadership
 from hthor.agents.skills.knowledge import Knowledge, resting_points
-from hthor.agents.skills.leading import Leadership
 from hthor.agents.skills.message_timing import help_carry_text, look_inside_text
 from hthor.agents.skills.routes import HouseRoutes
 from hthor.agents.skills.task_allocation import TaskAllocation

@@ -193,6 +193,49 @@ def test_runs_are_compared_and_a_worse_one_fails(hthor, tmp_path: Path, monkeypa
 
 
 @pytest.mark.slow
+def test_a_run_of_other_people_is_not_sent_to_the_board(hthor, tmp_path: Path, monkeypatch):
+    monkeypatch.setattr(robot_team, "load_agent_info", fakes.character)
+    where, board = str(tmp_path / "run"), str(tmp_path / "board")
+    words = ("eval", "--agent", "helper", "--suite", "fake", "--no-control", "--out", where)
+    said = hthor(*words, "--participants", "3")
+    assert "not for the leaderboard: participants is 3" in said.out
+    assert "hthor leaderboard add" not in said.out
+    refused = hthor("leaderboard", "add", where, "--board", board)
+    assert refused.code == 2
+    assert refused.err.count("\n") == 1, "one sentence, no list of mismatches"
+    assert "was played with --participants 3, and cannot stand on the leaderboard" in refused.err
+    alike = hthor(*words[:-1], str(tmp_path / "usual"))
+    assert "hthor leaderboard add" in alike.out
+
+
+@pytest.mark.slow
+def test_a_between_subjects_study_is_played_continued_and_compared(hthor, tmp_path: Path, monkeypatch):
+    real = robot_team.load_agent_info
+    monkeypatch.setattr(
+        robot_team, "load_agent_info", lambda name, *_: real(name) if name == "none" else fakes.character(name)
+    )
+    agents = ("--agent", "rival", "--agent", "helper", "--design", "between", "--suite", "fake")
+    words = ("eval", *agents, "--participants", "12", "--out", str(tmp_path / "study"))
+    dry = hthor(*words, "--dry-run")
+    assert "between subjects: 12 people in groups (no robot 4, rival 4, helper 4)" in dry.out
+    said = hthor(*words)
+    assert sorted(path.name for path in (tmp_path / "study").iterdir()) == ["helper", "none", "rival"]
+    assert "not for the leaderboard: design is between" in said.out + said.err
+    assert "uplift of success" in said.out
+    before = {path: path.read_bytes() for path in (tmp_path / "study").glob("*/trials.jsonl")}
+    hthor("eval", "--agent", "helper", "--agent", "rival", *words[5:])
+    assert {path: path.read_bytes() for path in before} == before, "the order of agents makes no difference"
+    compared = hthor("compare", str(tmp_path / "study" / "none"), str(tmp_path / "study" / "helper"))
+    assert "40 trials of 4 people against 40 of 4 other people" in compared.out
+    assert "had different people at the same tasks" in compared.out
+    one = hthor("eval", *agents[2:], "--no-control", "--out", str(tmp_path / "one"))
+    assert one.code == 2
+    assert "there is one condition only" in one.err
+    team = hthor("eval", "--robots", "tall:helper", "--design", "between", "--suite", "fake")
+    assert "name them with --agent, not --robots" in team.err
+
+
+@pytest.mark.slow
 def test_an_agents_faults_are_shown_with_a_way_to_look(hthor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(robot_team, "load_agent_info", fakes.character)
     said = hthor("eval", "--agent", "clumsy", "--suite", "fake", "--out", str(tmp_path / "run"))

@@ -7,6 +7,7 @@ import math
 from itertools import pairwise
 from pathlib import Path
 
+import cv2
 import msgspec
 import pytest
 from typer.testing import CliRunner
@@ -24,6 +25,7 @@ from hthor.eval.runner import experiment, progress, run_options
 from hthor.guest.host.info import GuestConfig
 from hthor.humans.core.thoughts import Aim, Forgot, Noticed
 from hthor.report.drawing import human_trace_figure, human_trace_timeline, render_trial
+from hthor.report.first_person import film
 from hthor.report.page import camera_frames
 from hthor.tasks.suite import encode_suite, make_suite
 from hthor.types import HUMAN
@@ -62,13 +64,46 @@ def test_a_trial_is_the_same_while_somebody_listens(heard: list[tuple[TrialRecor
 @pytest.mark.slow
 def test_a_trial_is_the_same_while_it_is_filmed_and_another_one_is_not_shown(run: Path) -> None:
     one = find.find_trial(RunFolder(run), "1")
-    views = camera_frames.render_frames(run, one, [0, one.ticks])
+    views = camera_frames.render_frames(run, one, [0, one.ticks]).views
     assert sorted(views) == [0, one.ticks]
     for seen in views.values():
         assert seen.keys() == one.paths.keys()
         assert all(view.shape == (camera_frames.SIZE[1], camera_frames.SIZE[0], 3) for view in seen.values())
     with pytest.raises(RunError, match="did not repeat as it was logged"):
         camera_frames.render_frames(run, msgspec.structs.replace(one, ticks=one.ticks - 1), [0])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("seat", "end"), [("human", "png"), ("robot", "webm")])
+def test_the_command_draws_what_a_seat_saw(
+    run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, seat: str, end: str
+) -> None:
+    monkeypatch.setattr(film, "film_ticks", lambda record: [0, 20, record.ticks])  # three frames, not hundreds
+    out = tmp_path / f"seen.{end}"
+    more = ["--video"] if end == "webm" else []
+    done = CliRunner().invoke(app, ["replay", str(run), "1", "--eyes", seat, *more, "--out", str(out)])
+    assert (done.exit_code, done.stdout.strip()) == (0, str(out)), done.output
+    if end == "webm":
+        assert cv2.VideoCapture(str(out)).get(cv2.CAP_PROP_FRAME_WIDTH) == 746, "the shape of scout's camera, and a rim"
+    else:
+        assert cv2.imread(str(out)).shape[1] == 1440
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("more", "words"),
+    [
+        (["--eyes", "robot2"], "unknown seat 'robot2'"),
+        (["--eyes", "human", "--out", "x.gif"], "x.gif: the name of a picture must end in .png, .svg or .pdf."),
+        (["--eyes", "human", "--video", "--out", "x.mp4"], "x.mp4: the name of a video must end in .webm."),
+        (["--mind", "--out", "x.jpg"], "x.jpg: the name of a picture must end in .png, .svg or .pdf."),
+        (["--mind", "--eyes", "human"], "leave out --eyes and --video"),
+    ],
+)
+def test_a_wrong_name_is_refused_before_anything_is_played(run: Path, more: list[str], words: str) -> None:
+    done = CliRunner().invoke(app, ["replay", str(run), "1", *more])
+    assert done.exit_code != 0
+    assert words in str(done.exception) + done.output
 
 
 @pytest.mark.slow
@@ -181,7 +216,7 @@ def test_a_trial_with_a_fault_repeats_itself_too(run: Path, tmp_path: Path) -> N
     assert "clumsy.py" in faulty.faults[0].detail
     assert str(tmp_path) not in faulty.faults[0].detail
     assert human_trace.trace_human(RunFolder(tmp_path / "run"), faulty, RunFiles(agents=(str(agent),))).same
-    assert camera_frames.render_frames(tmp_path / "run", faulty, [0], agents=(str(agent),)).keys() == {0}
+    assert camera_frames.render_frames(tmp_path / "run", faulty, [0], agents=(str(agent),)).views.keys() == {0}
 
 
 def test_forgetting_and_misses_have_their_marks() -> None:

@@ -17,8 +17,8 @@ from hthor.types.events import Event
 
 PERCEIVED = ("detections", "scan", "sighting")
 """What a headset's wearer has of the senses: what is in view and how much of it, and what stops a walker."""
-TOLD = ("tick", "pose", "idle", "room", "holding", "outcome", "inbox", "receipt")
-BRIEFED = ("instruction", "body", "tick_s", "time_limit", "teammates", "kind", "jobs", "todo", "crew")
+TOLD = ("tick", "pose", "idle", "room", "holding", "outcome", "inbox", "receipt", "phase", "display")
+BRIEFED = ("instruction", "body", "tick_s", "time_limit", "teammates", "kind", "jobs", "todo", "crew", "phases")
 BRIEFED_GOAL = ("seat", "target", "destination", "relation")
 
 

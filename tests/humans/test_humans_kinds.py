@@ -13,6 +13,7 @@ from hthor.episode import play
 from hthor.humans.behaviours.behaviours import Behaviours
 from hthor.humans.communication.interpretation import AdviceTracker
 from hthor.humans.core.trial_context import HumanContext
+from hthor.humans.memory.map_memory import MapMemory
 from hthor.humans.memory.object_memory import ObjectMemory
 from hthor.humans.memory.spatial_memory import SpatialMemory
 from hthor.humans.memory.subgoals import SubgoalTracker, object_kind
@@ -430,7 +431,8 @@ def test_with_hands_full_a_person_wants_to_know_where_to_bring_it():
     mind.at(holding="mug")
     advice = mind.hears("shelf_2", (4.0, 4.0, 1.0))
     mind.advice.accept(advice)
-    assert mind.advice.destination == (4.0, 4.0, 1.0)
+    assert mind.advice.destination is not None
+    assert mind.advice.destination.position == (4.0, 4.0, 1.0)
     mind.furniture("desk", "desk")
     assert mind.hears("shelf_2", (4.0, 4.0, 1.0)) is None
 
@@ -464,7 +466,8 @@ def test_belief_is_shared_among_all_missing_objects():
     )
     mind = Mind(jobs)
     eyes = perception.Eyes(mind.me, mind.objects, mind.memory)
-    behaviours = Behaviours(mind.me, eyes, mind.memory, Walker(mind.me, mind.memory, 0.0, 0.0), mind.subgoals)
+    walker = Walker(mind.me, mind.memory, 0.0, 0.0)
+    behaviours = Behaviours(mind.me, eyes, mind.memory, walker, mind.subgoals, MapMemory(mind.me))
     search = behaviours._target_search
 
     def belief(*names):

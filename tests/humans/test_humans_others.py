@@ -212,11 +212,11 @@ def test_rates_no_robot_that_is_not_there(name, log):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("suite", ["navigation", "manipulation", "tidy", "rearrange", "collect", "carry"])
+@pytest.mark.parametrize("suite", ["navigation", "manipulation", "tidy", "rearrange", "collect", "carry", "vln"])
 def test_both_ends_play_every_kind_of_task(suite):
     from hthor.eval.runner import trial_runner
 
-    task = msgspec.structs.replace(library.load_suite(suite).tasks[0], time_limit=30.0)
+    task = msgspec.structs.replace(library.load_suite(suite).tasks[0], time_limit=30.0, phases=())
     one = sessions.make_sessions(make_suite("one", 1, (task,)), agent="oracle", robot="tender", humans="greedy")[0]
     stage = trial_runner.TrialRunner()
     for made in (greedy.Model, random.Model):
@@ -313,7 +313,7 @@ def paths(done):
 
 
 def deeds(done):
-    kinds = ("picked", "placed", "opened", "accepted", "declined", "success")
+    kinds = ("picked", "placed", "opened", "accepted", "declined", "displayed", "success")
     return [
         (event.tick, event.kind, fields(event))
         for event in done.events
@@ -330,7 +330,7 @@ def test_a_replay_does_the_same_whatever_the_robot_says(robot, world, log):
         done = umpire.play(one.spec, world, {"human": person}, {"robot": Teller(*says)})
         assert paths(done) == one.paths["human"]
         wanted = [(e.tick, e.kind, fields(e)) for e in one.events if e.seat == "human"]
-        answered = {"accepted", "shown"} if robot == "silent" else set()
+        answered = {"accepted", "displayed", "shown"} if robot == "silent" else set()
         assert [deed for deed in wanted if deed[1] not in answered | {"shown"}] == deeds(done)
         assert done.ratings == one.ratings
         assert done.met

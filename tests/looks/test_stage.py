@@ -6,11 +6,15 @@ import itertools
 import math
 from typing import Any
 
+import msgspec
 import numpy as np
 import pytest
 import world_house as tiny
 from hypothesis import given
 from hypothesis import strategies as st
+from skimage.color import rgb2gray
+from skimage.filters import gaussian
+from skimage.metrics import structural_similarity
 from world_house import COFFEE, FRIDGE, TABLE, do, on, task
 
 from hthor import houses, looks
@@ -193,6 +197,36 @@ def test_both_profiles_show_the_same_world(drawn: World) -> None:
     assert np.abs(centres[0] - centres[1]).max() < 1.5
     depths = [drawn.picture(HUMAN, "depth", profile=profile) for profile in ("fast", "nice")]
     assert np.median(np.abs(depths[0] - depths[1])) < 0.03
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("size", [(320, 240), (120, 200)])
+def test_both_profiles_have_square_pixels_at_every_shape(drawn: World, size: tuple[int, int]) -> None:
+    """The law of square pixels is that of the camera's record; what is drawn has to keep it."""
+    apple, camera = drawn.names.index("apple"), drawn.camera(HUMAN, size)
+    assert camera.matrix[0, 0] == pytest.approx(camera.matrix[1, 1])
+    column, row, depth = (camera.matrix @ (np.linalg.inv(camera.pose) @ (*drawn.position("apple"), 1.0))[:3]).tolist()
+    for profile in ("fast", "nice"):
+        seen = np.argwhere(drawn.picture(HUMAN, "segmentation", size, profile) == apple)
+        assert seen.mean(axis=0) == pytest.approx((row / depth, column / depth), abs=1.5)
+
+
+@pytest.mark.slow
+def test_both_profiles_look_alike(drawn: World) -> None:
+    """By structure, a picture is like the other profile's of the same place, and unlike that of another place."""
+    fast, nice = (_grey(drawn.picture(HUMAN, size=(192, 192), profile=profile)) for profile in ("fast", "nice"))
+    pose = drawn.pose(HUMAN)
+    drawn.teleport(HUMAN, msgspec.structs.replace(pose, yaw=pose.yaw + 1.5))
+    aside = _grey(drawn.picture(HUMAN, size=(192, 192), profile="nice"))
+    drawn.teleport(HUMAN, pose)
+    same, other = (structural_similarity(fast, one, data_range=255) for one in (nice, aside))
+    assert same > 0.5
+    assert same > other + 0.1
+
+
+def _grey(picture: np.ndarray) -> np.ndarray:
+    """Brightness, smoothed: textures and shadows differ by design, edges and surfaces must not."""
+    return gaussian(rgb2gray(picture) * 255.0, sigma=2.0)
 
 
 @pytest.mark.slow

@@ -106,6 +106,29 @@ def test_a_map_grows_and_keeps_what_it_knew() -> None:
     assert grid.at(2.0, 2.0) == FREE
 
 
+def test_a_map_includes_a_place_that_no_scan_has_shown() -> None:
+    grid = GridMap()
+    planner = Planner(grid, RADIUS, optimistic=True)
+    far = (17.0, -3.0)
+    assert planner.path((0.0, 0.0), far) is None
+    grid.include(*far)
+    assert grid.at(*far) == UNKNOWN
+    path = planner.path((0.0, 0.0), far)
+    assert path is not None
+    assert path[-1] == far
+
+
+def test_a_near_way_point_is_reached_without_turning() -> None:
+    behind, far = (-0.3, 0.0), (-2.0, 0.0)
+    follower = Follower(sidestep_m=0.5)
+    follower.take((behind,))
+    motion = follower.next(Pose(x=0.0, y=0.0))
+    assert isinstance(motion, Move)
+    assert motion.forward == pytest.approx(-0.3)
+    follower.take((far,))
+    assert isinstance(follower.next(Pose(x=0.0, y=0.0)), Rotate)
+
+
 def test_a_planner_follows_a_map_that_grows() -> None:
     grid = GridMap(1.0, 1.0, extent_m=3.0)
     planner = Planner(grid, RADIUS)

@@ -23,9 +23,10 @@ from hthor.eval.records import trial_record
 from hthor.guest import Isolation
 from hthor.report.analysis import build, load_runs, trial_selection
 from hthor.report.analysis.document import Findings
-from hthor.report.drawing import render_trial
+from hthor.report.drawing import render_trial, text_fit
 from hthor.report.html import matplotlib_svg
 from hthor.report.page import camera_frames, case_study, figure_index, headline, key_moments, page, write_report
+from hthor.report.page.figures import case_study as case_figure
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -298,9 +299,9 @@ def test_moments_are_in_order_and_end_at_the_end(folders: list[Path]) -> None:
 def test_a_case_is_drawn_the_same_twice_and_says_who_can_be_drawn(
     folders: list[Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def film(_: Path, wanted: trial_record.TrialRecord, ticks: list[int], **more: object) -> camera_frames.Views:
+    def film(_: Path, wanted: trial_record.TrialRecord, ticks: list[int], **more: object) -> camera_frames.Seen:
         grey = np.full((24, 32, 3), 128, np.uint8)
-        return {tick: dict.fromkeys(wanted.paths, grey) for tick in ticks}
+        return camera_frames.Seen(views={tick: dict.fromkeys(wanted.paths, grey) for tick in ticks})
 
     monkeypatch.setattr(camera_frames, "render_frames", film)
     drawn = [case_study.write_case_study(folders[:2], "t003", tmp_path / name) for name in ("a", "b")]
@@ -309,16 +310,38 @@ def test_a_case_is_drawn_the_same_twice_and_says_who_can_be_drawn(
     title = root.find("{http://www.w3.org/2000/svg}title")
     assert title is not None
     assert "no robot, helper" in (title.text or "")
+    for suffix in (".png", ".svg", ".pdf"):
+        (alone,) = case_study.write_case_study(folders[:2], "t003", tmp_path / f"case{suffix}")
+        (again,) = case_study.write_case_study(folders[:2], "t003", tmp_path / f"again{suffix}")
+        assert alone.name == f"case{suffix}"
+        assert alone.read_bytes() == again.read_bytes()
+    with pytest.raises(HthorError, match=r"case.gif: the name of a picture must end in .png, .svg or .pdf\."):
+        case_study.write_case_study(folders[:2], "t003", tmp_path / "case.gif")
     with pytest.raises(UnknownName, match=r"unknown task 't0003'\. Did you mean 't003'"):
         case_study.write_case_study(folders[:2], "t0003", tmp_path)
     with pytest.raises(UnknownName, match="unknown person '99'"):
         case_study.write_case_study(folders[:2], "t003", tmp_path, person=99)
 
 
+def test_the_words_above_a_case_are_whole() -> None:
+    """A team's long name and what it said take several lines; only what no page has room for ends in an ellipsis."""
+    team = "tender-oracle+puck-oracle: done in 67.9 s; message 1 of 3 (accepted): “I cannot open the fridge in front of"
+    head = case_figure._lines(f"{team} me. Please look inside for the apple.”", 9.3, 8.5, bold=True)
+    assert head.replace("\n", " ") == f"{team} me. Please look inside for the apple.”"
+    assert head.count("\n") == 1
+    endless = case_figure._lines("a name without end " * 99, 9.3, 8.5, bold=True)
+    assert endless.count("\n") == 2
+    assert endless.endswith("…")
+    for line in (head + "\n" + endless).split("\n"):
+        assert text_fit.text_width(line, 8.5, bold=True) < 9.3 - 0.3
+
+
 @pytest.mark.slow
 def test_the_commands(folders: list[Path], tmp_path: Path) -> None:
     out = tmp_path / "cli"
-    done = CliRunner().invoke(cli, ["report", *map(str, folders[:1]), "--out", str(out)])
+    done = CliRunner().invoke(cli, ["report", *map(str, folders[:1]), "--out", str(out), "--pdf"])
     assert done.exit_code == 0, done.output
     assert done.stdout.strip() == str(out / "report.html")
+    drawn = {suffix: {one.stem for one in (out / "figures").glob(f"*{suffix}")} for suffix in (".svg", ".pdf")}
+    assert drawn[".svg"] == drawn[".pdf"] != set()
     assert "2406.06498" in (out / "report.html").read_text()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 import cv2
@@ -11,17 +12,20 @@ import msgspec
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgba
+from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from benchmarks import pictures
 from hthor import houses, tasks
 from hthor.episode import EpisodeLog, Fault
+from hthor.errors import HthorError
 from hthor.eval.records import trial_record
-from hthor.report.drawing import floor_plan, lettering, trial_figure, trial_trace, trial_video
+from hthor.report.drawing import figure_file, floor_plan, lettering, trial_figure, trial_trace, trial_video
+from hthor.report.drawing.film import webm_file
 from hthor.report.html import matplotlib_svg
 from hthor.report.page.figures import trial_map
 from hthor.types import AgentRef, HumanSeat, RobotSeat, TrialSpec
-from hthor.types.events import Accepted, Declined, Picked, Placed, Sent, Success
+from hthor.types.events import Accepted, Believed, Declined, Picked, Placed, Predicted, Sent, Success
 
 TASK = next(task for task in tasks.load_suite("smoke").tasks if task.kind == "mobile_manipulation")
 
@@ -83,12 +87,23 @@ def test_a_t_star_beyond_the_time_limit_is_not_drawn(spec: TrialSpec, log: Episo
 
 
 @pytest.mark.slow
+def test_knowledge_of_beliefs_has_a_row_where_a_robot_predicted_them(spec: TrialSpec, log: EpisodeLog) -> None:
+    house, places = houses.load(TASK.house), {"bed": 1.0}
+    said = Predicted(tick=20, seat="robot", person="human", object="apple", places=places)
+    true = Believed(tick=20, seat="human", object="apple", places=places, next="search")
+    predicting = msgspec.structs.replace(log, events=(said, *log.events), journal=(true,))
+    for one, drawn in ((log, False), (predicting, True)):
+        sheet = trial_figure.trial_figure(spec, one, house)
+        assert ("beliefs known" in [text.get_text() for text in sheet.findobj(Text)]) == drawn
+
+
+@pytest.mark.slow
 def test_a_film_lasts_as_long_as_the_trial(spec: TrialSpec, log: EpisodeLog, tmp_path: Path) -> None:
     path = tmp_path / "film.webm"
     trial_video.write_video(path, spec, log, houses.load(TASK.house))
     film = cv2.VideoCapture(str(path))
     seconds = film.get(cv2.CAP_PROP_FRAME_COUNT) / film.get(cv2.CAP_PROP_FPS)
-    assert seconds == pytest.approx(14.1 / trial_video.SPEED + trial_video.HOLD_S, abs=0.1)
+    assert seconds == pytest.approx(14.1 / trial_video.SPEED + webm_file.HOLD_S, abs=0.1)
 
 
 HOSTILE = r"$\frac{1}{$ <b>x</b> & a_b^2 $x$ 😀 \u202e"
@@ -191,16 +206,32 @@ def test_the_same_trial_gives_the_same_film(spec: TrialSpec, log: EpisodeLog, tm
 
 
 @pytest.mark.slow
-def test_a_films_words_lie_apart_from_the_plan(spec: TrialSpec, failed: EpisodeLog) -> None:
-    stage = trial_video._Stage(spec, failed, houses.load(TASK.house))
-    frame = stage.draw(failed, 10)
-    height = frame.shape[0]
+@pytest.mark.parametrize("robots", [1, 7])
+@pytest.mark.parametrize("scene", [TASK.house, "willow"])
+def test_a_films_words_lie_apart_from_the_plan(spec: TrialSpec, failed: EpisodeLog, scene: str, robots: int) -> None:
+    """Title, plan, clock, message and legend stand below one another, however many lines each of them has."""
+    seats = [f"robot{number or ''}" for number in range(robots)]
+    team = tuple(msgspec.structs.replace(spec.robots[0], seat=seat, robot=f"a body {seat} of {LONG}") for seat in seats)
+    task = msgspec.structs.replace(TASK, instruction=f"{TASK.instruction} {LONG}", goal=spec.task.goal)
+    many = msgspec.structs.replace(spec, robots=team, task=task)
+    said = Sent(tick=19, seat="robot", message=99, text=LONG * 2)
+    log = msgspec.structs.replace(failed, events=(*failed.events, said))
+    stage = trial_video._Stage(many, log, houses.load(scene))
+    frame = stage.draw(log, 10)
     changed = np.argwhere((frame != stage.empty).any(axis=2))
-    words = changed[changed[:, 0] > trial_video._CLOCK_Y - 30]
-    assert len(words)
-    strip = stage.empty[trial_video._CLOCK_Y - 14 : trial_video._MESSAGE_Y + 8]
-    assert (strip == 255).all(), "neither the scale nor the legend is written over"
-    assert words[:, 0].max() < height - 40
+    words = changed[changed[:, 0] > stage.clock_y - 15]
+    assert words[:, 0].max() > stage.message_y - 12, "the message is written"
+    assert words[:, 1].max() < 958, "its end is no cut letter but an ellipsis"
+    first, last = stage.clock_y - 13, stage.message_y + 6
+    assert words[:, 0].max() < last
+    assert (stage.empty[first:last] == 255).all(), "neither the plan with its scale nor the legend is written over"
+    rows = (stage.empty < 250).any(axis=(1, 2))
+    assert not rows[:6].any(), "the title is whole"
+    assert not rows[-3:].any(), "and the legend"
+    assert stage.empty.shape == (800, 960, 3)
+
+
+LONG = "with a name that goes on and on until nobody can read it any more "
 
 
 @pytest.mark.slow
@@ -212,7 +243,7 @@ def test_a_browser_plays_a_film(spec: TrialSpec, log: EpisodeLog, tmp_path: Path
     options = ["--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=20000"]
     options += [f"--user-data-dir={tmp_path / 'browser'}", "--dump-dom", f"file://{tmp_path / 'page.html'}"]
     done = subprocess.run(["chromium", *options], capture_output=True, text=True, timeout=180, check=True)
-    assert "shows 960 x 800" in done.stdout
+    assert "shows 1212 x 800" in done.stdout, "the plan, and the person's display beside it"
 
 
 PAGE = """<video id="film" muted src="film.webm"></video><p id="told">nothing</p><script>
@@ -222,11 +253,17 @@ film.onloadeddata = () => { told.textContent = "shows " + film.videoWidth + " x 
 </script>"""
 
 
+def pixels(made: Figure) -> np.ndarray:
+    """(H, W, 3) uint8 of a figure's PNG file."""
+    return cv2.imdecode(np.frombuffer(figure_file.encode(made, "png"), np.uint8), cv2.IMREAD_COLOR)[:, :, ::-1]
+
+
 def test_a_house_is_shown_with_its_rooms_and_a_scale() -> None:
     house = houses.load(TASK.house)
     bare = np.full((300, 320, 3), 128, np.uint8)
-    named = floor_plan.with_labels(bare, house, (0.0, 0.0, 10.7, 10.0))
-    plain = floor_plan.with_labels(bare, house, (0.0, 0.0, 10.7, 10.0), named=False)
+    named, plain = (
+        pixels(floor_plan.labelled_figure(bare, house, (0.0, 0.0, 10.7, 10.0), named=named)) for named in (True, False)
+    )
     assert named.shape == plain.shape == (334, 320, 3)
     assert (plain[:300] == bare).all()
     assert (named[:300] != bare).any()
@@ -250,3 +287,49 @@ def test_pictures_of_the_docs_are_known_and_tell_when_they_are_old(
     assert "is out of date" in pictures.problems(tmp_path)[0]
     (tmp_path / "other.png").write_bytes(b"")
     assert pictures.problems(tmp_path)[-1] == "other.png: nothing makes it"
+
+
+def test_a_picture_that_shows_something_else_is_named_for_eyes() -> None:
+    """Noise of another OpenGL is no change; a thing that was moved is one."""
+    draw = np.random.default_rng(1)
+    before = cv2.GaussianBlur(draw.integers(0, 255, (120, 160, 3)).astype(np.uint8), (0, 0), 4.0)
+    before = cv2.normalize(before, None, 0, 255, cv2.NORM_MINMAX)
+    noisy = np.clip(before.astype(int) + draw.integers(-1, 2, before.shape), 0, 255).astype(np.uint8)
+    other = before.copy()
+    other[40:80, 60:110] = 0
+    assert pictures.likeness(before, before) == "similarity to the picture before 1.000"
+    assert not pictures.likeness(before, noisy).endswith("look at it")
+    assert pictures.likeness(before, other).endswith("look at it")
+    assert "another size, 80 x 120 instead of 160 x 120" in pictures.likeness(before, before[:, :80])
+
+
+def test_files_of_figures_have_no_date_and_know_their_formats(tmp_path: Path) -> None:
+    """Two processes, at two times, write the same bytes; words in a PDF are text, and pictures are the only pixels."""
+    made = Figure(figsize=(2, 2))
+    made.add_subplot().imshow(np.arange(64).reshape(8, 8))
+    made.suptitle("words")
+    for suffix in figure_file.SUFFIXES:
+        figure_file.write_figure(made, tmp_path / f"figure{suffix}")
+    svg, pdf = ((tmp_path / f"figure{suffix}").read_bytes() for suffix in (".svg", ".pdf"))
+    assert svg.count(b"<image ") == 1
+    assert b"<dc:date>" not in svg
+    assert b"/CreationDate" not in pdf
+    assert b"/Subtype /Image" in pdf
+    assert b"/FontFile2" in pdf, "TrueType, which journals accept"
+    for name in ("figure.jpg", "figure", "figure.svgz"):
+        with pytest.raises(HthorError, match=r"must end in \.png, \.svg or \.pdf"):
+            figure_file.write_figure(made, tmp_path / name)
+
+
+@pytest.mark.slow
+def test_two_processes_write_the_same_drawing() -> None:
+    """Names in an SVG and prefixes of fonts are no chance."""
+    script = (
+        "import hashlib, sys\nfrom hthor import houses\nimport numpy as np\n"
+        "from hthor.report.drawing import figure_file, floor_plan\n"
+        "bare = np.zeros((300, 320, 3), np.uint8)\n"
+        "made = floor_plan.labelled_figure(bare, houses.load('elder'), (0.0, 0.0, 10.7, 10.0))\n"
+        "print([hashlib.sha256(figure_file.encode(made, form)).hexdigest() for form in ('png', 'svg', 'pdf')])"
+    )
+    told = [subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True) for _ in "ab"]
+    assert told[0].stdout == told[1].stdout != ""

@@ -28,7 +28,7 @@ from hthor.report.analysis import build, load_runs
 from hthor.report.analysis.document import Findings
 from hthor.report.drawing import lettering, render_trial, text_fit, trial_figure, trial_trace
 from hthor.report.html import elements, matplotlib_svg
-from hthor.report.page import figure_index, key_moments, write_report
+from hthor.report.page import camera_frames, figure_index, key_moments, write_report
 from hthor.report.page.figure_index import MapScene
 from hthor.report.page.figures import case_study, run_styles, session
 from hthor.types import RobotSeat, TrialSpec
@@ -133,7 +133,7 @@ def test_a_picture_and_a_case_have_their_words_whole(long_trial: TrialRecord) ->
     grey = np.full((24, 32, 3), 128, np.uint8)
     held = key_moments.key_moments(long_trial, house)
     views = {moment.tick: dict.fromkeys(long_trial.paths, grey) for moment in held}
-    row = case_study.Row(label=WIDE, record=long_trial, moments=held, views=views)
+    row = case_study.Row(label=WIDE, record=long_trial, moments=held, seen=camera_frames.Seen(views=views))
     assert cut(case_study.case_study_figure([row, row], house)) == []
 
 

@@ -189,7 +189,9 @@ def test_difficulty_grows_with_the_way_and_with_what_lies_before():
     assert difficulty.level_of(far, house) == "hard"
     assert difficulty.measure_difficulty(far, house).before == difficulty.measure_difficulty(task, house).before
     assert 0.0 <= difficulty.measure_difficulty(task, house).before <= 1.0
-    levels = [difficulty.Difficulty(least=t, before=0.0).level for t in (1.0, difficulty.MEDIUM_S, difficulty.HARD_S)]
+    kind = plugins.load("task kind", task.kind)
+    times = (1.0, kind.medium_from, kind.hard_from)
+    levels = [difficulty.Difficulty(least=t, before=0.0).level for t in times]
     assert levels == ["easy", "medium", "hard"]
 
 

@@ -246,6 +246,52 @@ def test_a_new_message_covers_the_one_before(world: World) -> None:
     assert (first.receipt().status, second.receipt().status) == ("covered", "accepted")
 
 
+def test_a_confirmed_message_gives_a_map_that_is_hidden_and_shown(world: World) -> None:
+    human, robot = world.human, world.robot
+    with pytest.raises(HthorError, match="no message was confirmed yet"):
+        human.map_view()
+    robot.send("The apple is here.", "apple", world.position("apple"))
+    assert human.display.message is not None
+    assert human.display.message.text == "The apple is here."
+    assert human.display.map is None
+    human.reply(accept=True)
+    assert human.display.message is None
+    picture = human.map_view(160)
+    assert picture.shape == (160, 160, 3)
+    assert (world.map_view("human", 160) == picture).all()
+    human.hide("map")
+    with pytest.raises(HthorError, match=r"it is hidden: show\('map'\) shows it"):
+        human.map_view()
+    human.show("map")
+    human.show("panel")
+    assert human.display.message.text == "The apple is here."
+    assert (human.map_view(160) == picture).all()
+    assert [(e.kind, e.what, e.on) for e in world.events[-3:]] == [
+        ("displayed", "map", False),
+        ("displayed", "map", True),
+        ("displayed", "panel", True),
+    ]
+    for wrong in (robot.map_view, lambda: robot.show("map"), lambda: human.map_view(7), lambda: human.hide("radio")):
+        with pytest.raises(HthorError):
+            wrong()
+
+
+def test_the_map_turns_and_moves_with_the_person_and_the_robot(world: World) -> None:
+    human, robot = world.human, world.robot
+    apple = world.position("apple")
+    robot.send("The apple is here.", "apple", apple)
+    human.reply(accept=True)
+    before = human.map_view()
+    for act in (lambda: human.rotate(1.0), lambda: human.move(0.3), lambda: robot.move(-0.3)):
+        act()
+        (body,), (place,), me = human.display.map.bodies, human.display.map.places, human.pose
+        for mark, point in ((body, (robot.pose.x, robot.pose.y)), (place, apple[:2])):
+            way = me.gaze + math.atan2(mark.left, mark.forward)
+            far = math.hypot(mark.forward, mark.left)
+            assert (me.x + far * math.cos(way), me.y + far * math.sin(way)) == pytest.approx(point, abs=5e-3)
+    assert (human.map_view() != before).any()
+
+
 def test_the_image_is_the_sender_s_view_at_that_moment(world: World) -> None:
     robot = world.robot
     robot.go_to("apple")

@@ -116,6 +116,15 @@ def test_one_holds_on_two_lift(world: World) -> None:
     assert (seen.held_by, seen.bearers) == ("human", ("human", "robot"))
 
 
+def test_the_last_millimetre_of_a_move_is_not_blocked(world: World) -> None:
+    """A move that is a little longer than the way of a whole number of ticks."""
+    lift(world)
+    tick_m = rules.HANDLE_PACE * world.bodies["robot"].speed * rules.TICK_S
+    for extra in (1e-4, 5e-4, 1.5e-3):
+        assert reason(world, "human", Move(forward=-(2.0 * tick_m + extra))) == ""
+    sound(world)
+
+
 def test_those_who_are_too_weak_together_do_not_lift_it() -> None:
     world = World(tiny.house(), robots=("tender", "tender"), objects=[("trunk", "trunk")])
     world.reset(start(AWAY, AT_RIGHT, AT_LEFT))

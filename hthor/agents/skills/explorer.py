@@ -34,7 +34,12 @@ _LOW_M, _HIGH_M, _ASIDE_M = 0.4, 1.1, 1.0
 
 
 class Explorer:
-    """Looks around, then goes to the cheapest frontier or place that was never seen from close by."""
+    """Looks around, then goes to the cheapest frontier or place that was never seen from close by.
+
+    Attributes:
+        rounds: how often everything that can be reached was seen.
+        edges_only: whether it is content to see the floor of the whole house, not every place from close by.
+    """
 
     def __init__(self, body: BodySpec) -> None:
         self.body = body
@@ -45,6 +50,8 @@ class Explorer:
         self._place: Frontier | None = None
         self._chose: Vec2 = (0.0, 0.0)
         self._tries: dict[tuple[int, int], int] = {}
+        self.rounds = 0
+        self.edges_only = False
 
     def see(self, observation: Observation) -> None:
         """Bring the map up to date; call at every act."""
@@ -59,6 +66,15 @@ class Explorer:
         if observation.idle and outcome is not None and not outcome.ok and outcome.motion == "move":
             self._bumped(pose, seat_bumped(observation))
 
+    def begin_again(self) -> None:
+        """Explore once more from here, because things were moved; the map of the house is kept."""
+        self._turns, self.rounds = math.ceil(2.0 * math.pi / (0.9 * self.body.fov[0])), 0
+        self._tries.clear()
+        self.edges_only = False
+        if self.grid is not None:
+            self.drop()
+            self.grid.forget_near()
+
     def motion(self, observation: Observation) -> Motion:
         """The next motion of the exploration."""
         if self._turns:
@@ -71,6 +87,10 @@ class Explorer:
             self._place = None
             return Rotate(yaw=0.9 * self.body.fov[0])
         return step
+
+    def extra_cost(self, pose: Pose, centre: Vec2) -> float:
+        """The cost [m] of a place to explore at ``centre`` [m], besides the way there: that of turning towards it."""
+        return _TURN_M_RAD * abs(wrap(math.atan2(centre[1] - pose.y, centre[0] - pose.x) - pose.yaw))
 
     @property
     def is_on_the_way(self) -> bool:
@@ -115,9 +135,9 @@ class Explorer:
         self.drop()
         self._chose = pose.x, pose.y
         survey = Survey(self.grid, self.planner, pose, _LEAST_M)
-        for place in survey.ranked(partial(_turning, pose)):
+        for place in survey.ranked(partial(self.extra_cost, pose)):
             key = _key(place)
-            if self._tries.get(key, 0) >= _TRIES:
+            if self._tries.get(key, 0) >= _TRIES or (self.edges_only and not place.is_edge):
                 continue
             self._tries[key] = self._tries.get(key, 0) + 1
             path = survey.path(place)
@@ -127,6 +147,7 @@ class Explorer:
                 return
         self.grid.forget_near()  # everything was seen: start again
         self._tries.clear()
+        self.rounds += 1
 
     def _bumped(self, pose: Pose, by: str) -> None:
         """After a stop: block the cell in front, which no scan showed, or give up a place that ``by`` stands before."""
@@ -218,11 +239,6 @@ def exploring_pitch(body: BodySpec) -> float:
     """Camera pitch [rad] that keeps the tops of tables in view from a metre away."""
     low, high = (math.atan2(height - body.eye, _ASIDE_M) for height in (_LOW_M, _HIGH_M))
     return max(-body.pitch_limit, min(body.pitch_limit, (low + high) / 2.0))
-
-
-def _turning(pose: Pose, point: Vec2) -> float:
-    """The cost of turning towards a point [m]."""
-    return _TURN_M_RAD * abs(wrap(math.atan2(point[1] - pose.y, point[0] - pose.x) - pose.yaw))
 
 
 def _key(place: Frontier) -> tuple[int, int]:

@@ -28,9 +28,12 @@ class Knowledge:
         self.states: Mapping[str, ThingState] = {}
 
     def is_done(self, job: Job) -> bool:
-        """Whether the object is where it belongs; a search is never done."""
+        """Whether the object is where it belongs; a search is never done.
+
+        Nor is a job whose place is not told.
+        """
         state = self.states.get(job.target)
-        if state is None or state.held_by or state.bearers or job.relation == "find":
+        if state is None or state.held_by or state.bearers or job.relation in ("find", "back"):
             return False
         close = TOGETHER_M if job.hands > 1 else CLOSE_M
         if job.place is not None and math.dist(state.position[:2], job.place[:2]) > close:
@@ -97,6 +100,10 @@ class ObservedKnowledge(Knowledge):
     def forget(self, object: str) -> None:
         """Forget an object that is not where it was."""
         self._known.pop(object, None)
+
+    def begin_again(self) -> None:
+        """Keep only the furniture, because things were moved."""
+        self._known.clear()
 
     def shut(self) -> list[Thing]:
         """Furniture whose inside is hidden by a closed door."""

@@ -9,8 +9,10 @@ from hthor import catalog, rules
 from hthor.agents.skills import viewpoints
 from hthor.agents.skills.knowledge import Knowledge, has_door, resting_points
 from hthor.agents.skills.right_of_way.yielding import Yielding, seat_bumped
+from hthor.agents.skills.routes_around import RoutesAround
 from hthor.agents.skills.viewpoints import Routes
 from hthor.geometry import plane
+from hthor.navigation.detours import Disc
 from hthor.navigation.path_follower import Follower, face
 from hthor.types import BodySpec, Job, Motion, Observation, Open, Pick, Place, Thing, Vec2, Vec3, Wait
 
@@ -22,6 +24,8 @@ _TRIES = 6
 _PAUSE_S = 0.5
 _TURN_RAD = 0.7
 """Largest heading error at which the body moves or reaches without turning first."""
+_SIDESTEP_M = 0.5
+"""The body goes sideways or backwards to a place nearer than this [m]: turning there and back takes longer."""
 _MOVED_M = 0.1
 _AT_M = 0.2
 """Tolerance of a required standing position [m]."""
@@ -30,7 +34,8 @@ _AT_M = 0.2
 class ManipulationGoal(Struct, frozen=True):
     """A goal for the body: stand with one of the ``points`` [m] within reach, face it, then do ``act``.
 
-    ``stand`` [m] is where to stand for it, if that matters.
+    ``stand`` [m] is where to stand for it, if that matters; ``avoid``: discs to keep out of on the way, such as
+    bodies that will stay where they are, or the object itself when it is heavy.
     """
 
     name: str
@@ -38,6 +43,7 @@ class ManipulationGoal(Struct, frozen=True):
     act: Motion
     holder: Thing | None = None
     stand: Vec3 | None = None
+    avoid: tuple[Disc, ...] = ()
 
 
 class Manipulator:
@@ -48,7 +54,8 @@ class Manipulator:
 
     def __init__(self, body: BodySpec, routes: Routes, yielding: Yielding, tick_s: float) -> None:
         self.body, self.routes, self.yielding = body, routes, yielding
-        self.follower = Follower(step=whole_tick_move(body, tick_s), turn_rad=_TURN_RAD, arrived_m=0.01)
+        step = whole_tick_move(body, tick_s)
+        self.follower = Follower(step=step, turn_rad=_TURN_RAD, arrived_m=0.01, sidestep_m=_SIDESTEP_M)
         self._again = round(AGAIN_S / tick_s)
         self._left_alone: dict[str, int] = {}
         self._goal_name, self._at = "", (0.0, 0.0, 0.0)
@@ -163,7 +170,7 @@ class Manipulator:
             if spot is not None:
                 self._misses.append(spot)
             return len(self._misses) <= _TRIES and self._set_out(here, goal)
-        loose = self.routes.loose(here)
+        loose = self._routes_for(goal).loose(here)
         if not self._set_out(loose, goal):
             return False
         self.follower.take((loose, *self.follower.path))
@@ -184,10 +191,9 @@ class Manipulator:
 
     def _set_out(self, here: Vec2, goal: ManipulationGoal) -> bool:
         """Take the path to a spot; False when there is none."""
+        routes = self._routes_for(goal)
         if goal.stand is not None:
-            way = viewpoints.path_to_reach(
-                self.routes, here, (goal.stand,), _AT_M, but=self._misses, grid_m=_AT_M / 3.0
-            )
+            way = viewpoints.path_to_reach(routes, here, (goal.stand,), _AT_M, but=self._misses, grid_m=_AT_M / 3.0)
             if way:
                 self.follower.take(way)
                 return True
@@ -195,11 +201,14 @@ class Manipulator:
         front = holder is not None and has_door(holder)
         for share, grid_m in _REACHES:
             reach = share * self.body.reach
-            way = viewpoints.path_to_reach(self.routes, here, goal.points, reach, holder, front, self._misses, grid_m)
+            way = viewpoints.path_to_reach(routes, here, goal.points, reach, holder, front, self._misses, grid_m)
             if way:
                 self.follower.take(way)
                 return True
         return False
+
+    def _routes_for(self, goal: ManipulationGoal) -> Routes:
+        return RoutesAround(self.routes, goal.avoid) if goal.avoid else self.routes
 
     def _give_up(self, observation: Observation) -> Motion:
         self._left_alone[self._goal_name] = observation.tick + self._again

@@ -1,5 +1,6 @@
 """When to send a message for the first time or again, and its text."""
 
+import math
 from collections.abc import Mapping, Sequence
 
 from hthor.types import Briefing, Detection, Observation, Receipt
@@ -14,19 +15,27 @@ _HOLLOW = ("bathtub", "fridge", "garbage_can", "sink")
 
 
 class MessageTiming:
-    """Decides when to send messages about one thing: once, and again some time after a message was declined."""
+    """Decides when to send messages about one thing: once, and again some time after a message was declined.
 
-    def __init__(self, briefing: Briefing, most: int) -> None:
-        """``most`` is the largest number of messages."""
+    Args:
+        most: the largest number of messages.
+        repeat_s: time after which a message is sent again whatever became of it [s].
+    """
+
+    def __init__(self, briefing: Briefing, most: int, repeat_s: float = math.inf) -> None:
         self.most, self.sent = most, 0
-        self._again = round(AGAIN_S / briefing.tick_s)
+        self._again, self._repeat = round(AGAIN_S / briefing.tick_s), repeat_s / briefing.tick_s
         self._mark = 0
 
     def due(self, tick: int, receipt: Receipt | None) -> bool:
         """Whether a message is due, given the receipt of the last message."""
         if self.sent == 0:
             return True
-        if self.sent >= self.most or tick < self._mark + self._again or receipt is None:
+        if self.sent >= self.most or tick < self._mark + self._again:
+            return False
+        if tick >= self._mark + self._repeat:
+            return True
+        if receipt is None:
             return False
         return receipt.status in ("declined", "covered") and tick >= receipt.tick + self._again
 

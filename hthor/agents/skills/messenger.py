@@ -43,6 +43,8 @@ if TYPE_CHECKING:
 _LOOKS = 3
 """How many places to look from before saying that the target must be in it: a low camera cannot see into a sink."""
 _MOST = {"target": 3, "destination": 1, "help": 4, "done": 1}
+_HELP_AGAIN_S = 40.0
+"""How long to wait for a helper before asking again [s]: the longest way of a load, 14 m, at the 0.4 m/s of people."""
 _UNANSWERED_S, _ACCEPTED_S = 8.0, 20.0
 """How long to stay with an object after a message [s]: without an answer, and once the person has accepted."""
 
@@ -90,7 +92,8 @@ class Messenger:
 
     def timing(self, job: Job, topic: str) -> MessageTiming:
         """When to speak about the job's "target", "destination", "help" or "done"."""
-        return self._timings.setdefault((job.target, topic), MessageTiming(self.briefing, most=_MOST[topic]))
+        repeat_s = _HELP_AGAIN_S if topic == "help" else math.inf
+        return self._timings.setdefault((job.target, topic), MessageTiming(self.briefing, _MOST[topic], repeat_s))
 
     def hear(self, observation: Observation) -> None:
         """Keep the answer to the last message."""
@@ -168,7 +171,7 @@ class Messenger:
         state = self.knowledge.states[job.target]
         if not self.is_due(observation, job, "help"):
             return None
-        text = help_carry_text(state.kind, bool(state.bearers))
+        text = help_carry_text(state.kind, self.briefing.seat in state.bearers)
         message = Send(text=text, object=state.id, position=state.position, to=self._listener(job))
         return self._note(observation, job, "help", message)
 
@@ -266,7 +269,8 @@ class Messenger:
                 self.follower.take(way)
                 return
         people = [seen.position for seen in observation.detections if seen.family == "person"]
-        via = self.routes.around(here, where, people) if people else self.routes.clear(here)
+        via = self.routes.around(here, where, people) if people else here
+        via = self.routes.clear(here) if via == here else via
         self.follower.take((via, *self.routes.to_view(via, where, self.misses)))
 
     def stand_aside(self, observation: Observation, where: Vec3, topic: str) -> Motion:

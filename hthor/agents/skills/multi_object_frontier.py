@@ -1,11 +1,14 @@
 """The frontier robot in larger tasks than finding one object: explores, carries what it can, tells the rest."""
 
+from __future__ import annotations
+
 import math
+from typing import TYPE_CHECKING
 
 from hthor import rules
 from hthor.agents.skills.audience import Audience
-from hthor.agents.skills.carrying import Carrier
 from hthor.agents.skills.explorer import Explorer, ObservedRoutes
+from hthor.agents.skills.joint_carrying.carrier import Carrier
 from hthor.agents.skills.knowledge import ObservedKnowledge
 from hthor.agents.skills.manipulation import Manipulator
 from hthor.agents.skills.message_timing import (
@@ -21,17 +24,23 @@ from hthor.agents.skills.task_allocation import TaskAllocation, can_do
 from hthor.agents.skills.viewpoints import outline_distance
 from hthor.types import Action, Briefing, Job, Motion, Observation, Place, Receipt, Send, ThingState, Vec3
 
+if TYPE_CHECKING:
+    from hthor.agents.skills.touring.tour import Tour
+
 _MOST = 2
 _LATER_S = 15.0
 
 
 class MultiObjectFrontier:
-    """One robot's policy for one trial."""
+    """One robot's policy for one trial; ``before`` is its tour in earlier phases, whose map it keeps."""
 
-    def __init__(self, briefing: Briefing) -> None:
+    def __init__(self, briefing: Briefing, before: Tour | None = None) -> None:
         self.briefing, self.jobs = briefing, briefing.todo
-        self.seen = ObservedKnowledge()
-        self.explorer = Explorer(briefing.body)
+        self.seen = ObservedKnowledge() if before is None else before.seen
+        self.explorer = Explorer(briefing.body) if before is None else before.explorer
+        if before is not None:
+            self.seen.begin_again()
+            self.explorer.begin_again()
         routes = ObservedRoutes(self.explorer)
         self.yielding = Yielding(briefing, routes)
         self.passing = Passing(briefing, routes, self.yielding)

@@ -6,7 +6,7 @@ With an arm the robot does the job itself; without, it goes where the target is 
 from collections.abc import Sequence
 
 from hthor.agents.skills.audience import Audience
-from hthor.agents.skills.carrying import Carrier
+from hthor.agents.skills.joint_carrying.carrier import Carrier
 from hthor.agents.skills.knowledge import Knowledge
 from hthor.agents.skills.manipulation import Manipulator
 from hthor.agents.skills.message_timing import ASIDE_M
@@ -16,10 +16,12 @@ from hthor.agents.skills.right_of_way.yielding import Yielding
 from hthor.agents.skills.routes import HouseRoutes
 from hthor.agents.skills.task_allocation import TaskAllocation, can_do
 from hthor.navigation.path_follower import Courtesy, Follower
-from hthor.types import HUMAN, Action, Briefing, Job, Motion, Observation, Send, Wait, is_person
+from hthor.types import HUMAN, Action, Briefing, Job, Motion, Observation, Rotate, Send, Wait, is_person
 
 _LATER_S = 15.0
 """How long [s] an object is left alone that was put down but is not where it belongs."""
+_LOOK_SHARE, _LOOKS = 0.8, 3
+"""A robot that waits turns by this share of its field of view, or a multiple of it, up to the second number."""
 _PATIENCE_S = 25.0
 """How long [s] the robot does not speak about an object that is another robot's share."""
 
@@ -37,16 +39,17 @@ class SingleTaskOracle:
     def __init__(self, briefing: Briefing) -> None:
         assert briefing.house is not None, "the oracle needs the privilege house_map"
         self.briefing, self.jobs = briefing, briefing.todo
-        self.routes = HouseRoutes(briefing.house, briefing.body)
+        others = tuple(briefing.crew.values()) if self.several else ()
+        self.routes = HouseRoutes(briefing.house, briefing.body, others)
         self.courtesy = Courtesy(briefing.body, self.routes.fits)
         self.yielding = Yielding(briefing, self.routes)
         self.knowledge = Knowledge(briefing.house.things, briefing.house.rooms)
         self.allocation = TaskAllocation(briefing, self.routes.apart)
         self.manipulator = Manipulator(briefing.body, self.routes, self.yielding, briefing.tick_s)
         self.follower = Follower(step=0.5)
-        others = self.yielding if self.several else None
+        yielding = self.yielding if self.several else None
         audience = Audience(self.allocation, briefing.tick_s)
-        self.messenger = Messenger(briefing, self.routes, self.follower, self.knowledge, others, audience)
+        self.messenger = Messenger(briefing, self.routes, self.follower, self.knowledge, yielding, audience)
         self.carrier = Carrier(briefing, self.routes, self.manipulator, self.allocation)
         self.mine: Job | None = None
         self.done: Job | None = None
@@ -87,10 +90,8 @@ class SingleTaskOracle:
             return self.messenger.say(observation, topic)
         if self.mine is None or self.mine.hands < 2:
             return None
-        if not self.carrier.is_close(observation, self.knowledge, self.mine):
-            return None
-        lifted = bool(self.knowledge.states[self.mine.target].held_by)
-        return None if lifted else self.messenger.ask_for_help(observation, self.mine)
+        asks = self.carrier.needs_helper(observation, self.knowledge, self.mine)
+        return self.messenger.ask_for_help(observation, self.mine) if asks else None
 
     def _step_aside(self, observation: Observation) -> Motion | None:
         """A motion out of somebody's way, None to carry on."""
@@ -179,6 +180,7 @@ class TeamOracle(SingleTaskOracle):
     def __init__(self, briefing: Briefing) -> None:
         super().__init__(briefing)
         self.is_aside = False
+        self._turns = 0
         self._shared_since: dict[str, int] = {}  # tick from which an object was another robot's share
         self._patience = round(_PATIENCE_S / briefing.tick_s)
         self.passing = Passing(briefing, self.routes, self.yielding)
@@ -218,14 +220,21 @@ class TeamOracle(SingleTaskOracle):
         return self.carrier.follower if waits else self.manipulator.follower
 
     def _motion_without_job(self, observation: Observation, topic: Job | None) -> Motion:
-        """Go where the topic is; without a topic, go where the robot blocks nobody."""
+        """Go where the topic is; without a topic, go where the robot blocks nobody. While it waits, it looks round."""
         if topic is not None:
-            return super()._motion_without_job(observation, topic)
-        here = (observation.pose.x, observation.pose.y)
-        if not self.is_aside:
-            self.is_aside = True
-            self.follower.take(self.routes.retreat(here, here, ASIDE_M))
-        return self.follower.next(observation.pose) or Wait(seconds=0.5)
+            motion = super()._motion_without_job(observation, topic)
+        else:
+            here = (observation.pose.x, observation.pose.y)
+            if not self.is_aside:
+                self.is_aside = True
+                self.follower.take(self.routes.retreat(here, here, ASIDE_M))
+            motion = self.follower.next(observation.pose) or Wait(seconds=0.5)
+        return self._look_round() if isinstance(motion, Wait) else motion
+
+    def _look_round(self) -> Motion:
+        """A turn by most of the field of view, so that the robot sees who wants to pass."""
+        self._turns = self._turns % _LOOKS + 1
+        return Rotate(yaw=self._turns * _LOOK_SHARE * self.briefing.body.fov[0])
 
     def _choose_topic(self, observation: Observation) -> Job | None:
         held = self._held_job(observation)

@@ -29,11 +29,18 @@ _sight = functools.lru_cache(maxsize=8)(with_all_open)
 
 
 class HouseRoutes:
-    """Routes of one body through a house that it has a map of."""
+    """Routes of one body through a house that it has a map of.
 
-    def __init__(self, house: HouseSpec, body: BodySpec) -> None:
+    Args:
+        others: the other bodies, for which it keeps passages free where it waits; without them, bodies like itself.
+    """
+
+    def __init__(self, house: HouseSpec, body: BodySpec, others: Sequence[BodySpec] = ()) -> None:
         self.house, self.body = house, body
         self.space = FreeSpace.of(house, body.radius, body.height)
+        bodies = (body, *others)
+        widest, tallest = max(one.radius for one in bodies), max(one.height for one in bodies)
+        self._passages = FreeSpace.of(house, widest, tallest)
         self.geodesics = house_geodesics(house, body.radius, body.height)
         self._beside = functools.lru_cache(maxsize=256)(self.space.nearest_free)
         self._near = functools.lru_cache(maxsize=256)(self._walk)
@@ -68,7 +75,7 @@ class HouseRoutes:
     def refuge(self, here: Vec2, point: Vec2, apart_m: float, discs: Sequence[Disc]) -> tuple[Vec2, ...]:
         """Like `retreat`, on this side of the discs; () for no place that can be reached."""
         grid = self.space.origin, self.space.cell
-        spot = park(without(self.space.free, *grid, here, discs) > 0, *grid, here, point, apart_m)
+        spot = park(without(self._passages.free, *grid, here, discs) > 0, *grid, here, point, apart_m)
         return () if spot is None else self.past(here, spot, discs, _REFUGE_M)
 
     def broad(self, here: Vec2, spot: Vec2) -> tuple[Vec2, ...]:
@@ -137,7 +144,7 @@ class HouseRoutes:
 
     def retreat(self, here: Vec2, point: Vec2, apart_m: float) -> tuple[Vec2, ...]:
         """The path to a spot where the body blocks nobody, ``apart_m`` metres from ``point``; () to stay."""
-        spot = park(self.space.free, self.space.origin, self.space.cell, here, point, apart_m)
+        spot = park(self._passages.free, self.space.origin, self.space.cell, here, point, apart_m)
         return () if spot is None else self.geodesics.path(here, spot)
 
     def to_view(self, here: Vec2, place: Vec3, but: Sequence[Vec2] = ()) -> tuple[Vec2, ...]:

@@ -113,7 +113,9 @@ def _first(
         if routes.open_to(spot, point[:2] if holder is None else nearest_outline_point(holder, spot)) and routes.sees(
             spot, point
         ):
-            return routes.way(here, spot)
+            way = routes.way(here, spot)
+            if way:
+                return way
     return ()
 
 

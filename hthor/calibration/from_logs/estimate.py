@@ -26,6 +26,7 @@ NEEDS: dict[str, tuple[int, str]] = {
     "stop_every": (40, "stops"),
     "stop_s": (40, "stops"),
     "k_map": (20, "guided walks"),
+    "map_hidden": (40, "followed messages"),
     "t_manip": (30, "attempts"),
     "p_fail": (30, "attempts"),
     "t_notice": (15, "messages"),

@@ -20,12 +20,15 @@ from hthor.calibration.from_logs.trial_features import Sessions
 from hthor.humans.population.parameter_registry import parameter
 
 Tell = Callable[[str], None]
+HIDDEN = "map_hidden"
+"""The share of messages that are followed with the map hidden, a number that is the same for everybody."""
 READING = "reading"
 """The name of the time from a message of twelve words to its answer: the sum of ``t_notice`` and ``t_read``."""
+_ANY_SHARE = Belief(name=HIDDEN, unit="", scale="logit", mean=0.0, sd=3.0, low=0.0, high=1.0)
 
 
 def estimate_parameters(sessions: Sessions, beliefs: Beliefs, tell: Tell = lambda _: None) -> tuple[Estimate, ...]:
-    """All estimates, in the registry's order, and `READING`; ``tell`` is called with the name of each step.
+    """All estimates, in the registry's order, `READING` and `HIDDEN`; ``tell`` is called with the name of each step.
 
     If the logs say little about a parameter, its estimate stays close to the prior belief.
     """
@@ -34,7 +37,7 @@ def estimate_parameters(sessions: Sessions, beliefs: Beliefs, tell: Tell = lambd
         tell(name)
         step(collector)
     collector.between_people()
-    return tuple(collector.estimates[name] for name in (*beliefs, READING) if name in collector.estimates)
+    return tuple(collector.estimates[name] for name in (*beliefs, READING, HIDDEN) if name in collector.estimates)
 
 
 def estimate_walking(collector: EstimateCollector) -> None:
@@ -95,6 +98,13 @@ def estimate_messages(collector: EstimateCollector) -> None:
     collector.estimates[READING] = _reading_total(collector.beliefs, fit, answers, method)
 
 
+def estimate_map_use(collector: EstimateCollector) -> None:
+    """How often messages are followed with the map hidden; no data come before the logs, so the belief is vague."""
+    follows = [follow for one in collector.trials for follow in one.follows]
+    collector.beliefs[HIDDEN] = _ANY_SHARE
+    collector.share(HIDDEN, sum(one.hidden for one in follows), len(follows), "map hidden soon after confirming")
+
+
 def estimate_trust(collector: EstimateCollector) -> None:
     """Initial trust and its changes, from the ratings; then acceptance of messages, given this trust."""
     sessions: dict[int, list[int]] = {}
@@ -150,6 +160,7 @@ _STEPS: dict[str, Callable[[EstimateCollector], None]] = {
     "walking": estimate_walking,
     "handling": estimate_manipulation,
     "messages": estimate_messages,
+    "the map": estimate_map_use,
     "trust and answers": estimate_trust,
     "choices": estimate_choices,
     "seeing": estimate_detection,

@@ -7,12 +7,14 @@ from msgspec import Struct
 
 from hthor import jsonio, rules
 from hthor.calibration.from_logs import estimate_all, trial_features
+from hthor.calibration.from_logs.display_habits import DisplayHabits, display_habits
 from hthor.calibration.from_logs.estimate import Estimate
 from hthor.calibration.from_logs.models import priors
 from hthor.calibration.from_logs.trial_features import Sessions
 from hthor.calibration.from_logs.update_population import Updated, update_draws
 from hthor.errors import RunError
 from hthor.humans.population import parameter_registry, population_file, resolve
+from hthor.humans.population.parameters import Parameters
 from hthor.humans.population.population import Population, Validity
 from hthor.humans.population.resolve import PROXY
 from hthor.types.events import Stick
@@ -35,7 +37,11 @@ class EstimateRow(Struct, frozen=True, kw_only=True):
 
 
 class LogEstimates(Struct, frozen=True, kw_only=True):
-    """The result of a calibration with logs; ``effective`` is the effective number of old draws behind the new ones."""
+    """The result of a calibration with logs.
+
+    ``effective`` is the effective number of old draws behind the new ones; ``display`` says how people used panel and
+    map.
+    """
 
     schema: str = SCHEMA
     prior: str
@@ -46,6 +52,7 @@ class LogEstimates(Struct, frozen=True, kw_only=True):
     widening: float
     rows: tuple[EstimateRow, ...]
     notes: tuple[str, ...]
+    display: DisplayHabits
 
 
 def estimate_from_logs(
@@ -78,6 +85,7 @@ def estimate_from_logs(
         widening=round(updated.widening, 3),
         rows=_rows(old, new, estimates),
         notes=new.notes,
+        display=display_habits(trial_features.extract_features(data)),
     )
     out.mkdir(parents=True, exist_ok=True)
     population_file.save_population(new, out / "population")
@@ -109,6 +117,7 @@ def _population(
         seed=seed,
         command=f"hthor calibrate {' '.join(f'--target {log.name}' for log in logs)} --prior {old.name}",
         names=old.names,
+        fixed=_fixed(old, estimates),
         statistics=tuple(f"{one.name}: {one.method}" for one in estimates if one.used),
         figures={"effective": round(updated.effective, 1), "widening": round(updated.widening, 3)},
         notes=notes,
@@ -122,11 +131,17 @@ def _population(
     )
 
 
+def _fixed(old: Population, estimates: Sequence[Estimate]) -> Parameters:
+    """The parameters that are the same for everybody: those of before, and what was measured of them."""
+    measured = {one.name: one.value for one in estimates if one.used and one.name in old.fixed}
+    return Parameters(**{**old.fixed, **measured})
+
+
 def _rows(old: Population, new: Population, estimates: Sequence[Estimate]) -> tuple[EstimateRow, ...]:
     by_name = {one.name: one for one in estimates}
     shares = (0.05, 0.5, 0.95)
     before, after = old.quantiles(shares), new.quantiles(shares)
-    return tuple(
+    columns = tuple(
         EstimateRow(
             name=spec.name,
             unit=spec.unit,
@@ -139,4 +154,21 @@ def _rows(old: Population, new: Population, estimates: Sequence[Estimate]) -> tu
             estimate=by_name.get(spec.name),
         )
         for k, spec in enumerate(new.specs)
+    )
+    return (*columns, *(_fixed_row(old, new, one) for one in estimates if one.name in old.fixed))
+
+
+def _fixed_row(old: Population, new: Population, one: Estimate) -> EstimateRow:
+    """The row of a parameter that is the same for everybody."""
+    before, after = old.fixed[one.name], new.fixed[one.name]
+    return EstimateRow(
+        name=one.name,
+        unit=one.unit,
+        before=before,
+        before_low=before,
+        before_high=before,
+        after=after,
+        after_low=after,
+        after_high=after,
+        estimate=one,
     )

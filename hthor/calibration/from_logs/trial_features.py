@@ -7,15 +7,16 @@ from pathlib import Path
 
 from msgspec import UNSET, Struct
 
-from hthor import log_format, rules
+from hthor import log_corrections, log_format, rules
 from hthor.calibration.from_logs import one_person
-from hthor.calibration.from_logs.features import locomotion, messages
+from hthor.calibration.from_logs.features import display_use, locomotion, messages
+from hthor.calibration.from_logs.features.display_use import Follow
 from hthor.calibration.from_logs.features.locomotion import Walk
 from hthor.calibration.from_logs.features.messages import Offer, Reading
 from hthor.calibration.from_logs.models.search_models import Choice, Exposure
 from hthor.calibration.from_logs.models.trust_model import Experience
 from hthor.errors import RunError
-from hthor.eval.records import attempts, trial_record
+from hthor.eval.records import attempts, corrected_log, trial_record
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.humans.population.parameters import Parameters
 from hthor.types import HUMAN, events
@@ -42,7 +43,7 @@ class Sessions(Struct, frozen=True, kw_only=True):
 
 
 def read_sessions(paths: Sequence[Path]) -> Sessions:
-    """The trials in some logs, each trial once.
+    """The trials in some logs that count, each trial once, with the corrections beside the logs.
 
     Args:
         paths: folders of runs, or log files such as their ``trials.jsonl``.
@@ -97,7 +98,9 @@ def _records(path: Path) -> list[TrialRecord]:
     skipped = Counter[str]()
     records = [_record(file, number, line + b"\n", skipped) for number, line in enumerate(lines[:-1], 1)]
     log_format.note_skipped(file, skipped)
-    return records
+    known = log_corrections.beside(file)
+    corrected_log.check_trials(file, known, {one.key for one in records})
+    return [corrected_log.corrected(one, known) for one in records] if known.lines else records
 
 
 def _record(file: Path, number: int, line: bytes, skipped: Counter[str]) -> TrialRecord:
@@ -122,7 +125,10 @@ class Attempt(Struct, frozen=True, kw_only=True):
 
 
 class TrialFeatures(Struct, frozen=True, kw_only=True):
-    """The features of a trial; ``walk`` is None when the log has no joystick data."""
+    """The features of a trial; ``walk`` is None when the log has no joystick data.
+
+    ``panels`` are the times [s] for which the panel was shown until each answer.
+    """
 
     person: int
     session: int
@@ -135,6 +141,8 @@ class TrialFeatures(Struct, frozen=True, kw_only=True):
     choices: tuple[Choice, ...]
     exposures: tuple[Exposure, ...]
     experience: Experience
+    follows: tuple[Follow, ...] = ()
+    panels: tuple[float, ...] = ()
 
 
 def extract_features(sessions: Sessions) -> tuple[TrialFeatures, ...]:
@@ -166,6 +174,8 @@ def _reduced(trial: Trial) -> TrialFeatures:
             if isinstance(entry, events.Exposure)
         ),
         experience=_experience(record),
+        follows=display_use.message_follows(record),
+        panels=display_use.panel_times(record),
     )
 
 

@@ -10,7 +10,7 @@ from typing import Any
 from msgspec import Struct
 
 from hthor import plugins, rules
-from hthor.episode import EpisodeLog, play
+from hthor.episode import EpisodeLog, play, task_part
 from hthor.errors import HthorError
 from hthor.eval.runner.messages import TrialOutcome
 from hthor.eval.runner.trial_runner import Sources, TrialRunner
@@ -108,6 +108,7 @@ def run_trials(trials: Sequence[TrialSpec], population: Parameters, runner: Tria
 
 def outcome_row(number: int, trial: TrialSpec, log: EpisodeLog) -> OutcomeRow:
     """The `OUTCOMES` of a trial; ``number`` is the number of its task in the suite."""
+    log = task_part(log)
     first: dict[str, int] = {}
     messages, target = 0, trial.task.goal.target
     for event in log.events:

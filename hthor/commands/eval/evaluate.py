@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 import typer
 
 from hthor.commands.eval import results
-from hthor.commands.options import AgentArgs, Camera, CameraSize, Json, Readable
+from hthor.commands.options import AgentArgs, Camera, CameraSize, Design, Json, Readable
 from hthor.console import output
 
 if TYPE_CHECKING:
@@ -180,6 +180,7 @@ def evaluate(
             "the uplift over it.",
         ),
     ] = True,
+    design: Design = "paired",
     clock: Annotated[
         Literal["lockstep", "charged", "concurrent"],
         typer.Option(
@@ -224,10 +225,11 @@ def evaluate(
     from hthor.eval.comparison import population_matrix
     from hthor.eval.config import human_populations
     from hthor.eval.runner import experiment, progress, run_options
+    from hthor.eval.runner import max_faults as max_faults_option
     from hthor.eval.task_check import custom_houses
     from hthor.report.terminal import result_tables
 
-    allowed = run_options.parse_max_faults(max_faults)
+    allowed = max_faults_option.parse_max_faults(max_faults)
     talk = output.console(talk=True)
     if realtime:
         output.say("warning: --realtime is now called --clock charged", talk)
@@ -257,6 +259,7 @@ def evaluate(
         houses=tuple(house or ()),
         difficulty=difficulty or "",
         step_limit=step_limit,
+        design=design,
         isolation=isolation,
         require_isolation=require_isolation,
         trial_limit=trial_limit,

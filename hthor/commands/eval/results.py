@@ -55,10 +55,11 @@ def show_run(console: Console, one: FinishedRun) -> None:
         return
     output.say(f"files: {folder}/run.json, trials.jsonl, result.json{more}", console)
     run = shlex.quote(str(folder))
-    unranked = overrides.overridden_settings(config)
+    settings = overrides.overridden_settings(config, played=result.counts.tasks)
+    unranked = [f"{name.replace('_', '-')} is {value}" for name, value in settings.items()]
+    unranked += ["its trials were corrected"] if result.corrections else []
     if unranked:
-        why = ", ".join(f"{name.replace('_', '-')} is {value}" for name, value in unranked.items())
-        output.say(f"not for the leaderboard: {why}", console)
+        output.say(f"not for the leaderboard: {', '.join(unranked)}", console)
     ranked = () if unranked else (f"hthor leaderboard add {run}",)
     for line in output.following(f"hthor replay {run} 0", f"hthor score {run} --all", *ranked):
         output.say(line, console)
@@ -114,6 +115,8 @@ def _put(found: Forecast) -> None:
         output.put_line(f"time: {words}")
     if found.seconds is None:
         output.put_line("time: unknown for robots that no finished run here has, and whose trial took too long")
+    if found.design:
+        output.put_line(found.design.sentence)
     left, about = found.trials - found.played, f", {time(found.seconds)}" if found.seconds is not None else ""
     output.put_line(f"{left} of {found.trials} trials would be played{about}; nothing was written.")
 

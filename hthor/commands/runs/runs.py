@@ -85,7 +85,8 @@ def view_run(
     Any option that chooses trials also lists the trials that fit. CSV has only the trials.
     """
     from hthor.eval import browse
-    from hthor.report.terminal import result_tables
+    from hthor.log_corrections import CorrectAdoption
+    from hthor.report.terminal import corrections, result_tables
 
     wanted = browse.TrialFilter(
         task=task, kind=_kind(kind), house=house, participant=participant, met=met, faulty=faulty
@@ -112,7 +113,12 @@ def view_run(
         output.put_line(f"an agent failed in {result.counts.faults} of {found.done} trials: {kinds}", shape)
     for one in found.voided:
         which = f"session {one.session}, trial {one.index}, {one.task}, attempt {one.attempt}, {one.key}"
-        output.put_line(f"voided, does not count: {which}: {one.reason}", shape)
+        how = f" by correction {one.correction}" if one.correction else ""
+        output.put_line(f"voided{how}, does not count: {which}: {one.reason}", shape)
+    for each in found.corrections:
+        if isinstance(each, CorrectAdoption):
+            words = f"{corrections.correction_words(each)}: {each.trial}: {each.reason}"
+            output.put_line(f"correction {each.number}, {words}", shape)
     for line in output.following(*found.next):
         output.put_line(line, shape)
 

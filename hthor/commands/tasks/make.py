@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 import typer
 
 from hthor.commands.options import Json
-from hthor.console import output
+from hthor.console import output, progress_bar
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -160,29 +160,19 @@ def _watched(name: str, total: int, quiet: bool, unit: str = "tasks") -> Iterato
     """Progress on standard error: a bar on a terminal, otherwise a line now and then."""
     done, bad, said = 0, 0, time.monotonic()
     first: tuple[int, float] | None = None
-    bar = None
-    if not quiet and output.live():
-        from tqdm import tqdm
-
-        bar = tqdm(total=total, desc=name, unit=unit[:-1], leave=False)
+    live = output.live()
 
     def tell(faulty: bool) -> None:
         nonlocal done, bad, said, first
         done, bad = done + 1, bad + faulty
         first = first or (done, time.monotonic())
-        if bar is not None:
-            bar.update()
-            if unit == "tasks":
-                bar.set_postfix(unsound=bad, refresh=False)
-        elif not quiet and (time.monotonic() - said > _SAY_EVERY_S or done == total):
+        advance(f"{bad} unsound" if unit == "tasks" else "")
+        if not (quiet or live) and (time.monotonic() - said > _SAY_EVERY_S or done == total):
             said = time.monotonic()
             pace = (done - first[0]) / max(said - first[1], 1e-9)  # the first had to wait for the workers to start
             left = f", {(total - done) / pace:.0f} s left" if done > first[0] and done < total else ""
             told = f", {bad} unsound" if unit == "tasks" else ""
             sys.stderr.write(f"{name}: {done}/{total} {unit}{told}{left}\n")
 
-    try:
+    with progress_bar.bar(name, total, unit, shown=not quiet) as advance:
         yield tell
-    finally:
-        if bar is not None:
-            bar.close()

@@ -13,10 +13,14 @@ import typer
 from hthor.commands.options import Json
 from hthor.console import formats, output
 from hthor.console.formats import Format, Shape
+from hthor.errors import HthorError
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from hthor.tasks import Suite
     from hthor.types import Placement, TaskSpec
+    from hthor.world import World
 
 app = typer.Typer(no_args_is_help=True, help="Tasks and suites of tasks.")
 
@@ -78,9 +82,8 @@ def show_task(task: TaskId, suite: Own = None, json: Json = False) -> None:
         output.put_json({"suite": shelf.name, "task": spec, "before": round(hard.before, 3), "score_s": hard.score})
         return
     sys.stdout.write(f"{spec.id}: {spec.instruction}\n\n")
-    share = (
-        f"{hard.level}: takes at least {hard.least:.1f} s, {100 * hard.before:.0f} % of the expected places come first"
-    )
+    first = "of the ways at random are wrong" if spec.goal.relation == "go" else "of the expected places come first"
+    share = f"{hard.level}: takes at least {hard.least:.1f} s, {100 * hard.before:.0f} % {first}"
     facts = [
         ("suite", f"{shelf.name} {shelf.version}"),
         ("kind", spec.kind),
@@ -105,22 +108,60 @@ def show_task(task: TaskId, suite: Own = None, json: Json = False) -> None:
 @app.command("draw")
 def draw_task(
     task: TaskId,
-    out: Annotated[Path | None, typer.Option(help="The file: .png, .svg or .pdf. [default: TASK.png]")] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(help="The file: .png, .svg or .pdf. [default: TASK.png, or TASK-pipeline.png and so on]"),
+    ] = None,
     suite: Own = None,
+    pipeline: Annotated[
+        bool,
+        typer.Option("--pipeline", help="Draw how the task was made: knowledge graph, scene graph and placed scene."),
+    ] = False,
+    angles: Annotated[
+        bool,
+        typer.Option("--angles", help="Draw a rearrangement from three angles, before and after the shuffle."),
+    ] = False,
+    nice: Annotated[
+        bool,
+        typer.Option(
+            "--nice",
+            help="With --pipeline and --angles, render with textures and shadows; needs OpenGL, and the pixels depend "
+            "on it.",
+        ),
+    ] = False,
     json: Json = False,
 ) -> None:
-    """Draw a task from above: objects, destination, start poses, and the shortest solution."""
-    from hthor.eval.task_check import omniscient_solver
-    from hthor.report.drawing import task_figure
+    """Draw a task from above: objects, destination, start poses, and the shortest solution.
+
+    With --pipeline or --angles, draw the house in three dimensions instead.
+    """
+    from hthor.report.drawing import figure_file
     from hthor.tasks.suites import library
     from hthor.world import World
 
+    if pipeline and angles:
+        raise HthorError("--pipeline and --angles are two figures; give one of them.")
+    end = "-pipeline" if pipeline else "-angles" if angles else ""
     found, spec = library.find_task(task, suite)
+    path = out or Path(spec.id.replace("/", "-") + f"{end}.png")
+    figure_file.check_name(path)
     world = World(found.houses.load(spec.house), objects=[(one.id, one.kind) for one in spec.objects])
-    path = out or Path(spec.id.replace("/", "-") + ".png")
-    limit = 10 * spec.time_limit
-    task_figure.draw_task(spec, world.house, omniscient_solver.solve(world, spec, limit_s=limit), path)
+    figure_file.write_figure(_figure(spec, world, end, "nice" if nice else "fast"), path)
     output.put_files([path], json, task=spec.id)
+
+
+def _figure(task: TaskSpec, world: World, end: str, profile: str) -> Figure:
+    """One of the three figures of a task."""
+    from hthor.eval.task_check import omniscient_solver
+    from hthor.report.drawing import task_figure
+    from hthor.report.drawing.overviews import pipeline_figure, rearrangement_figure
+
+    if end == "-pipeline":
+        return pipeline_figure.pipeline_figure(task, world, profile)
+    if end == "-angles":
+        return rearrangement_figure.rearrangement_figure(task, world, profile)
+    solution = omniscient_solver.solve(world, task, limit_s=10 * task.time_limit)
+    return task_figure.task_figure(task, world.house, solution)
 
 
 def _suite_row(suite: Suite) -> dict[str, Any]:

@@ -8,7 +8,8 @@ from msgspec import Struct
 
 from hthor.errors import HthorError
 from hthor.eval.comparison import compare
-from hthor.eval.results import paired_difference, pairing
+from hthor.eval.comparison.comparison import LoadedRun
+from hthor.eval.results import group_difference, paired_difference, pairing
 from hthor.eval.results.paired_difference import Noise
 from hthor.eval.statistics import power
 from hthor.eval.statistics.power import SampleSize, Scatter
@@ -116,6 +117,8 @@ def _measured(folders: Sequence[Path]) -> _Known:
     """The rates of two runs, the correlation of their outcomes and the scatter of their trials."""
     one, other = compare.load_runs(folders)
     pairing.check_comparable((one.folder, one.plan), (other.folder, other.plan))
+    if group_difference.are_groups(one.plan, other.plan):
+        return _of_groups(one, other)
     pairs = pairing.pair_trials(one.records, other.records).pairs
     found = paired_difference.paired_difference(pairs, "sr")
     if found is None:
@@ -124,6 +127,14 @@ def _measured(folders: Sequence[Path]) -> _Known:
         )
     noise = paired_difference.trial_noise(pairs, "sr")
     return _Known(found.first, found.second, found.correlation or 0.0, noise, len(pairs))
+
+
+def _of_groups(one: LoadedRun, other: LoadedRun) -> _Known:
+    """The rates of two groups of a between-subjects study, which say nothing about a correlation."""
+    found = group_difference.group_difference(one.records, other.records, "sr")
+    if found is None:
+        raise HthorError(f"{one.folder} and {other.folder} are not both begun yet. Finish both with 'hthor eval'.")
+    return _Known(found.first, found.second)
 
 
 def _rates(words: str) -> _Known:

@@ -10,6 +10,7 @@ from hthor import plugins
 from hthor.eval.config.robot_team import NO_ROBOT_AGENT
 from hthor.eval.config.run_config import PROCEDURAL, RunConfig
 from hthor.eval.config.sessions import whole_folder
+from hthor.eval.config.study_design import BETWEEN
 from hthor.guest import Manifest
 from hthor.types import AgentRef, RobotSeat, cameras
 from hthor.types.detector_specs import OWN
@@ -21,7 +22,7 @@ BUILT_IN_AGENTS = f"{plugins.package('agent')}."
 def resume_command(folder: Path, config: RunConfig, out: Path | None = None) -> str:
     """The shell command that finishes a run or a shard; it writes to ``out``, by default the run's folder."""
     out = out or folder
-    words = ["hthor", "eval", *_robot_options(config.robots), "--humans", config.humans.source]
+    words = ["hthor", "eval", *_condition_options(config), "--humans", config.humans.source]
     if config.kind is not None and config.kind.sha256:
         words += ["--kind", f"{config.kind.name}.py"]
         words += [] if (folder / "suite.json").exists() else ["--suite", config.suite.name]
@@ -31,7 +32,7 @@ def resume_command(folder: Path, config: RunConfig, out: Path | None = None) -> 
     detector = next((robot.detector for robot in config.seats), OWN)
     words += [] if detector == OWN else ["--detector", detector]
     words += _camera_options(config)
-    words += ["--name", config.title] if config.title else []
+    words += ["--name", _title(config)] if config.title else []
     words += ["--clock", config.clock] if config.clock else []
     words += [word for name in config.houses or () for word in ("--house", name)]
     words += ["--difficulty", config.difficulty] if config.difficulty else []
@@ -41,9 +42,28 @@ def resume_command(folder: Path, config: RunConfig, out: Path | None = None) -> 
         words += [word for key, value in one.args.items() for word in ("--agent-args", f"{key}={value}")]
         beyond = dict.fromkeys(file.path.split("/")[1] for file in one.files if file.path.startswith("../"))
         words += [word for name in beyond if name not in _listed_files(one) for word in ("--readable", name)]
-    words += ["--seed", str(config.seed), "--participants", str(config.participants)]
+    people = config.design.participants if config.design else config.participants
+    words += ["--seed", str(config.seed), "--participants", str(people)]
     words += ["--shard", config.shard.words] if config.shard else []
+    if config.design:  # all conditions have a folder each in one
+        whole = whole_folder(out) if config.shard else out
+        return shlex.join([*words, *(("--out", str(whole.parent)) if whole.name == config.team_name else ())])
     return shlex.join([*words, "--out", str(whole_folder(out) if config.shard else out)])
+
+
+def _condition_options(config: RunConfig) -> list[str]:
+    """The options that name the run's robots, or all conditions of its between-subjects study."""
+    if not config.design:
+        return _robot_options(config.robots)
+    words = [word for agent in config.design.conditions for word in ("--agent", agent)]
+    robot = _robot_options(config.seats[:1])[2:] if config.seats else []
+    return [*words, *robot, "--design", BETWEEN, "--no-control"]
+
+
+def _title(config: RunConfig) -> str:
+    """The name that the user gave; the runs of a study add their agents to it."""
+    title = config.title or ""
+    return title.removesuffix(f"-{config.team_name}") if config.design else title
 
 
 def _listed_files(agent: Manifest) -> set[str]:
@@ -67,7 +87,9 @@ def relative_path(path: Path) -> Path:
 
 
 def baseline_command(config: RunConfig) -> str:
-    """The command that runs the same people with the same tasks, but without a robot."""
+    """The command that runs the same people with the same tasks, but without a robot; or the whole study again."""
+    if config.design:
+        return resume_command(Path(), config)
     absent = RobotSeat(
         seat="", robot="", agent=AgentRef(name=NO_ROBOT_AGENT, source=f"{BUILT_IN_AGENTS}{NO_ROBOT_AGENT}", sha256="")
     )

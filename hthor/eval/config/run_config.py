@@ -16,6 +16,7 @@ from hthor.eval.config.human_populations import HumanModelRef
 from hthor.eval.config.human_team import HumanTeam
 from hthor.eval.config.robot_team import RobotTeam
 from hthor.eval.config.sessions import Shard
+from hthor.eval.config.study_design import BETWEEN, StudyDesign
 from hthor.guest.agent.manifest import Manifest
 from hthor.humans.population.resolve import PROXY
 from hthor.tasks import Suite
@@ -71,6 +72,7 @@ class RunConfig(Struct, frozen=True, kw_only=True):
         kind: the task kind that the suite was narrowed to, None for all its tasks; ``kinds``: the kinds of the tasks,
             which older runs do not have.
         participants: how many people take part in all sessions together.
+        design: the between-subjects study that this run is a condition of, if it is one.
         trials: how many trials the whole run has.
         clock: when agents' answers take effect, where it is not in lock-step.
         limit: how many tasks were chosen from the suite, if not all.
@@ -99,6 +101,7 @@ class RunConfig(Struct, frozen=True, kw_only=True):
     houses: tuple[str, ...] | msgspec.UnsetType = msgspec.UNSET
     difficulty: str | msgspec.UnsetType = msgspec.UNSET
     step_limit_s: float | msgspec.UnsetType = msgspec.UNSET
+    design: StudyDesign | msgspec.UnsetType = msgspec.UNSET
     shard: Shard | msgspec.UnsetType = msgspec.UNSET
 
     @property
@@ -130,6 +133,11 @@ class RunConfig(Struct, frozen=True, kw_only=True):
     def sessions(self) -> int:
         """How many sessions the whole run has."""
         return self.participants // len(self.humans.members)
+
+    @property
+    def session_numbers(self) -> Sequence[int]:
+        """The numbers of the whole run's sessions."""
+        return self.design.sessions(self.seed, len(self.humans.members)) if self.design else range(self.sessions)
 
     @property
     def mode(self) -> Clock:
@@ -168,7 +176,8 @@ class RunConfig(Struct, frozen=True, kw_only=True):
         if self.limit:
             tasks = f"{tasks}-{self.limit}"
         parts = [self.team_name, tasks, *([] if self.humans.name == PROXY else [self.humans.name])]
-        return "-".join([*parts, *([self.clock] if self.clock else []), self.whole.sha256[:10]])
+        parts += [self.clock] if self.clock else []
+        return "-".join([*parts, *([BETWEEN] if self.design else []), self.whole.sha256[:10]])
 
 
 def team_name(robots: Sequence[RobotSeat]) -> str:
@@ -193,6 +202,7 @@ def build_config(
     houses: Sequence[str] = (),
     difficulty: str = "",
     step_limit_s: float | None = None,
+    design: StudyDesign | None = None,
 ) -> RunConfig:
     """The configuration of a run, with every default resolved.
 
@@ -201,11 +211,14 @@ def build_config(
         participants: how many people in all; None for the number that is needed to do every task once.
         assets: the furniture pack that pictures show, with its own hash; None for our own furniture.
         clock, step_limit_s: as in `RunConfig`; without a robot, or submitted agents, they make no difference.
+        design: the between-subjects study that the run is a condition of; ``participants`` then makes no difference.
         limit, houses, difficulty: how ``suite`` was narrowed; empty or None where it was not.
     """
     people = human_team.find_team(humans) if isinstance(humans, str) else humans
     size = len(suite.tasks)
-    count = sessions.count_sessions(size, participants, len(people.members))
+    together = len(people.members)
+    numbers = design.sessions(seed, together) if design else ()
+    count = len(numbers) or sessions.count_sessions(size, participants, together)
     return RunConfig(
         robots=team.listed,
         agents=team.agents,
@@ -214,7 +227,7 @@ def build_config(
         kind=kind,
         kinds=tuple(sorted({task.kind for task in suite.tasks})),
         seed=seed,
-        participants=count * len(people.members),
+        participants=count * together,
         trials=sessions.count_trials(size, range(count)),
         rules_sha256=rules.sha256(),
         code_sha256=code_identity.code_sha256(people.models, (task.kind for task in suite.tasks)),
@@ -228,6 +241,7 @@ def build_config(
         houses=tuple(houses) or msgspec.UNSET,
         difficulty=difficulty or msgspec.UNSET,
         step_limit_s=robot_team.step_limit_of(team, step_limit_s),
+        design=design or msgspec.UNSET,
     )
 
 

@@ -14,6 +14,7 @@ from hthor.errors import HthorError
 from hthor.eval.config import human_team, robot_team
 from hthor.eval.config.human_team import HumanTeam
 from hthor.eval.config.robot_team import RobotTeam
+from hthor.eval.config.study_design import StudyDesign
 from hthor.humans.population.resolve import PROXY
 from hthor.tasks import Suite
 from hthor.types import TaskSpec, TrialSpec
@@ -72,11 +73,13 @@ def make_sessions(
     assets_sha256: str | None = None,
     clock: Clock = LOCKSTEP,
     step_limit_s: float | None = None,
+    design: StudyDesign | None = None,
 ) -> tuple[Session, ...]:
     """The sessions of a run.
 
-    Which tasks a session has depends on suite, seed and the session's number alone, never on the robots, so that all
-    robots meet the same people with the same tasks.
+    Which tasks a session has depends on suite, seed and the session's place in the run alone, never on the robots, so
+    that all robots meet the same people with the same tasks. The groups of a between-subjects study have other people
+    each, who do the same tasks in the same order.
 
     Args:
         agent: a built-in agent's name or an agent file, in the body ``robot`` with the detector ``detector`` as
@@ -85,6 +88,7 @@ def make_sessions(
         participants: how many people in all; by default the number that is needed to do every task exactly once.
         assets_sha256: hash of the robots' pictures, as `robot_team.team_pictures_sha256`; None: of our own furniture.
         step_limit_s: seconds that submitted agents have for each action; None for the usual deadline.
+        design: the between-subjects study that the run is a condition of; it knows the number of people itself.
     """
     team = robot_team.form_team([robot], [agent], detector) if isinstance(agent, str) else agent
     people = human_team.find_team(humans) if isinstance(humans, str) else humans
@@ -108,13 +112,17 @@ def make_sessions(
             step_limit_s=robot_team.step_limit_of(team, step_limit_s),
         )
 
-    count = count_sessions(len(suite.tasks), participants, len(people.members))
+    together = len(people.members)
+    numbers = (
+        design.sessions(seed, together) if design else range(count_sessions(len(suite.tasks), participants, together))
+    )
+    hands = assign_many(suite.tasks, seed, range(len(numbers)))
     return tuple(
         Session(
             number=session,
             trials=tuple(trial(suite.tasks[number], session, index) for index, number in enumerate(hand)),
         )
-        for session, hand in enumerate(assign_many(suite.tasks, seed, range(count)))
+        for session, hand in zip(numbers, hands, strict=True)
     )
 
 

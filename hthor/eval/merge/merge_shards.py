@@ -11,8 +11,10 @@ from hthor.errors import RunError
 from hthor.eval.config import cli_command, run_config
 from hthor.eval.config.run_config import RunConfig
 from hthor.eval.config.sessions import Shard, whole_folder
+from hthor.eval.merge import merge_corrections
 from hthor.eval.records import (
     attempts,
+    corrections,
     opened_files,
     platform,
     run_isolation,
@@ -98,12 +100,12 @@ def merge_shards(folders: Sequence[Path], out: Path, *, dry: bool = False) -> Me
     whole = RunFolder(out)
     whole.check_free(config)
     if dry:
-        known = [attempts.attempt_of(record) for _, record in trial_log.read(whole.log_file)]
+        known = [_attempt(whole, record) for _, record in trial_log.read(whole.log_file)]
         before = Attempts(known).counted
         count = Attempts([*known, *_attempts(shards)]).counted
         return MergeResult(folder=str(out), plan=config, trials=count, new=count - before, gaps=(), result=None)
     trials, new = _write(whole, config, shards, lines)
-    result = _score(whole, [shard.folder for shard in shards]) if trials == config.trials else None
+    result = _score(RunFolder(out), [shard.folder for shard in shards]) if trials == config.trials else None
     gaps = () if result else _gaps(shards, out, config.trials - trials)
     return MergeResult(folder=str(out), plan=config, trials=trials, new=new, gaps=gaps, result=result)
 
@@ -122,7 +124,7 @@ def _read_shard(folder: RunFolder) -> _ShardLog:
         _check_shard(folder, record, config.shard)
         if record.files:
             opened.append(msgspec.structs.replace(record, paths={}, journal=(), events=()))
-        one = attempts.attempt_of(record)
+        one = _attempt(folder, record)
         tried.append(one)
         trial, mine = (*one.place, one.number), (place, record.key, trial_record.checksum(line))
         if lines.setdefault(trial, mine)[1:] != mine[1:]:
@@ -132,13 +134,19 @@ def _read_shard(folder: RunFolder) -> _ShardLog:
     return _ShardLog(folder=folder, shard=config.shard, lines=lines, attempts=tuple(tried), opened=tuple(opened))
 
 
+def _attempt(folder: RunFolder, record: TrialRecord) -> Attempt:
+    """The attempt that a line of the log is about; voided also if a correction wants it repeated."""
+    one = attempts.attempt_of(record)
+    return msgspec.structs.replace(one, voided=one.voided or record.key in folder.corrections.repeated)
+
+
 def _attempts(shards: Iterable[_ShardLog]) -> list[Attempt]:
     return [attempt for shard in shards for attempt in shard.attempts]
 
 
 def _check_shard(folder: RunFolder, record: TrialRecord, shard: Shard) -> None:
     session = record.spec.session
-    if session not in shard.share(range(folder.config.sessions)):
+    if session not in shard.share(folder.config.session_numbers):
         raise RunError(
             f"{folder.log_file}: trial {record.key}: spec.session is {session}, which is not in shard "
             f"{shard.words}. The line belongs to another shard; delete it."
@@ -170,6 +178,9 @@ def _write(
     whole: RunFolder, config: RunConfig, shards: Sequence[_ShardLog], lines: dict[_Trial, _Line]
 ) -> tuple[int, int]:
     """Write the whole run's files; returns how many trials its log has now, and how many are new."""
+    new_lines = merge_corrections.new_lines(
+        whole.corrections, whole.path, [(shard.folder.path, shard.folder.corrections) for shard in shards]
+    )
     with whole.open_log() as log:
         before = log.counted
         whole.write_config(config)
@@ -183,6 +194,9 @@ def _write(
                 raise RunError(
                     f"{whole}: trial {key} is there already and differs from the shards'. Choose another --out."
                 )
+        if new_lines:
+            corrections.append(whole.path, new_lines)
+    with whole.open_log() as log:  # with the new corrections
         return log.counted, log.counted - before
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from msgspec import Struct, UnsetType
 from numpy.typing import NDArray
 
-from hthor.episode import EpisodeLog
+from hthor.episode import EpisodeLog, task_part
 from hthor.eval.metrics import registry
 from hthor.eval.metrics.metric import Trial, Value
 from hthor.types import TrialSpec
@@ -47,8 +47,8 @@ if not TYPE_CHECKING:
 
 
 def measure(spec: TrialSpec, log: EpisodeLog) -> TrialMetrics:
-    """The metrics of a trial."""
-    trial = Trial(spec, log)
+    """The metrics of a trial; they are about the task itself, not about phases before it."""
+    trial = Trial(spec, task_part(log))
     return TrialMetrics(**{metric.name: metric.measure(trial) for metric in registry.METRICS})
 
 

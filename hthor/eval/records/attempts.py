@@ -2,15 +2,18 @@
 
 A repetition has the same specification except for its number: ``attempt`` is 1 for the first, 2 for the second. Of
 several attempts the last that was not voided counts.
+
+A trial can also be voided after it was played, by a correction. It is then repeated only if the correction says so.
 """
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from typing import TypeVar
 
 import msgspec
 from msgspec import UNSET, Struct, UnsetType
 
 from hthor.eval.records.trial_record import TrialRecord
+from hthor.log_corrections import Corrections, VoidTrial
 from hthor.types import TrialSpec
 from hthor.types.events import Voided
 
@@ -20,7 +23,10 @@ _Pair = TypeVar("_Pair")
 
 
 class VoidedTrial(Struct, frozen=True, kw_only=True):
-    """An attempt that was voided: which one of which trial, from 0, and the reason."""
+    """An attempt that was voided: which one of which trial, from 0, and the reason.
+
+    ``correction`` is the number of the correction that voided it; absent if it was voided while it was played.
+    """
 
     key: str
     task: str
@@ -28,6 +34,7 @@ class VoidedTrial(Struct, frozen=True, kw_only=True):
     index: int
     attempt: int
     reason: str
+    correction: int | UnsetType = UNSET
 
 
 class Attempt(Struct, frozen=True):
@@ -65,10 +72,11 @@ def read_attempt(line: bytes) -> Attempt:
     return Attempt(place, found.spec.attempt or 0, ends == _VOIDED)
 
 
-def attempt_of(record: TrialRecord) -> Attempt:
-    """The attempt that a record is about."""
+def attempt_of(record: TrialRecord, given_up: Collection[str] = ()) -> Attempt:
+    """The attempt that a record is about; one whose key is among ``given_up`` is not called voided."""
     spec = record.spec
-    return Attempt((spec.session, spec.index), spec.attempt or 0, bool(record.log.voided))
+    voided = bool(record.log.voided) and record.key not in given_up
+    return Attempt((spec.session, spec.index), spec.attempt or 0, voided)
 
 
 def numbered(trial: TrialSpec, number: int) -> TrialSpec:
@@ -108,9 +116,14 @@ class Attempts:
         return not attempt.voided and attempt.number == self.number(attempt.place)
 
 
-def select(pairs: Iterable[tuple[_Pair, TrialRecord]]) -> list[tuple[_Pair, TrialRecord]]:
-    """Those of some records of a run that count, in their order; each comes with whatever belongs to it."""
-    held = [(pair, attempt_of(pair[1])) for pair in pairs]
+def select(
+    pairs: Iterable[tuple[_Pair, TrialRecord]], given_up: Collection[str] = ()
+) -> list[tuple[_Pair, TrialRecord]]:
+    """Those of some records of a run that count, in their order; each comes with whatever belongs to it.
+
+    ``given_up`` has the keys of voided trials that are wanted as well, unless they were repeated.
+    """
+    held = [(pair, attempt_of(pair[1], given_up)) for pair in pairs]
     known = Attempts(attempt for _, attempt in held)
     return [pair for pair, attempt in held if known.counts(attempt)]
 
@@ -121,8 +134,9 @@ def select_records(records: Iterable[TrialRecord]) -> list[TrialRecord]:
     return [record for _, record in select(found.items())]
 
 
-def voided_trials(records: Iterable[TrialRecord]) -> tuple[VoidedTrial, ...]:
-    """The attempts among some records that were voided, in their order."""
+def voided_trials(records: Iterable[TrialRecord], known: Corrections | None = None) -> tuple[VoidedTrial, ...]:
+    """The attempts among some records that were voided, in their order; ``known``: the records' corrections."""
+    later = {line.trial: line.number for line in (known.in_effect if known else ()) if isinstance(line, VoidTrial)}
     return tuple(
         VoidedTrial(
             key=record.key,
@@ -131,6 +145,7 @@ def voided_trials(records: Iterable[TrialRecord]) -> tuple[VoidedTrial, ...]:
             index=record.spec.index,
             attempt=record.spec.attempt or 0,
             reason=record.log.voided,
+            correction=later.get(record.key, UNSET),
         )
         for record in records
         if record.log.voided

@@ -16,9 +16,9 @@ def find_trial(folder: RunFolder, name: str) -> TrialRecord:
     """The trial of a run that ``name`` stands for.
 
     Args:
-        name: the start of a key, a task's id, or a number: the trial's place among all trials, counted from 0. After an
-            @ the number of an attempt may follow, such as 12@0 for the first at trial 12, which may have been voided;
-            without it, the attempt that counts is meant. A key names an attempt by itself.
+        name: the start of a key, a task's id, or a number: the trial's place among all trials that are over, counted
+            from 0. After an @ the number of an attempt may follow, such as 12@0 for the first at trial 12, which may
+            have been voided; without it, the attempt that counts is meant. A key names an attempt by itself.
 
     Raises:
         UnknownName: when no trial fits.
@@ -27,7 +27,7 @@ def find_trial(folder: RunFolder, name: str) -> TrialRecord:
     trial, at, number = name.rpartition("@")
     if at and number.isdecimal():
         return _attempt(folder, trial, int(number))
-    records = folder.records()
+    records = folder.played()
     by_task = [record for record in records if record.spec.task.id == name]
     if by_task:
         return _only(by_task, name)

@@ -9,15 +9,16 @@ from typing import TypeVar
 
 import msgspec
 
-from hthor import documents, jsonio
+from hthor import documents, jsonio, log_corrections
 from hthor.errors import RunError
 from hthor.eval.config.run_config import OLD_SCHEMA, SCHEMA, RunConfig, differences
-from hthor.eval.records import attempts, platform, run_isolation, session_restarts, trial_log
+from hthor.eval.records import attempts, corrected_log, platform, run_isolation, session_restarts, trial_log
 from hthor.eval.records.attempts import VoidedTrial
 from hthor.eval.records.platform import Platform
 from hthor.eval.records.trial_log import Place, TrialLog
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.guest import Isolation
+from hthor.log_corrections import Corrections
 
 _Part = TypeVar("_Part")
 _WRITTEN_FIRST = (".lock", trial_log.NAME, ".run.json.*", "control")
@@ -79,12 +80,13 @@ class RunFolder:
     def lines(self) -> tuple[list[bytes], list[TrialRecord]]:
         """The line and the record of every trial, in the order of sessions and their trials.
 
-        Of several attempts at a trial the one that counts is here; `attempts` has all.
+        Of several attempts at a trial the one that counts is here; `attempts` has all. Lines are as in the log, records
+        with the run's corrections.
 
         Raises:
-            RunError: when a line is damaged, belongs to another run, or occurs twice.
+            RunError: when a line is damaged, belongs to another run, or occurs twice; also for a line of corrections.
         """
-        pairs = self._counting(trial_log.read(self.log_file))
+        pairs = self._counting(corrected_log.read(self.log_file))
         return [line for line, _ in pairs], [record for _, record in pairs]
 
     def records(self) -> list[TrialRecord]:
@@ -93,20 +95,43 @@ class RunFolder:
 
     def attempts(self) -> list[TrialRecord]:
         """Every record of the log, of voided attempts too, in the order of sessions, their trials, and attempts."""
-        records = sorted((record for _, record in trial_log.read(self.log_file)), key=_order)
+        records = sorted((record for _, record in corrected_log.read(self.log_file)), key=_order)
         self._check(records)
         return records
+
+    def played(self) -> list[TrialRecord]:
+        """As `records`, and the trials that a correction voided, unless they were repeated: one record for every trial.
+
+        The place of a trial in this list is its number on the command line, which corrections do not change.
+        """
+        held = [(None, record) for record in self.attempts()]
+        return [record for _, record in attempts.select(held, self.corrections.given_up | self.corrections.repeated)]
+
+    @cached_property
+    def corrections(self) -> Corrections:
+        """The corrections of the run's trials."""
+        return log_corrections.load(self.path)
+
+    def corrected(self, record: TrialRecord) -> TrialRecord:
+        """A record of one of the run's trials that was played again, with the corrections of that trial."""
+        return corrected_log.corrected(record, self.corrections)
+
+    @property
+    def given_up(self) -> int:
+        """How many of the run's trials a correction voided for good: they are over, and not missing."""
+        keys = self.corrections.given_up
+        return sum(one.key in keys for one in self.voided)
 
     @cached_property
     def voided(self) -> tuple[VoidedTrial, ...]:
         """The attempts that were voided and do not count; known without reading again after `lines` or `digest`."""
-        return attempts.voided_trials(self.attempts())
+        return attempts.voided_trials(self.attempts(), self.corrections)
 
     def digest(self) -> tuple[list[Place], list[TrialRecord]]:
         """As `lines`, for runs of any length: lines stay on the disk, and records lack paths and journal."""
         slim = (
             (place, msgspec.structs.replace(record, paths={}, journal=()))
-            for place, _, record in trial_log.places(self.log_file)
+            for place, _, record in corrected_log.places(self.log_file)
         )
         pairs = self._counting(slim)
         return [place for place, _ in pairs], [record for _, record in pairs]
@@ -189,7 +214,7 @@ class RunFolder:
         held = sorted(pairs, key=lambda pair: _order(pair[1]))
         records = [record for _, record in held]
         self._check(records)
-        self.__dict__["voided"] = attempts.voided_trials(records)
+        self.__dict__["voided"] = attempts.voided_trials(records, self.corrections)
         return attempts.select(held)
 
     def _check(self, records: Sequence[TrialRecord]) -> None:

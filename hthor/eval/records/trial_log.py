@@ -12,14 +12,16 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from hthor import jsonio, log_format
+import msgspec
+
+from hthor import jsonio, log_corrections, log_format
 from hthor.errors import RunError, RunLocked
 from hthor.eval.records import attempts, trial_record
 from hthor.eval.records.attempts import Attempts
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.types import TrialSpec
 
-NAME = "trials.jsonl"
+NAME = log_corrections.LOG_NAME
 BEAT_S = 0.05
 """How often [s] a log's writer should call `TrialLog.sync`."""
 SYNC_S = 0.25
@@ -39,6 +41,8 @@ class Place(NamedTuple):
 
 def read(path: Path) -> Iterator[tuple[bytes, TrialRecord]]:
     """Every whole line of a log and its record; a torn last line, which has no newline, is skipped.
+
+    Corrections are not applied; `hthor.eval.records.corrected_log` does that.
 
     Events of kinds that this version does not know are left out of the records, and a note says so.
 
@@ -104,6 +108,7 @@ class TrialLog:
         try:
             self.torn = cut_torn_lines(self.path)
             self._checks: dict[str, int] = {}
+            self._repeated = log_corrections.load(folder).repeated
             self._attempts = Attempts()
             for line, found in read(self.path):
                 self._note(found.key, line)
@@ -129,7 +134,7 @@ class TrialLog:
 
     @property
     def counted(self) -> int:
-        """How many trials have an attempt that counts: one that was not voided."""
+        """How many trials have an attempt that was not voided, or one that was voided later and is not repeated."""
         return self._attempts.counted
 
     def due(self, trial: TrialSpec) -> TrialSpec:
@@ -186,7 +191,8 @@ class TrialLog:
 
     def _note(self, key: str, line: bytes) -> None:
         self._checks[key] = trial_record.checksum(line)
-        self._attempts.add(attempts.read_attempt(line))
+        attempt = attempts.read_attempt(line)
+        self._attempts.add(msgspec.structs.replace(attempt, voided=attempt.voided or key in self._repeated))
 
     def _unwritten(self, error: OSError) -> RunError:
         return RunError(

@@ -85,6 +85,11 @@ class TracedHuman:
         state: Mapping[str, Any] = self.human.state()
         return state
 
+    def record_belief(self, tick: int, object: str) -> None:
+        """Let the model record its belief, if it can."""
+        if (tell := getattr(self.human, "record_belief", None)) is not None:
+            tell(tick, object)
+
     @property
     def journal(self) -> Sequence[JournalEntry]:
         """The model's journal of this trial."""
@@ -132,7 +137,7 @@ def trace_human(
     journal = [entry for entry in record.journal if isinstance(entry, _JOURNAL) and entry.seat == human.seat]
     messages = [event for event in record.events if isinstance(event, _MESSAGES) and _reader(event) in ("", human.seat)]
     events: list[TraceEvent] = sorted([*person.thoughts, *journal, *messages], key=lambda event: event.tick)
-    same = trial_record.encode(record) == trial_record.encode(trial)
+    same = trial_record.encode(folder.corrected(record)) == trial_record.encode(trial)
     return HumanTrace(key=trial.key, seat=human.seat, same=same, traits=traits, events=tuple(events))
 
 

@@ -72,7 +72,7 @@ def session_before(folder: RunFolder, trial: TrialRecord) -> tuple[TrialSpec, ..
             f"{folder} was played by another version of hthor (its code's hash was {logged[:10]} and is {here[:10]}), "
             "in which people may decide differently. Play the run again with 'hthor eval', or use that version."
         )
-    specs = [record.spec for record in folder.records()]
+    specs = [record.spec for record in folder.played()]
     before = [one for one in specs if one.session == spec.session and one.index < spec.index]
     if [one.index for one in before] != list(range(spec.index)):
         raise RunError(
@@ -181,7 +181,7 @@ def rerun_trial(
         record=outcome.record,
         before=len(trials) - 1,
         changed=robots != trial.spec.robots,
-        same=trial_record.encode(outcome.record) == trial_record.encode(trial),
+        same=trial_record.encode(folder.corrected(outcome.record)) == trial_record.encode(trial),
         left=outcome.fault_report,
     )
 

@@ -13,8 +13,17 @@ from hthor.eval.metrics.metric import Metric
 from hthor.eval.records import opened_files
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
-from hthor.eval.results import baseline, result_file
-from hthor.eval.results.result_file import Counts, Effort, Hashes, RunResult, Scores, Uplift, to_stored
+from hthor.eval.results import applied_corrections, baseline, result_file
+from hthor.eval.results.result_file import (
+    AppliedCorrections,
+    Counts,
+    Effort,
+    Hashes,
+    RunResult,
+    Scores,
+    Uplift,
+    to_stored,
+)
 from hthor.eval.statistics import intervals
 from hthor.eval.statistics.intervals import Estimate
 from hthor.guest import Isolation
@@ -32,12 +41,14 @@ def make_result(
     isolation: Isolation | None = None,
     replays: int = 0,
     voided: int = 0,
+    corrections: AppliedCorrections | None = None,
 ) -> RunResult:
     """The result of a run's records, complete or not.
 
     Args:
         lines: the log's lines, for their hash. replays: sessions that were run again because an agent was killed.
         voided: attempts at trials that were voided, and are not among the records.
+        corrections: those that were applied to the records.
     """
     trials = hashlib.sha256()
     for line in lines:
@@ -56,6 +67,7 @@ def make_result(
         seed=plan.seed,
         mode=plan.mode,
         participants=plan.participants,
+        design=plan.design,
         metrics=whole,
         by_kind=by_kind,
         trust_by_trial=trust_by_trial(records),
@@ -74,6 +86,7 @@ def make_result(
             replays=replays,
             voided=voided or msgspec.UNSET,
         ),
+        corrections=corrections or msgspec.UNSET,
         versions=plan.versions,
         hashes=Hashes(
             run=plan.sha256,
@@ -136,7 +149,12 @@ def estimate_metric(records: Sequence[TrialRecord], metric: Metric, seat: str = 
 def score_run(
     run: RunFolder, lines: Iterable[bytes], records: Sequence[TrialRecord], effort: Effort | None
 ) -> RunResult:
-    """The result of a run from its records and the other files of its folder."""
+    """The result of a run from its records and the other files of its folder.
+
+    Raises:
+        RunError: also when the run has fewer corrections than when it was scored last.
+    """
+    applied_corrections.check_kept(run)
     uplift = baseline.uplift_or_stored(run.path, run.config, records)
     return make_result(
         run.config,
@@ -147,7 +165,16 @@ def score_run(
         isolation=run.isolation,
         replays=run.restarts,
         voided=len(run.voided),
+        corrections=applied_corrections.applied(run),
     )
+
+
+def score_shard(
+    run: RunFolder, lines: Iterable[bytes], records: Sequence[TrialRecord], effort: Effort | None
+) -> RunResult:
+    """The result of a shard, which is not stored and has no uplift."""
+    held = applied_corrections.applied(run)
+    return make_result(run.config, lines, records, effort, voided=len(run.voided), corrections=held)
 
 
 def rescore(folder: Path) -> tuple[RunConfig, RunResult, RunResult | None]:
@@ -162,10 +189,10 @@ def rescore(folder: Path) -> tuple[RunConfig, RunResult, RunResult | None]:
     return run.config, score_run(run, lines, _measured(kept), stored.effort if stored else None), stored
 
 
-def load_measured(folder: Path) -> tuple[RunConfig, list[TrialRecord], int]:
-    """A run's configuration, its records with metrics measured again from their events, and how many were voided."""
+def load_measured(folder: Path) -> tuple[RunFolder, list[TrialRecord]]:
+    """A run, and its records with metrics measured again from their events."""
     run = RunFolder(folder)
-    return run.config, _measured(run.records()), len(run.voided)
+    return run, _measured(run.records())
 
 
 def _measured(kept: Iterable[TrialRecord]) -> list[TrialRecord]:

@@ -7,13 +7,14 @@ from pathlib import Path
 
 import msgspec
 
+from hthor import log_corrections
 from hthor.errors import RunError
 from hthor.eval.config.run_config import RunConfig
 from hthor.eval.metrics import trial_metrics
-from hthor.eval.records import attempts, trial_log
+from hthor.eval.records import attempts, corrected_log
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
-from hthor.eval.results import paired_difference, pairing, result_file
+from hthor.eval.results import group_difference, paired_difference, pairing, result_file
 from hthor.eval.results.result_file import StoredUplift, Uplift
 
 FOLDER = "control"
@@ -33,13 +34,25 @@ def uplift_or_stored(folder: Path, plan: RunConfig, records: Sequence[TrialRecor
 def measure_uplift(folder: Path, plan: RunConfig, records: Sequence[TrialRecord]) -> Uplift | None:
     """The uplift from the baseline's log; None if the run has no robot or no complete baseline is found."""
     found = next(_whole(folder, plan, _anywhere(folder)), None)
-    return None if found is None else make_uplift(found[2], records, run=found[1].sha256)
+    if found is None:
+        return None
+    return make_uplift(found[2], records, run=found[1].sha256, groups=group_difference.are_groups(found[1], plan))
 
 
-def make_uplift(control: Sequence[TrialRecord], records: Sequence[TrialRecord], *, run: str) -> Uplift | None:
-    """The uplift of ``records`` over a baseline whose hash is ``run``; None without a trial in common."""
+def make_uplift(
+    control: Sequence[TrialRecord], records: Sequence[TrialRecord], *, run: str, groups: bool = False
+) -> Uplift | None:
+    """The uplift of ``records`` over a baseline whose hash is ``run``; None without a trial in common.
+
+    ``groups`` says that the two had different people, as conditions of a between-subjects study.
+    """
     pairs = pairing.pair_trials(control, records).pairs
-    sr, twsr, time_s = (paired_difference.paired_difference(pairs, metric) for metric in result_file.UPLIFT_METRICS)
+    sr, twsr, time_s = (
+        group_difference.group_difference(control, records, metric)
+        if groups
+        else paired_difference.paired_difference(pairs, metric)
+        for metric in result_file.UPLIFT_METRICS
+    )
     if sr is None or twsr is None or time_s is None:
         return None
     return Uplift(control=run, sr=sr, twsr=twsr, time_s=time_s)
@@ -76,8 +89,8 @@ def _whole(
     known = result_file.stored_uplift(folder, run=plan.sha256)
     named = known.control if known is not None else ""
     for candidate, there in sorted(fitting, key=lambda one: one[1].sha256 != named):
-        kept = _records(candidate)
-        if len({record.key for record in kept}) >= there.trials:
+        kept, over = _records(candidate)
+        if over >= there.trials:
             yield candidate, there, kept
 
 
@@ -87,8 +100,8 @@ def _fits(candidate: Path, plan: RunConfig) -> RunConfig | None:
         there = RunFolder(candidate).config
     except RunError:  # of another version, or damaged
         return None
-    fits = not there.seats and not pairing.differing_field(plan, there) and there.participants >= plan.participants
-    return there if fits else None
+    enough = bool(plan.design) or there.participants >= plan.participants
+    return there if enough and not there.seats and not pairing.differing_field(plan, there) else None
 
 
 def _near(folder: Path) -> Iterator[Path]:
@@ -120,12 +133,15 @@ def _runs_in(place: Path, patterns: Sequence[str], *, but: Path) -> Iterator[Pat
         yield from (run for run in runs if run.resolve() != but)
 
 
-def _records(folder: Path) -> list[TrialRecord]:
+def _records(folder: Path) -> tuple[list[TrialRecord], int]:
+    """The records of a run that count, and how many of its trials are over; none if they cannot be read."""
     try:
-        kept = [
+        given_up = log_corrections.load(folder).given_up
+        known = [
             msgspec.structs.replace(one, metrics=trial_metrics.measure(one.spec, one.log), paths={}, journal=())
-            for _, one in trial_log.read(folder / "trials.jsonl")
+            for _, one in corrected_log.read(folder / "trials.jsonl")
         ]
     except RunError:
-        return []
-    return sorted(attempts.select_records(kept), key=lambda record: (record.spec.session, record.spec.index))
+        return [], 0
+    kept = sorted(attempts.select_records(known), key=lambda record: (record.spec.session, record.spec.index))
+    return kept, len(kept) + len({record.key for record in known} & given_up)

@@ -121,18 +121,18 @@ def difference_of_values(
     known = math.isfinite(float(found.variance[0]))
     low, high = (float(end[0]) for end in interval_ends(found, share=share, room=room, level=(1.0 + level) / 2.0))
     needed = float(intervals.detectable_difference(found, count)[0])
-    gap = _rounded(float(second.mean())) - _rounded(float(first.mean()))  # as `hthor power` reads it
+    gap = rounded(float(second.mean())) - rounded(float(first.mean()))  # as `hthor power` reads it
     return Difference(
         n=count,
-        first=_rounded(float(first.mean())),
-        second=_rounded(float(second.mean())),
-        difference=_rounded(raw),
-        ci95=(_rounded(min(low, raw)), _rounded(max(high, raw))) if known else None,
+        first=rounded(float(first.mean())),
+        second=rounded(float(second.mean())),
+        difference=rounded(raw),
+        ci95=(rounded(min(low, raw)), rounded(max(high, raw))) if known else None,
         p=p_value(raw, float(null_variance(found, share=share)[0]), freedom) if known else None,
-        mde80=_rounded(needed) if known else None,
+        mde80=rounded(needed) if known else None,
         correlation=_correlation(first, second),
         gain=_gain(first, second),
-        more_tasks=_more(gap, float(found.variance[0]) * count, freedom, count) if known else None,
+        more_tasks=more_trials(gap, float(found.variance[0]) * count, freedom, count) if known else None,
     )
 
 
@@ -278,9 +278,9 @@ def _a_trial(freedom: float, count: int) -> float:
     return min(1.0, (freedom + 1.0) / count)
 
 
-def _more(difference: float, variance: float, freedom: float, count: int) -> int | None:
-    scatter = power.Scatter(variance=variance, freedom=_a_trial(freedom, count))
-    needed = power.trials_needed(difference, scatter)
+def more_trials(difference: float, variance: float, freedom: float, count: int) -> int | None:
+    """How many more trials than ``count`` would show a difference; ``variance`` is that of a single trial."""
+    needed = power.trials_needed(difference, power.Scatter(variance=variance, freedom=_a_trial(freedom, count)))
     return None if needed is None else max(0, needed - count)
 
 
@@ -295,5 +295,6 @@ def _gain(first: np.ndarray, second: np.ndarray) -> float | None:
     return round(float(first.var() + second.var()) / within, 4) if within > 1e-12 else None
 
 
-def _rounded(value: float) -> float:
+def rounded(value: float) -> float:
+    """A number of a result."""
     return round(value, _DIGITS) + 0.0

@@ -16,6 +16,7 @@ _SAME = {
     "suite.sha256": "other tasks",
     "kind.sha256": "another file of the kind of task",
     "humans.sha256": "other human models",
+    "design.study": "other groups of people",
     "seed": "other participants and tasks",
     "rules_sha256": "other rules of the benchmark",
     "code_sha256": "another version of hthor",

@@ -13,6 +13,7 @@ from hthor.errors import RunError
 from hthor.eval.config import robot_team
 from hthor.eval.config.human_populations import HumanModelRef
 from hthor.eval.config.run_config import AssetsRef, KindRef, SuiteRef
+from hthor.eval.config.study_design import StudyDesign
 from hthor.eval.metrics import registry
 from hthor.eval.results.paired_difference import Difference
 from hthor.eval.statistics.intervals import NOTHING, Estimate
@@ -68,6 +69,26 @@ class Counts(Struct, frozen=True, kw_only=True):
     voided: int | msgspec.UnsetType = msgspec.UNSET
 
 
+class AppliedCorrections(Struct, frozen=True, kw_only=True):
+    """The corrections that are in effect, and the file that they are from.
+
+    ``voided`` counts trials that are void and over, ``repeated`` void trials that are repeated, ``adoptions``
+    judgements of an adoption. ``lines`` is the number of lines of the file, withdrawn corrections among them, and
+    ``sha256`` its hash.
+    """
+
+    voided: int
+    repeated: int
+    adoptions: int
+    lines: int
+    sha256: str
+
+    @property
+    def count(self) -> int:
+        """How many corrections are in effect."""
+        return self.voided + self.repeated + self.adoptions
+
+
 class Hashes(Struct, frozen=True, kw_only=True):
     """Hashes of what determines the records, and of the records themselves in order of participant and trial.
 
@@ -119,9 +140,10 @@ class RunResult(Struct, frozen=True, kw_only=True):
     """The run's `result.json`.
 
     ``trust_by_trial`` is the rating after the first, second, ... trial of a session, empty without a robot. ``uplift``
-    is None if no complete run without a robot was ever found. ``mode`` is the decision clock of its trials; with any
-    other than "lockstep", no second run gives the same bytes. ``agents`` lists the files of every agent that is not
-    built in, including those that it opened only during trials.
+    is None if no complete run without a robot was ever found. ``corrections`` is absent if none is in effect, and
+    ``design`` unless the run is a group of a between-subjects study. ``mode``
+    is the decision clock of its trials; with any other than "lockstep", no second run gives the same bytes. ``agents``
+    lists the files of every agent that is not built in, including those that it opened only during trials.
     """
 
     schema: str = SCHEMA
@@ -134,11 +156,13 @@ class RunResult(Struct, frozen=True, kw_only=True):
     seed: int
     mode: Clock = LOCKSTEP
     participants: int
+    design: StudyDesign | msgspec.UnsetType = msgspec.UNSET
     metrics: Scores
     by_kind: dict[str, Scores]
     trust_by_trial: tuple[Estimate, ...] = ()
     uplift: StoredUplift | None = None
     counts: Counts
+    corrections: AppliedCorrections | msgspec.UnsetType = msgspec.UNSET
     versions: dict[str, str]
     hashes: Hashes
     assets: AssetsRef
@@ -149,6 +173,11 @@ class RunResult(Struct, frozen=True, kw_only=True):
     def label(self) -> str:
         """The run's name in tables and sentences."""
         return robot_team.display_name(self.name, self.robots)
+
+    @property
+    def over(self) -> int:
+        """How many trials are over: those that count, and those that a correction voided for good."""
+        return self.counts.trials + (self.corrections.voided if self.corrections else 0)
 
 
 def load_result(folder: Path) -> RunResult | None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING, Any
 
+from hthor.console import progress_bar
+
 if TYPE_CHECKING:
     from rich.console import Console
 
@@ -118,12 +120,8 @@ class Live(Watcher):
         self._task: Any = None
 
     def begin(self, total: int, kept: int) -> None:
-        from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn
-
         self._tally = Tally(total, kept)
-        title, state = TextColumn("[bold]{task.description}"), TextColumn("{task.fields[words]}")
-        columns = (SpinnerColumn(), title, BarColumn(), state)
-        self._bar = Progress(*columns, console=self._console, refresh_per_second=4, transient=True)
+        self._bar = progress_bar.make_progress(self._console)
         words = f"{kept}/{total} trials, starting the workers" if kept < total else self._tally.words
         self._task = self._bar.add_task(self._name, total=total, completed=kept, words=words)
         self._bar.start()

@@ -64,7 +64,7 @@ def run_evaluation(
             for name, data in (extra or {}).items():
                 folder.write(name, data)
             if check is not None and len(log):
-                check(config, folder.digest()[1])
+                check(config, folder.played())
             faults = FaultArchive(folder.path, rerun_command)
             collector = Collector(folder, log, engine, watcher, faults, stop)
             collected = _run_missing(config, sessions, make, folder, log, collector, watcher, stop)
@@ -92,7 +92,10 @@ def _run_missing(
     watcher: Watcher,
     stop: threading.Event,
 ) -> CollectedTrials | None:
-    """Run the sessions that lack trials; None when no session does. Trials that were voided are repeated."""
+    """Run the sessions that lack trials; None when no session does. Trials that were voided are repeated.
+
+    A trial that a correction voided is repeated only if the correction says so: simulated people would do the same.
+    """
     sessions = [msgspec.structs.replace(session, trials=tuple(map(log.due, session.trials))) for session in sessions]
     keys = {session.number: [trial_record.key(trial) for trial in session.trials] for session in sessions}
     expected = [key for some in keys.values() for key in some]
@@ -119,7 +122,7 @@ def _score(folder: RunFolder, effort: Effort | None) -> RunResult:
     if folder.config.shard:
         if effort is not None:
             jsonio.write(folder.effort_file, jsonio.pretty(effort))
-        return aggregate.make_result(folder.config, lines, records, effort, voided=len(folder.voided))
+        return aggregate.score_shard(folder, lines, records, effort)
     stored = result_file.load_result(folder.path)
     result = aggregate.score_run(folder, lines, records, effort or (stored.effort if stored else None))
     if result != stored:

@@ -62,6 +62,7 @@ class RunJob(Struct, frozen=True, kw_only=True):
             assets_sha256=config.assets.sha256,
             clock=config.mode,
             step_limit_s=config.step_limit_s or None,
+            design=config.design or None,
         )
         return config.shard.share(sessions) if config.shard else sessions
 

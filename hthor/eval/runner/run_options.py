@@ -1,7 +1,6 @@
 """The options of `hthor eval`, and the runs that they stand for."""
 
-import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import msgspec
@@ -9,42 +8,45 @@ from msgspec import Struct
 
 from hthor import code_identity, guest
 from hthor.errors import HthorError
-from hthor.eval.config import human_populations, robot_team, run_config, sessions, task_selection
+from hthor.eval.config import (
+    human_populations,
+    robot_team,
+    run_config,
+    sessions,
+    study_design,
+    task_selection,
+)
 from hthor.eval.config.human_team import HumanTeam
 from hthor.eval.config.robot_team import RobotTeam
 from hthor.eval.config.run_config import AssetsRef, RunConfig
+from hthor.eval.config.study_design import StudyDesign
 from hthor.eval.config.task_selection import TaskSelection
 from hthor.eval.records import run_isolation
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.results import baseline
-from hthor.eval.runner import engines, trial_runner
+from hthor.eval.runner import engines, run_teams, trial_runner
 from hthor.eval.runner.run_job import ScheduledRun, make_sources
+from hthor.eval.runner.run_teams import TeamOptions
 from hthor.guest import GuestConfig, Isolation
 from hthor.guest.agent import inputs
 from hthor.humans.population.resolve import PROXY
 from hthor.tasks.suites import library
-from hthor.types import cameras, detector_specs
 from hthor.types.specs import LOCKSTEP, Clock
 
 RUNS = Path("runs")
 
 
-class RunOptions(Struct, frozen=True, kw_only=True):
+class RunOptions(TeamOptions, frozen=True, kw_only=True):
     """The options of `hthor eval`, which docs/cli.md explains; empty where the default depends on other options.
 
-    ``control`` adds a run of the same people with the same tasks without a robot, unless there is one already.
+    ``control`` adds a run of the same people with the same tasks without a robot, unless there is one already. In a
+    between-subjects ``design`` it adds the condition without a robot, with people of its own.
     """
 
-    agents: tuple[str, ...] = ()
-    robots: str = ""
-    robot: str = ""
     humans: tuple[str, ...] = (PROXY,)
     suite: str = ""
     kind: str = ""
     assets: str = ""
-    detector: str = detector_specs.OWN
-    camera: str = cameras.OWN
-    camera_size: str = ""
     seed: int = 0
     participants: int | None = None
     jobs: int | None = None
@@ -52,7 +54,6 @@ class RunOptions(Struct, frozen=True, kw_only=True):
     shard: str = ""
     engine: str = engines.LOCAL
     address: str = ""
-    control: bool = False
     clock: Clock = LOCKSTEP
     name: str = ""
     limit: int | None = None
@@ -109,8 +110,9 @@ def resolve_options(options: RunOptions) -> ResolvedRuns:
     tasks = task_selection.select_tasks(options.suite, options.kind)
     tasks = task_selection.narrow_selection(tasks, options.houses, options.difficulty)
     tasks = task_selection.limit_selection(tasks, options.limit)
-    planner = _Planner(options, tasks, assets, guests)
-    drafts = planner.runs(_teams(options, tasks, guests), peoples)
+    teams = run_teams.choose_teams(options, tasks, guests)
+    planner = _Planner(options, tasks, assets, guests, [run_teams.agent_word(team) for team in teams])
+    drafts = planner.runs(teams, peoples)
     baselines = planner.baselines(drafts) if options.control and not options.shard else {}
     agents = sorted({agent for run in drafts for agent in run.team.agent_paths.values()})
     isolation = run_isolation.resolve_isolation(options.isolation, options.require_isolation, agents)
@@ -128,9 +130,15 @@ class _Planner:
     """Makes the runs that some options stand for; all have the same tasks and furniture."""
 
     def __init__(
-        self, options: RunOptions, tasks: TaskSelection, assets: AssetsRef | None, guests: GuestConfig
+        self,
+        options: RunOptions,
+        tasks: TaskSelection,
+        assets: AssetsRef | None,
+        guests: GuestConfig,
+        conditions: Sequence[str],
     ) -> None:
         self._options, self._tasks, self._assets, self._guests = options, tasks, assets, guests
+        self._conditions = conditions
         self._brings_houses = bool(own_houses(options))
 
     def runs(self, teams: Sequence[RobotTeam], peoples: Sequence[HumanTeam]) -> list[ScheduledRun]:
@@ -210,6 +218,19 @@ class _Planner:
             houses=tasks.houses,
             difficulty=tasks.difficulty,
             step_limit_s=None if baseline else options.step_limit,
+            design=self._design(team, people),
+        )
+
+    def _design(self, team: RobotTeam, people: HumanTeam) -> StudyDesign | None:
+        """The between-subjects study that a run is a condition of; None for the paired design."""
+        if self._options.design != study_design.BETWEEN:
+            return None
+        return study_design.plan_study(
+            self._conditions,
+            run_teams.agent_word(team),
+            participants=self._options.participants,
+            sessions_each=sessions.sessions_needed(len(self._tasks.suite.tasks)),
+            people=len(people.members),
         )
 
     def _job(self, team: RobotTeam, people: HumanTeam, config: RunConfig, path: Path, title: str) -> ScheduledRun:
@@ -250,43 +271,6 @@ def _hidden_paths(options: RunOptions) -> tuple[str, ...]:
     if options.suite and Path(options.suite).is_file():
         paths.append(library.houses_folder(Path(options.suite)))
     return tuple(str(path.resolve()) for path in paths if path.exists())
-
-
-def parse_max_faults(text: str) -> Callable[[int], float]:
-    """How many of a number of trials may have a fault, for a text such as "3" or "5%".
-
-    Raises:
-        HthorError: when the text is neither a number nor a share of trials.
-    """
-    number, percent = text.strip().removesuffix("%"), text.strip().endswith("%")
-    try:
-        value = float(number) if percent else int(number)
-    except ValueError:
-        value = -1.0
-    if not 0.0 <= value < math.inf or (percent and value > 100.0):
-        raise HthorError(
-            f"--max-faults '{text}' is neither a number of trials, such as 3, nor a share of them, such as 5%."
-        )
-    return lambda trials: value / 100.0 * trials if percent else value
-
-
-def _teams(options: RunOptions, tasks: TaskSelection, guests: GuestConfig) -> list[RobotTeam]:
-    """The teams that are evaluated, one run each."""
-    detector = detector_specs.canonical_name(options.detector)
-    camera = cameras.canonical_name(options.camera, options.camera_size)
-    if options.robots:
-        if options.robot:
-            raise HthorError("--robots names all the robots; leave out --robot.")
-        return robot_team.parse_teams(options.robots, options.agents, detector, camera, guests=guests)
-    names = (options.robot,) if options.robot else tasks.robots
-    if not names:
-        raise HthorError(
-            f"the task kinds in the suite '{tasks.suite.name}' are made for different robots; name them with --robots, "
-            "or choose one kind with --kind."
-        )
-    robots = [robot_team.load_robot_info(name) for name in names]
-    agents = [robot_team.load_agent_info(agent, guests) for agent in options.agents]
-    return [robot_team.form_team(robots, [agent] * len(robots), detector, camera) for agent in agents]
 
 
 def _folder(options: RunOptions, config: RunConfig, teams: int, peoples: int) -> Path:

@@ -14,13 +14,30 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
-from msgspec import Struct
 from numpy.typing import NDArray
 
 from hthor import catalog, plugins, rules
+from hthor.eval.task_check.solution import Solution
+from hthor.eval.task_check.walking import MetTest, in_the_persons_place, spots_at_end
 from hthor.geometry import plane
 from hthor.tasks.arrangement.reachability import ReachableFloor, lines_of_sight
-from hthor.types import HUMAN, Drop, Job, Motion, Move, Open, Outcome, Pick, Place, Rotate, TaskSpec, Thing, Vec2, Vec3
+from hthor.types import (
+    HUMAN,
+    Drop,
+    Job,
+    Motion,
+    Move,
+    Open,
+    Outcome,
+    Pick,
+    Place,
+    Rotate,
+    TaskSpec,
+    Thing,
+    Vec2,
+    Vec3,
+    Wait,
+)
 
 if TYPE_CHECKING:
     from hthor.world import World
@@ -38,19 +55,6 @@ _POINTS, _EDGE_M, _OFF_M = 3, 0.12, 0.03
 _TURN_RAD, _EPS = 1e-3, 1e-9
 
 
-class Solution(Struct, frozen=True, kw_only=True):
-    """The result: whether the goal was met, the time [s], the length of the walk [m], and why the goal was not met.
-
-    ``way`` [m] is the walk with all its bends, from the start.
-    """
-
-    met: bool
-    seconds: float
-    metres: float
-    reason: str = ""
-    way: tuple[Vec2, ...] = ()
-
-
 class _Over(Exception):
     """The goal is met, or time is up."""
 
@@ -61,8 +65,10 @@ def solve(world: World, task: TaskSpec, *, limit_s: float | None = None) -> Solu
     Args:
         world: the world of the task's house, with its objects; it is reset here. Robots in it stand still.
         limit_s: how long it may take [s]; the task's own limit when None.
+
+    Where a robot has to walk somewhere, the person does it in its place.
     """
-    return _Performance(world, task, task.time_limit if limit_s is None else limit_s).run()
+    return _Performance(world, in_the_persons_place(task), task.time_limit if limit_s is None else limit_s).run()
 
 
 class _Performance:
@@ -73,6 +79,7 @@ class _Performance:
         self.ground = ReachableFloor.of(world.house)
         self.body = world.bodies[HUMAN]
         self.things = {thing.id: thing for thing in world.house.things}
+        self._is_met = MetTest(self.kind, task, self.house)
         self.met, self.reason = False, ""
         self.way: list[Vec2] = []
 
@@ -81,7 +88,7 @@ class _Performance:
         self.way = [self._here()]
         try:
             for job in self.task.goal.todo:
-                self._job(job)
+                self._go(job) if job.relation == "go" else self._job(job)
         except _Over:
             pass
         if not self.met and not self.reason:
@@ -95,6 +102,12 @@ class _Performance:
             reason="" if self.met else self.reason,
             way=way,
         )
+
+    def _go(self, job: Job) -> None:
+        """Walk to the nearest spot beside a thing of the destination's kind, and stand there."""
+        spots = spots_at_end(self.house, self.ground, self._here(), job)
+        self._walk(next(self._nearest(spots), self._here()))
+        self._do(Wait(seconds=2.0 * self.kind.stop_s))
 
     def _job(self, job: Job) -> None:
         if job.hands > 1:
@@ -260,7 +273,7 @@ class _Performance:
         world.start(HUMAN, motion)
         while True:
             world.advance()
-            self.met = self.kind.met(self.task, world.snapshot(), self.house)
+            self.met = self._is_met(world.snapshot())
             if self.met or world.tick >= self.limit:
                 raise _Over
             if world.idle(HUMAN):

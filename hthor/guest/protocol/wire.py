@@ -24,6 +24,8 @@ NAME_MAX = 200
 """Longest id, seat or name of a thing in an action, in characters."""
 NUMBER_MAX = 1e12
 """Largest magnitude of a number in an action: beyond it the next multiplication may overflow."""
+SIGNALS_MAX = 8
+"""Most signals in one action."""
 TEXT_MAX = 8000
 """Longest description of an agent or of a failure, in characters."""
 PRIVILEGES = ("house_map", "ideal_detector", "object_poses")
@@ -221,7 +223,9 @@ def add_length(body: bytes) -> bytes:
 
 def find_action_fault(action: Action) -> tuple[str, str] | None:
     """The error in an action, as a fault's kind and detail; None when the action is valid."""
-    for part in (action.motion, action.say):
+    if len(action.signals) > SIGNALS_MAX:
+        return "oversized", f"an action has {len(action.signals)} signals, at most {SIGNALS_MAX} are taken"
+    for part in (action.motion, action.say, *action.signals):
         if part is None:
             continue
         for name in part.__struct_fields__:

@@ -13,8 +13,7 @@ from msgspec import Struct
 from hthor import catalog
 from hthor.geometry.plane import inside, signed_area, turn
 from hthor.houses.checks import polygons
-from hthor.houses.space import boxes, solids
-from hthor.houses.space.free_space import STEP_M
+from hthor.houses.space import boxes, obstacles, solids
 from hthor.houses.space.solids import Slab
 from hthor.types import HouseSpec, Joint, Opening, Part, Thing, Vec2
 
@@ -102,9 +101,7 @@ def _narrowest(polygon: tuple[Vec2, ...]) -> float:
 
 def check_doors(house: HouseSpec, height: float) -> Iterator[Finding]:
     """``door-clear``: a doorway with less than `CLEAR_M` between its jambs and the furniture near it."""
-    pieces = [
-        (thing, slab) for thing, slab in solids.furniture_slabs(house) if slab.low < height and slab.high > STEP_M
-    ]
+    pieces = list(obstacles.furniture_in_the_way(house, height))
     for opening in house.openings:
         if not opening.passable:
             continue

@@ -22,10 +22,9 @@ from hthor.houses.space.grid_kernel import (
     label_at,
     nearest_free_cell,
 )
+from hthor.houses.space.obstacles import STEP_M, furniture_in_the_way
 from hthor.types import HouseSpec, Room, Vec2
 
-STEP_M = 0.05
-"""Things up to this height, such as a rug, stop nobody."""
 _PAD = 2
 _SEAM_M = 2e-3
 _SHORT_M = 1e-6
@@ -38,8 +37,9 @@ class FreeSpace:
     """The places where the axis of an upright cylinder may be.
 
     A cell is free when a disc of ``radius`` about its centre touches no wall, no furniture that stands in the way of a
-    body ``height`` tall, and stays inside the rooms. A place is free if its cell is free; a cell's edge belongs to both
-    sides. Where two blocked cells meet only at a corner, nothing passes between them.
+    body ``height`` tall (`hthor.houses.space.obstacles`), and stays inside the rooms. A place is free if its cell is
+    free; a cell's edge belongs to both sides. Where two blocked cells meet only at a corner, nothing passes between
+    them.
 
     Attributes:
         radius, height: of the body [m].
@@ -149,12 +149,9 @@ class FreeSpace:
 
 def obstacle_rectangles(house: HouseSpec, height: float) -> Floats:
     """(N, 5) rectangles in the way of a body ``height`` [m] tall: centre x, y, half width, half depth [m], yaw."""
-    slabs = [*solids.wall_slabs(house), *(slab for _, slab in solids.furniture_slabs(house))]
-    rows = [
-        (*slab.centre, slab.size[0] / 2, slab.size[1] / 2, slab.yaw)
-        for slab in slabs
-        if slab.low < height and slab.high > STEP_M
-    ]
+    slabs = [slab for slab in solids.wall_slabs(house) if slab.low < height and slab.high > STEP_M]
+    slabs += [slab for _, slab in furniture_in_the_way(house, height)]
+    rows = [(*slab.centre, slab.size[0] / 2, slab.size[1] / 2, slab.yaw) for slab in slabs]
     return np.array(rows + list(_borders(house)), dtype=float).reshape(-1, 5)
 
 

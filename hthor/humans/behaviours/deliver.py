@@ -55,6 +55,11 @@ class Delivery:
         reason = yield from self.hands.do(Place(on=place.id, position=point), f"place {place.id}")
         return not reason
 
+    def seek(self, subgoal: Subgoal, remembered: Vec3) -> Behaviour:
+        """Look for the object's destination near a place that is ``remembered`` [m]; whether it is known then."""
+        is_known = partial(self.subgoals.knows_destination, subgoal)
+        return (yield from self.exploration.make_for(remembered, is_known, self.search))
+
     def _restore(self, subgoal: Subgoal, spot: Vec3) -> Behaviour:
         """Put the object back exactly, on or in its old support, which has to be recognised first."""
         support = subgoal.job.destinations[0] if subgoal.job.destinations else ""

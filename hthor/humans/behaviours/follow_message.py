@@ -1,10 +1,12 @@
 """Going to the place that a robot's message names, and looking there from several sides.
 
-The map in the headset shows the place all the time, so people do not make the error of 20 to 40 degrees that they make
-when they point from memory. Reading the map has two costs: a slower pace (``k_map``), and paths that end at a wall.
+While the map on the display is shown, it gives the place all the time, so people do not make the error of 20 to 40
+degrees that they make when they point from memory. Reading the map has two costs: a slower pace (``k_map``), and paths
+that end at a wall. With the map hidden, people go to where they remember the place (`hthor.humans.memory.map_memory`).
 """
 
 import math
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
@@ -44,6 +46,17 @@ class MessageFollowing:
     def __init__(self, exploration: Exploration) -> None:
         self.exploration, self.human, self.eyes = exploration, exploration.human, exploration.eyes
         self.memory, self.walker = exploration.memory, exploration.walker
+
+    def visit(self, remembered: Vec3, forgotten: Callable[[], bool]) -> Behaviour:
+        """Go to where the place of a message is ``remembered`` [m] to be, and look there, unless it is ``forgotten``.
+
+        What is looked for may come into view on the way, which ends this behaviour.
+        """
+        self.eyes.attention = remembered
+        yield from self.walker.go(remembered[:2], within=_REACH_M, stop=forgotten)
+        if not forgotten():
+            yield from self._look(remembered)
+        return True
 
     def follow(self, position: Vec3) -> Behaviour:
         """Go to the ``position`` [m] named by a message and look there; True when done, with or without success.

@@ -12,7 +12,7 @@ from hthor.humans.core.trial_context import HumanContext
 from hthor.humans.memory.location_priors import receptacle_kinds
 from hthor.humans.memory.spatial_memory import KnownPlace, SpatialMemory
 from hthor.humans.memory.subgoals import Subgoal, SubgoalTracker, object_kind
-from hthor.types import Message, Vec3
+from hthor.types import WALKERS, Message, Vec3
 
 _SAME_OBJECT_M = 1.0
 """[m] A position this near to a known object of the named kind means that object. Our choice."""
@@ -48,6 +48,8 @@ class AdviceTracker:
         """The advice in a message, None when the message is of no use any more."""
         in_hand = self.subgoals.all.get(self.human.now.holding)
         name = message.object
+        if self.human.task.relation == "go":
+            return self._way_to_end(message)
         names_home = in_hand is not None and self._names_destination(in_hand, name)
         if self.human.now.holding and (not self.subgoals.many or names_home):
             if in_hand is None or not names_home or self.subgoals.knows_destination(in_hand):
@@ -57,6 +59,16 @@ class AdviceTracker:
         if subgoal is not None:
             return Advice(number=message.id, position=message.position, subgoal=subgoal)
         return self._look_request(message) if self.subgoals.many else None
+
+    def _way_to_end(self, message: Message) -> Advice | None:
+        """Where the landmark is that the participant has to go to."""
+        (walk,) = self.subgoals.all.values()
+        mine = WALKERS[walk.target] == self.human.seat
+        if not mine or message.position is None or not self._names_destination(walk, message.object):
+            return None
+        if any(place.recalled and place.covers(message.position) for place in self.memory.places.values()):
+            return None  # it is known already
+        return Advice(number=message.id, position=message.position)
 
     def is_relevant(self, message: Message) -> bool:
         """Whether a message is about anything in the task, even if the participant knows that already.
@@ -74,12 +86,17 @@ class AdviceTracker:
         return self.subgoals.many and object_kind(name) in receptacle_kinds()
 
     @property
-    def destination(self) -> Vec3 | None:
-        """The destination [m] that a robot advised for the object in hand."""
+    def destination(self) -> Advice | None:
+        """The advice of a robot on where to bring the object in hand; it has a position."""
         if not self.kept:
             return None
-        positions = [advice.position for advice in self.kept.values() if advice.request == "bring"]
-        return positions[-1] if positions else None
+        brought = [advice for advice in self.kept.values() if advice.request == "bring"]
+        return brought[-1] if brought else None
+
+    @property
+    def followed(self) -> tuple[int, ...]:
+        """The numbers of the messages whose advice is still to be followed."""
+        return tuple(advice.number for advice in self.kept.values()) if self.kept else ()
 
     def accept(self, advice: Advice) -> None:
         """Keep advice to follow it, or believe that its subgoal is done."""

@@ -11,7 +11,7 @@ class Aim(LogEntry, frozen=True, kw_only=True, tag="aim"):
     """The participant turned to something else.
 
     Attributes:
-        about: begin, search, fetch, deliver, follow or rest, with the object's kind where there is one.
+        about: begin, tour, search, fetch, deliver, follow or rest, with the object's kind where there is one.
     """
 
     about: str

@@ -34,6 +34,7 @@ class HumanContext:
     Attributes:
         policy: decides in the participant's place; None for the model's own way of deciding.
         seat: where the participant sits. others: the other people, as far as they were seen.
+        task: what the participant knows about the task. began: the tick at which the present phase of it began.
         journal: what a headset's recorder would store of this trial.
         listener: called with beliefs and choices; None when nobody asks for them.
     """
@@ -44,6 +45,7 @@ class HumanContext:
         self.traits, self.root, self.task, self.body = traits, root, briefing, briefing.body
         self.seat = briefing.seat
         self.tick_s = briefing.tick_s
+        self.began = 0
         self.others = OtherPeople(briefing.teammates, briefing.tick_s)
         self.policy = policy
         self.journal: list[JournalEntry] = []
@@ -62,7 +64,12 @@ class HumanContext:
     @property
     def seconds_left(self) -> float:
         """Time until the trial ends [s]."""
-        return max(0.0, self.task.time_limit - self.now.tick * self.tick_s)
+        return max(0.0, self.task.time_limit - self.seconds)
+
+    @property
+    def seconds(self) -> float:
+        """Time since the present phase of the task began [s]."""
+        return (self.now.tick - self.began) * self.tick_s
 
     def draw(self, *names: seeds.Name) -> float:
         """Uniform random number of this trial, by name."""

@@ -94,6 +94,18 @@ class SpatialMemory:
         self._here: Vec2 | None = None
         self._at: dict[Vec3, tuple[int, KnownPlace | None]] = {}
 
+    def begin_again(self, forget_searches: bool) -> None:
+        """Begin another phase of a task, perhaps at another place.
+
+        The house is still known. But if things may have been moved, it is not known any more where they are not, and
+        every room is worth a look round again.
+        """
+        self._here = None
+        if forget_searches:
+            self.entered.clear()
+        for place in self.places.values() if forget_searches else ():
+            place.exposure = 0.0
+
     def visit(self, here: Vec2, room: str) -> bool:
         """Note the position ``here`` [m] in ``room``; returns whether the room is entered for the first time."""
         if self._here is not None and self._here != here:

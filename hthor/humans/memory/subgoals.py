@@ -72,7 +72,7 @@ class SubgoalTracker:
     def is_at_destination(self, subgoal: Subgoal, position: Vec3, support: str) -> bool:
         """Whether an object at ``position`` [m], on or in the thing of id ``support``, is where it belongs."""
         job = subgoal.job
-        if job.relation == "find":
+        if job.relation in ("find", "back"):
             return False
         near = _JOINT_SPOT_M if job.hands > 1 else _SPOT_M
         if subgoal.spot is not None and math.dist(position[:2], subgoal.spot[:2]) > near:

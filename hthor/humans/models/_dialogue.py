@@ -135,7 +135,7 @@ class Dialogue:
         human.record(entry)
         helps = accepted and relevant and not from_person
         if helps and self.experience.helped is None and not self.experience.misled:
-            self.experience.helped = now.tick * human.tick_s
+            self.experience.helped = human.seconds
         reply = None if answer == "ignore" else Reply(message=reading.message.id, accept=accepted)
         return MessageDecision(say=reply, advice=advice if accepted else None)
 

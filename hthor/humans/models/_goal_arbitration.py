@@ -13,7 +13,7 @@ from hthor.humans.memory.spatial_memory import SpatialMemory
 from hthor.humans.memory.subgoals import Subgoal, SubgoalTracker
 from hthor.types import Vec2, Vec3
 
-Activity = Literal["begin", "deliver", "fetch", "haul", "follow", "search", "rest"]
+Activity = Literal["begin", "deliver", "fetch", "haul", "follow", "search", "rest", "tour"]
 
 
 class Goal(Struct, frozen=True, kw_only=True):
@@ -39,14 +39,23 @@ class Goal(Struct, frozen=True, kw_only=True):
             return f"{self.activity} {self.subgoal.known.id}"
         return self.activity if self.advice is None else f"{self.activity} message {self.advice.number}"
 
+    @property
+    def kind(self) -> str:
+        """The goal as `hthor.types.events.Believed.next` has it: a message is not named, nor the object of it."""
+        if self.subgoal is None or self.activity == "follow":
+            return self.activity
+        return f"{self.activity} {self.subgoal.known.id}"
+
 
 BEGIN, SEARCH, REST = Goal(activity="begin"), Goal(activity="search"), Goal(activity="rest")
+TOUR = Goal(activity="tour")
 
 
 class GoalArbiter:
     """Chooses the goal: first the object in hand, then the known or advised object nearest on foot, then search.
 
-    An object that another person seems about to take is left to them.
+    An object that another person seems about to take is left to them. People who do not know where anything belongs
+    rest.
 
     A choice stands until something changes. ``missing`` are the subgoals whose objects must be searched for.
     """
@@ -114,6 +123,8 @@ class GoalArbiter:
             subgoal.known.at = -1  # its exact position is not seen yet
 
     def _choose(self) -> Goal | None:
+        if all(subgoal.job.relation == "back" for subgoal in self.subgoals.all.values()):
+            return REST
         self.subgoals.update()
         unfinished = self.subgoals.unfinished()
         lying = [subgoal for subgoal in unfinished if subgoal.known.lies is not None]

@@ -9,16 +9,18 @@ from pathlib import Path
 
 import msgspec
 
-from hthor import documents, rules
+from hthor import documents, log_corrections, rules
 from hthor.errors import HthorError
+from hthor.log_corrections import Corrections
 from hthor.log_format import LineDecoder, Logged, OtherVersion
-from hthor.types import HUMAN, Briefing, Close, Drop, Motion, Open, Pick, Place, Pose, Send, TrialSpec
+from hthor.types import HUMAN, Briefing, Close, Drop, Motion, Open, Pick, Place, Pose, Send, Show, TrialSpec
 from hthor.types.events import (
     Accepted,
     Answered,
     Attempt,
     Closed,
     Declined,
+    Displayed,
     Dropped,
     Event,
     Head,
@@ -26,9 +28,11 @@ from hthor.types.events import (
     JournalEntry,
     Lowered,
     Opened,
+    PhaseBegan,
     Picked,
     Placed,
     Released,
+    SaidReady,
     Sent,
     Stick,
     Voided,
@@ -38,6 +42,7 @@ _START_M = 0.002
 """[m] Distance within which a trial begins at a logged pose. Our choice: poses are logged to a millimetre."""
 _MILLI = 1000.0
 """[1/unit] Poses and pitches are logged in thousandths. Source: docs/files.md."""
+_NONE = Corrections()
 _HINT = "Give a run folder or its trials.jsonl, as in --humans replay:runs/oracle-paper-seed0."
 
 
@@ -45,6 +50,7 @@ class LoggedTrial(Logged, frozen=True, kw_only=True):
     """One trial of a log and the ``seat`` of the participant in it; other fields of its line are ignored."""
 
     seat: str = HUMAN
+    key: str = ""
     spec: TrialSpec
     ticks: int
     ratings: dict[str, int | None]
@@ -57,7 +63,20 @@ class LoggedTrial(Logged, frozen=True, kw_only=True):
         task = self.spec.task
         words = (briefing.instruction, briefing.target, briefing.relation, briefing.time_limit)
         logged = (task.instruction, task.goal.target, task.goal.relation, task.time_limit)
+        if words[:2] + words[3:] != logged[:2] + logged[3:] or len(briefing.phases) != len(task.phases):
+            return False
+        if task.phases:  # what people have to remember is not in the briefing
+            return [job.target for job in briefing.todo] == [job.target for job in task.goal.todo]
         return words == logged and briefing.todo == task.goal.todo
+
+    def phase_began(self, name: str) -> int:
+        """The tick at which the phase of this name began; empty for the task itself."""
+        ticks = [event.tick for event in self.events if isinstance(event, PhaseBegan) and event.name == name]
+        return ticks[0] if ticks else self.ticks
+
+    def said_ready(self) -> tuple[int, ...]:
+        """The ticks at which the participant was ready for the next phase."""
+        return tuple(event.tick for event in self.events if isinstance(event, SaidReady) and event.seat == self.seat)
 
     def begins_at(self, pose: Pose) -> bool:
         """Whether the participant stood at ``pose`` when this trial began."""
@@ -77,6 +96,12 @@ class LoggedTrial(Logged, frozen=True, kw_only=True):
             said = _utterance(event) if event.seat == self.seat else None
             if said is not None:
                 yield event.tick, said
+
+    def display_changes(self) -> Iterator[tuple[int, Show]]:
+        """What the participant showed and hid on their display, with its tick."""
+        for event in self.events:
+            if isinstance(event, Displayed) and event.seat == self.seat:
+                yield event.tick, Show(what=event.what, on=event.on)
 
     @property
     def rating(self) -> int | None:
@@ -115,18 +140,24 @@ def read_logged_trials(source: str) -> dict[int, list[LoggedTrial]]:
     Raises:
         HthorError: when there is no such log, or it cannot be read.
     """
-    path = Path(source)
-    return _read(str(path / "trials.jsonl" if path.is_dir() else path))
+    path = _log(source)
+    return _read(str(path), log_corrections.beside(path))
 
 
 def log_sha256(source: str) -> str:
-    """Hash of the log's bytes."""
+    """Hash of the log's bytes and of the corrections of its trials."""
+    path = _log(source)
+    corrections = log_corrections.beside(path)
+    return hashlib.sha256(_bytes(path) + "".join(corrections.hashes[-1:]).encode()).hexdigest()
+
+
+def _log(source: str) -> Path:
     path = Path(source)
-    return hashlib.sha256(_bytes(path / "trials.jsonl" if path.is_dir() else path)).hexdigest()
+    return path / log_corrections.LOG_NAME if path.is_dir() else path
 
 
 @cache
-def _read(path: str) -> dict[int, list[LoggedTrial]]:
+def _read(path: str, known: Corrections = _NONE) -> dict[int, list[LoggedTrial]]:
     decoder, skipped = LineDecoder(LoggedTrial), Counter[str]()
     trials: dict[int, list[LoggedTrial]] = {}
     for number, line in enumerate(_bytes(Path(path)).splitlines(keepends=True), 1):
@@ -138,6 +169,8 @@ def _read(path: str) -> dict[int, list[LoggedTrial]]:
             raise HthorError(other.sentence(Path(path))) from None
         except documents.Unreadable as error:
             raise HthorError(f"{path}, line {number}: {error}. {_HINT}") from None
+        corrected = log_corrections.corrected_events(trial.events, trial.ticks, known.of(trial.key))
+        trial = msgspec.structs.replace(trial, events=corrected)
         for human in trial.spec.humans:
             own = msgspec.structs.replace(trial, seat=human.seat)
             trials.setdefault(human.participant, []).append(own)

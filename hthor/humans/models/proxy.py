@@ -10,16 +10,19 @@ from hthor.humans.communication.trust import Trust, initial_trust
 from hthor.humans.core.policy import Policy
 from hthor.humans.core.thoughts import HumanThought
 from hthor.humans.core.trial_context import Behaviour, HumanContext
-from hthor.humans.memory.object_memory import ObjectMemory
+from hthor.humans.memory.map_memory import MapMemory
+from hthor.humans.memory.object_memory import KnownObject, ObjectMemory
 from hthor.humans.memory.spatial_memory import SpatialMemory
 from hthor.humans.memory.subgoals import SubgoalTracker
+from hthor.humans.memory.tour_memory import remembered_briefing, still_believed
 from hthor.humans.models._dialogue import Dialogue
-from hthor.humans.models._goal_arbitration import BEGIN, REST, SEARCH, Goal, GoalArbiter
+from hthor.humans.models._goal_arbitration import BEGIN, REST, SEARCH, TOUR, Goal, GoalArbiter
 from hthor.humans.motor.locomotion import Walker
 from hthor.humans.perception.perception import GLIMPSE_TICKS, Eyes
 from hthor.humans.population.participant import Participant, with_practice
-from hthor.types import Action, Briefing, Motion, Observation, Reply, Send, Vec2, Wait, is_person
-from hthor.types.events import JournalEntry
+from hthor.humans.search.expectation import after_advice
+from hthor.types import Action, Briefing, Motion, Observation, Ready, Reply, Send, Signal, Vec2, Wait, is_person
+from hthor.types.events import Believed, JournalEntry
 
 _RESTARTS = 2
 """[count] Behaviours that may end without a motion in one decision. Our choice."""
@@ -60,26 +63,35 @@ class Model:
         human.listener = self.listener
         self._memory = SpatialMemory(tau=traits.tau_mem / briefing.tick_s)
         self._objects = ObjectMemory((job.target for job in briefing.todo), briefing.seat)
+        self._prepare(human)
+        self._walker: Walker | None = None
+        self._phase = ""
+
+    def _prepare(self, human: HumanContext) -> None:
+        """Begin with a task as the participant knows it now."""
         self._eyes = self.eyes(human, self._objects, self._memory)
         self._subgoals = SubgoalTracker(human, self._memory, self._objects.known)
         self._advice = AdviceTracker(human, self._memory, self._subgoals)
         self._dialogue = Dialogue(human, self._advice)
+        self._map = MapMemory(human)
         self._arbiter = GoalArbiter(
             human, self._subgoals, self._objects, self._advice, self._memory, self._walking_distances
         )
-        self._walker: Walker | None = None
         self._behaviour: Behaviour | None = None
         self._goal = BEGIN
 
     def act(self, observation: Observation) -> Action:
-        """The next motion, and what is said: an answer when a message was read."""
+        """The next motion, what is said (an answer when a message was read), and what is shown on the display."""
         human = self._human
         human.now = observation
+        if observation.phase != self._phase:
+            self._begin_phase(observation)
         dialogue = self._dialogue
+        signals: tuple[Signal, ...] = self._map.signals(self._advice.followed) if self._map.is_known else ()
         engaged = observation.inbox or dialogue.reader.now is not None or dialogue.speech.now is not None
         say = self._read_messages() if engaged else None
         if not observation.idle:
-            return Action(motion=Wait(), say=say)
+            return Action(motion=Wait(), say=say, signals=signals)
         walker = self._walker or self._start_walking(observation)
         if self._memory.visit(human.here, observation.room) and self._goal is not BEGIN:
             self._behaviours.exploration.fresh = human.here
@@ -89,7 +101,10 @@ class Model:
             if human.others.seats:
                 human.others.see(observation.tick, observation.detections)
         walker.haste, walker.looking = self._haste(), self._is_looking()
-        return Action(motion=self._next_motion(), say=say)
+        motion = self._next_motion()
+        if self._phase and self._behaviours.tour.ready:
+            signals = (*signals, Ready())
+        return Action(motion=motion, say=say, signals=signals)
 
     def rate(self, met: bool, tick: int) -> int | None:  # noqa: ARG002  the time of help counts, not the end
         """Update trust by the trial's outcome, and report it."""
@@ -106,6 +121,19 @@ class Model:
         """What a headset's recorder would store of the trial so far."""
         return self._human.journal
 
+    def record_belief(self, tick: int, object: str) -> None:
+        """Record in the journal where an object is expected, empty for none, and what the participant is doing."""
+        subgoal, places = self._subgoals.all.get(object), dict[str, float]()
+        if subgoal is not None and self._walker is not None:
+            places = self._behaviours.expected_places(subgoal)
+            advice = self._advice.kept.get(object)
+            if advice is not None and advice.position is not None:
+                told = self._memory.at(advice.position)
+                places = after_advice(places, told.id if told else "", self.trust.mean)
+        shares = {place: round(places[place], 4) for place in sorted(places)}
+        seat = self._human.seat
+        self._human.record(Believed(tick=tick, seat=seat, object=object, places=shares, next=self._goal.kind))
+
     @property
     def about(self) -> str:
         """The current goal, in a word or two."""
@@ -117,10 +145,26 @@ class Model:
 
     # ------------------------------------------------------------------------------------------------- what to do next
 
+    def _begin_phase(self, observation: Observation) -> None:
+        """Begin a tour of the house, or after it the task as remembered."""
+        human, self._phase = self._human, observation.phase
+        human.began = observation.tick
+        if self._phase:
+            self._eyes.current = KnownObject(id="")  # nothing is kept in mind more than the rest
+        else:
+            self._eyes.end()
+            human.task = remembered_briefing(human.task, self._objects)
+            self._memory.begin_again(any(job.place is not None for job in human.task.todo))
+            self._objects = still_believed(human.task.todo, self._objects, human.seat)
+            self._prepare(human)
+        if self._walker is not None:
+            known, self._walker = self._walker.map, None
+            self._start_walking(observation).map = known
+
     def _start_walking(self, observation: Observation) -> Walker:
         """Make legs and behaviours at the first observation, where the mental map begins."""
         self._walker = Walker(self._human, self._memory, observation.pose.x, observation.pose.y)
-        self._behaviours = Behaviours(self._human, self._eyes, self._memory, self._walker, self._subgoals)
+        self._behaviours = Behaviours(self._human, self._eyes, self._memory, self._walker, self._subgoals, self._map)
         self._expected = self._arbiter.missing
         self._behaviour = self._behaviours.begin()
         return self._walker
@@ -148,10 +192,12 @@ class Model:
 
     def _wanted_goal(self) -> Goal:
         """The arbiter's goal, else the first look round, else a search."""
-        goal = self._arbiter.goal()
+        goal = self._arbiter.goal() if not self._phase else None
         if goal is not None:
             return goal
-        return BEGIN if self._goal is BEGIN and self._behaviour is not None else SEARCH
+        if self._goal is BEGIN and self._behaviour is not None:
+            return BEGIN
+        return TOUR if self._phase else SEARCH
 
     def _turn_to(self, goal: Goal) -> None:
         self._goal = goal
@@ -161,11 +207,14 @@ class Model:
         behaviours = self._behaviours
         if goal.advice is not None and goal.advice.position is not None:
             follow = behaviours.look_into if goal.advice.request == "look" else behaviours.follow
-            return follow(goal.advice.position)
+            return follow(goal.advice.number, goal.advice.position)
+        if goal is TOUR:
+            return behaviours.tour.walk()
         if goal.subgoal is None:
             return behaviours.rest() if goal is REST else behaviours.search()
         if goal.activity == "deliver":
-            return behaviours.delivery.deliver(goal.subgoal, self._advice.destination)
+            advice = self._advice.destination
+            return behaviours.deliver(goal.subgoal, *(() if advice is None else (advice.number, advice.position)))
         return behaviours.fetch(goal.subgoal) if goal.activity == "fetch" else behaviours.carrying.carry(goal.subgoal)
 
     def _finish(self) -> None:
@@ -207,8 +256,11 @@ class Model:
         """Factor of the pace, below 1 while reading or speaking, or while following the map to an unknown place."""
         if self._dialogue.is_slowing(self._human.now.tick):
             return 1.0 / self._human.traits.k_read
-        by_map = self._advice.destination is not None and self._lacks_destination()
-        return 1.0 / self._human.traits.k_map if by_map or self._goal.activity == "follow" else 1.0
+        following = self._goal.activity == "follow"
+        advice = self._goal.advice if following else self._advice.destination
+        if advice is None or not (self._lacks_destination() if not following else self._behaviours.uses_map):
+            return 1.0
+        return 1.0 if self._map.is_hidden_for(advice.number) else 1.0 / self._human.traits.k_map
 
     def _is_looking(self) -> bool:
         """Whether the participant is searching, not on the way to a place that is known or advised."""

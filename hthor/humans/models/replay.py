@@ -7,10 +7,12 @@ rules apply, which no real person would follow:
 
 - A message that is shown at the tick of a logged answer gets that answer; if none is shown, the answer lapses. The
   content of messages changes nothing. What the participant asked or told others is said at the same tick.
+- Panel and map are shown and hidden at the logged ticks, if there is something to show or hide.
 - If a robot blocks the path, the replay stands and tries again every half second, and never goes around it. Afterwards
   it catches up as fast as stick and body allow. Hand actions happen at their places, so they come later too.
 - If anything else blocks the path (a door that was shut, another person), that part of the path is skipped after three
   tries.
+- If a phase of the task ends earlier or later than in the log, the replay goes on with the next phase then.
 - After the end of the log it stands still. The rating is the logged rating.
 """
 
@@ -28,7 +30,23 @@ from hthor.geometry.plane import turn, wrap
 from hthor.humans.models import _logged_trials
 from hthor.humans.models._logged_trials import LoggedTrial
 from hthor.humans.population.participant import Participant
-from hthor.types import Action, Briefing, Motion, Move, Observation, Pose, Reply, Rotate, Send, Wait, is_person
+from hthor.types import (
+    Action,
+    Briefing,
+    Display,
+    Motion,
+    Move,
+    Observation,
+    Pose,
+    Ready,
+    Reply,
+    Rotate,
+    Send,
+    Show,
+    Signal,
+    Wait,
+    is_person,
+)
 
 _EVERY = rules.LOG_EVERY_TICKS
 _THERE_M = 0.003
@@ -80,8 +98,10 @@ class Model:
     def act(self, observation: Observation) -> Action:
         """What the logged participant did at this point."""
         again = self._again or self._find(observation)
+        observation = again.on_logged_time(observation)
         say = again.say(observation)
-        return Action(motion=again.motion(observation) if observation.idle else Wait(), say=say)
+        signals: tuple[Signal, ...] = (*again.signals(observation), *again.ready(observation))
+        return Action(motion=again.motion(observation) if observation.idle else Wait(), say=say, signals=signals)
 
     def rate(self, met: bool, tick: int) -> int | None:  # noqa: ARG002  the log has the answer
         """The logged rating."""
@@ -130,6 +150,32 @@ class Reenactment:
         self._handling = handling
         self._utterances, self._others = list(trial.utterances()), ("", *briefing.teammates)
         self._tries = 0
+        self._display_changes, self._seen = list(trial.display_changes()), set[str]()
+        self._phase, self._later = briefing.phases[0].name if briefing.phases else "", 0
+
+    def signals(self, now: Observation) -> tuple[Show, ...]:
+        """What is shown and hidden on the display now; only what has been on it."""
+        display, due = now.display, []
+        while self._display_changes and self._display_changes[0][0] <= now.tick:
+            due.append(self._display_changes.pop(0)[1])
+        if display is not None:
+            self._seen |= {what for what in ("panel", "map") if _on(display, what) is not None}
+        return tuple(show for show in due if show.what in self._seen)
+
+    def on_logged_time(self, now: Observation) -> Observation:
+        """The observation with the tick that it would have in the log.
+
+        A phase may begin earlier or later than in the log. The replay then goes on with what was done in this phase.
+        """
+        if now.phase != self._phase:
+            self._phase, self.clock = now.phase, self.trial.phase_began(now.phase)
+            self._later = now.tick - self.clock
+            self._hand_actions = [one for one in self._hand_actions if one[0] >= self.clock]
+        return msgspec.structs.replace(now, tick=now.tick - self._later) if self._later else now
+
+    def ready(self, now: Observation) -> tuple[Ready, ...]:
+        """The signal that the participant is ready for the next phase, once they were."""
+        return (Ready(),) if now.phase and any(tick <= now.tick for tick in self.trial.said_ready()) else ()
 
     def say(self, now: Observation) -> Reply | Send | None:
         """What the participant said, when it is due: an answer if a message is shown, words if somebody is there."""
@@ -220,6 +266,11 @@ class Reenactment:
             self._tries = 0
             self.clock = min(now.tick, self._next() * _EVERY)
         return False
+
+
+def _on(display: Display, what: str) -> object:
+    """The contents of a part of the display; None while it is hidden."""
+    return display.message if what == "panel" else display.map
 
 
 def _extrapolated(poses: list[Pose], ticks: int) -> list[Pose]:

@@ -55,7 +55,7 @@ class Walker:
     """Legs and a mental map. The stick sets the pace directly, one short move per tick; larger turns are made standing.
 
     ``haste`` scales the pace, below 1 while reading or following a map; ``looking``: the participant is searching, and
-    stops now and then to look aside.
+    stops now and then to look aside; ``loaded``: they pull a load that others carry too.
     """
 
     margin = MARGIN_M
@@ -63,7 +63,7 @@ class Walker:
     def __init__(self, human: HumanContext, memory: SpatialMemory, x: float, y: float) -> None:
         self.human, self.haste, self._bumps = human, 1.0, 0
         self.map = MentalMap(human, memory, x, y)
-        self.looking = True
+        self.looking, self.loaded = True, False
         self._robot: Obstacle | None = None
         self._robot_until = -1
         self.encounters = Encounters(human)
@@ -190,7 +190,8 @@ class Walker:
         outcome = self.human.now.outcome
         bumped = outcome is not None and outcome.motion == "move" and not outcome.ok
         if bumped and outcome is not None and not outcome.by.startswith(("robot", "human")):
-            self._mark(ahead)
+            if not self.loaded:  # else it is rather the load that is stuck
+                self._mark(ahead)
             return True
         obstacle = self._felt(ahead)
         yield Wait(seconds=_POLITE_S)

@@ -61,6 +61,10 @@ class MentalMap:
         self._mapped = (pose.x, pose.y, pose.yaw)
         self.grid.integrate(self.human.now.scan)
 
+    def include(self, point: Vec2) -> None:
+        """Extend the map to a ``point`` [m] that was seen through doors, farther away than the map reaches."""
+        self.grid.include(*point)
+
     def route(self, goal: Vec2, within: float) -> Route | None:
         """The way to ``goal`` [m]: over seen floor if not much longer, else by a doorway, else over unseen floor."""
         hopeful = _as_route(self.planner.path(self.human.here, goal, within))

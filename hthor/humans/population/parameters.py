@@ -22,7 +22,9 @@ _POSITIVE = (
     *("d_furniture", "tau_mem", "tau_seen", "t_dwell", "t_manip", "t_notice", "t_read", "n0", "tau_s", "n_learn"),
 )
 """Parameters that are divided by, or changed on their logarithm."""
-_SHARES = ("w_prior", "spare", "dest_factor", "tour_forget", "p_fail", "p_slip", "p_ignore", "mu0")
+_SHARES = ("map_hidden", "w_prior", "spare", "dest_factor", "tour_forget", "p_fail", "p_slip", "p_ignore", "mu0")
+NEUTRAL = ("map_hidden", "point_sd")
+"""Parameters that change nothing at their defaults: a population that was made before them has the same people."""
 _SIGNALS = ("s_offered", "s_failed")
 _LOGITS = ("a0", "a_trust", "a_gain", "a_load", "a_again")
 
@@ -37,6 +39,8 @@ class Parameters(Struct, frozen=True, kw_only=True):
     omega: float = 1.7  # [rad/s] speed of turning head and body
     k_map: float = 1.2  # [ratio] slowing while following a map
     k_read: float = 2.0  # [ratio] Slowing while reading a message. Our choice
+    map_hidden: float = 0.0  # [share] of messages followed with the map hidden. Our choice: no data, so it stays shown
+    point_sd: float = 0.66  # [rad] Error of a direction without the map. Source: 20 to 40 degrees off on average (m)
 
     # noticing: rate lam0 / (1 + (a50 / angle)^2) * exp(-(ecc / ecc_sd)^2 / 2) * share * exp(-clutter * beside)
     lam0: float = 0.9  # [1/s] rate of noticing a large object that stands alone right in front

@@ -90,7 +90,8 @@ class Population(Struct, frozen=True, kw_only=True, eq=False, dict=True):
         statistics: the data of the fit; ``design_effects``: their variance over that of independent trials.
         figures: further numbers about the fit, such as effective draws or coverage.
         notes: cautions for its users, one sentence each.
-        missing: parameters of this version that the file does not have; they have their defaults.
+        missing: parameters of this version that the file does not have and that change what people do at their
+            defaults, which stand in.
     """
 
     name: str
@@ -191,12 +192,21 @@ class Population(Struct, frozen=True, kw_only=True, eq=False, dict=True):
 
     @cached_property
     def sha256(self) -> str:
-        """Hash of everything that decides how participants behave, without descriptions."""
+        """Hash of everything that decides how participants behave, without descriptions.
+
+        Parameters that change nothing at their defaults do not count there.
+        """
+        usual = Parameters()
+        fixed = {
+            name: value
+            for name, value in self.fixed.items()
+            if not (name in parameters.NEUTRAL and value == getattr(usual, name))
+        }
         return jsonio.sha256(
             {
                 "arrays": hashlib.sha256(self.arrays).hexdigest(),
                 "effects": [(spec.name, spec.effect, spec.scale) for spec in self.specs],
-                "fixed": self.fixed,
+                "fixed": fixed,
             }
         )
 

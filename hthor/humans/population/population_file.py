@@ -136,9 +136,10 @@ def _read(path: Path) -> Population:
         total = float(np.exp(log_weight).sum())
     if abs(total - 1.0) > _ROUNDING:
         raise PopulationError(str(numbers), "log_weight", f"the weights add up to {total:g}; expected 1")
-    missing = tuple(name for name in known if name not in given)
+    defaults = tuple(name for name in known if name not in given)
+    missing = tuple(name for name in defaults if name not in parameters.NEUTRAL)
     shared = {name: getattr(document, name) for name in _SHARED}
-    shared["fixed"] = {**document.fixed, **{name: getattr(Parameters(), name) for name in missing}}
+    shared["fixed"] = {**document.fixed, **{name: getattr(Parameters(), name) for name in defaults}}
     return Population(**shared, specs=document.parameters, draws=draws, log_weight=log_weight, missing=missing)
 
 

@@ -58,7 +58,7 @@ def describe(
     """Choice ``number`` of the search called ``name`` for a policy; ``knowledge`` and ``uniform``: probabilities."""
     return Situation(
         instruction=human.task.instruction,
-        aim="target" if name == "target" else "destination",
+        aim="target" if name in ("target", "tour") else "destination",
         number=number,
         left=human.seconds_left,
         room=human.now.room,

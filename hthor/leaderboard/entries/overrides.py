@@ -7,6 +7,7 @@ from pathlib import Path
 from hthor import plugins, tasks
 from hthor.eval.config.run_config import PROCEDURAL, RunConfig
 from hthor.eval.config.sessions import sessions_needed
+from hthor.eval.config.study_design import BETWEEN
 from hthor.tasks.suites import library
 from hthor.types.detector_specs import OWN
 
@@ -21,7 +22,9 @@ def overridden_settings(config: RunConfig, team: tuple[str, ...] = (), played: i
     found: dict[str, str] = {}
     if config.humans.people:
         found["humans"] = config.humans.source
-    if config.sessions != sessions_needed(suite_size(config) or played or config.trials):
+    if config.design:  # its number of people is that of all groups
+        found["design"] = BETWEEN
+    elif config.sessions != sessions_needed(suite_size(config) or played or config.trials):
         found["participants"] = str(config.participants)
     if config.limit:
         found["limit"] = str(config.limit)

@@ -4,7 +4,7 @@ import itertools
 from collections.abc import Callable, Sequence
 
 from hthor.eval.comparison import compare
-from hthor.eval.comparison.compare import Comparison, LoadedRun
+from hthor.eval.comparison.comparison import Comparison, LoadedRun
 from hthor.eval.metrics import registry
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import aggregate, pairing

@@ -64,6 +64,6 @@ def _arm(run: Run) -> Arm:
         trials=len(run.records),
         people=len({human.participant for record in run.records for human in record.spec.humans}),
         tasks=len({record.spec.task.id for record in run.records}),
-        unfinished=run.plan.trials - len(run.records),
+        unfinished=run.planned - len(run.records),
         scores=aggregate.estimate_metrics(run.records),
     )

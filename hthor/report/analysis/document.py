@@ -8,7 +8,7 @@ from typing import Literal
 
 from msgspec import Struct
 
-from hthor.eval.comparison.compare import Comparison
+from hthor.eval.comparison.comparison import Comparison
 from hthor.eval.config.run_config import SuiteRef
 from hthor.eval.results.result_file import Scores
 from hthor.eval.statistics.intervals import Estimate

@@ -11,9 +11,11 @@ from hthor.errors import RunError
 from hthor.eval.config.robot_team import NO_ROBOT
 from hthor.eval.config.run_config import RunConfig
 from hthor.eval.metrics import trial_metrics
+from hthor.eval.records.attempts import VoidedTrial
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import baseline
+from hthor.log_corrections import CorrectAdoption, VoidTrial
 
 NONE = NO_ROBOT
 Pair = tuple[int, int, int, str]
@@ -24,7 +26,8 @@ class Run(Struct, frozen=True, kw_only=True, eq=False):
     """One run: its configuration, its trials in order with newly computed metrics, and its names in the report.
 
     ``name`` is the name of its folder, preceded by the parent folder's if needed to tell runs apart. ``sha256`` is the
-    hash of its log as in `hthor.eval.results.aggregate`. ``voided`` is the number of attempts that do not count.
+    hash of its log as in `hthor.eval.results.aggregate`. ``voided`` has the attempts that do not count, ``given_up`` is
+    the number of trials that a correction voided for good, and ``corrections`` has all corrections in effect.
     ``beside`` is true if the user did not name the run: the report found it next to another run, as its baseline.
     """
 
@@ -35,8 +38,15 @@ class Run(Struct, frozen=True, kw_only=True, eq=False):
     sha256: str
     label: str
     condition: str
-    voided: int = 0
+    voided: tuple[VoidedTrial, ...] = ()
+    given_up: int = 0
+    corrections: tuple[VoidTrial | CorrectAdoption, ...] = ()
     beside: bool = False
+
+    @property
+    def planned(self) -> int:
+        """How many trials the run has when it is finished, those left out that a correction voided for good."""
+        return self.plan.trials - self.given_up
 
     @property
     def by_pair(self) -> dict[Pair, TrialRecord]:
@@ -90,7 +100,9 @@ def _read(folder: Path) -> Run:
         sha256=hashlib.sha256(b"".join(lines)).hexdigest(),
         label=plan.name if plan.seats else NONE,
         condition=_condition(plan),
-        voided=len(run.voided),
+        voided=run.voided,
+        given_up=run.given_up,
+        corrections=run.corrections.in_effect,
     )
 
 

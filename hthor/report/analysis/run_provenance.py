@@ -1,5 +1,6 @@
 """Where one run came from: everything that decides its records, and how its agents were isolated."""
 
+import msgspec
 from msgspec import Struct
 
 from hthor import documents
@@ -7,8 +8,10 @@ from hthor.errors import RunError
 from hthor.eval.config import cli_command
 from hthor.eval.config.human_populations import HumanModelRef
 from hthor.eval.config.run_config import AssetsRef, KindRef, SuiteRef
+from hthor.eval.config.study_design import StudyDesign
 from hthor.eval.records import run_isolation
 from hthor.guest import Isolation
+from hthor.log_corrections import CorrectAdoption, VoidTrial
 from hthor.report.analysis.load_runs import Run
 from hthor.types import RobotSeat
 from hthor.types.specs import LOCKSTEP
@@ -26,13 +29,23 @@ class Platform(Struct, frozen=True, kw_only=True):
     libc: str = ""
 
 
+class CorrectedTrial(Struct, frozen=True, kw_only=True):
+    """A correction in effect, and the task, the session and the place there of its trial."""
+
+    correction: VoidTrial | CorrectAdoption
+    task: str
+    session: int
+    index: int
+
+
 class Provenance(Struct, frozen=True, kw_only=True):
     """Where one run came from.
 
     ``name`` is its folder's name. ``beside`` is true if the report found the run by itself, as another run's baseline.
     ``isolation`` is None if all agents are built in. ``platforms`` is empty if the run did not record them. ``command``
     plays the run again; ``alone`` plays the same people and tasks without a robot. ``mode`` is the decision clock.
-    ``voided`` counts attempts at trials that do not count.
+    ``design`` is the between-subjects study that the run is a group of; absent if it is none.
+    ``voided`` counts attempts at trials that do not count, and ``corrections`` lists the corrections in effect.
     """
 
     name: str
@@ -50,6 +63,8 @@ class Provenance(Struct, frozen=True, kw_only=True):
     whole: int
     faulty: int
     voided: int
+    corrections: tuple[CorrectedTrial, ...] = ()
+    design: StudyDesign | msgspec.UnsetType = msgspec.UNSET
     assets: AssetsRef
     versions: dict[str, str]
     isolation: Isolation | None
@@ -82,9 +97,11 @@ def run_provenance(run: Run) -> Provenance:
         mode=getattr(plan, "mode", LOCKSTEP),
         participants=plan.participants,
         trials=len(run.records),
-        whole=plan.trials,
+        whole=run.planned,
         faulty=sum(bool(record.faults) for record in run.records),
-        voided=run.voided,
+        voided=len(run.voided),
+        corrections=_corrections(run),
+        design=plan.design,
         assets=plan.assets,
         versions=plan.versions,
         isolation=run_isolation.load_isolation(run.folder),
@@ -95,6 +112,21 @@ def run_provenance(run: Run) -> Provenance:
         rules_sha256=plan.rules_sha256,
         code_sha256=plan.code_sha256,
         trials_sha256=run.sha256,
+    )
+
+
+def _corrections(run: Run) -> tuple[CorrectedTrial, ...]:
+    specs = {record.key: record.spec for record in run.records}
+    places = {key: (spec.task.id, spec.session, spec.index) for key, spec in specs.items()}
+    places |= {one.key: (one.task, one.session, one.index) for one in run.voided}
+    return tuple(
+        CorrectedTrial(
+            correction=line,
+            task=places[line.trial][0],
+            session=places[line.trial][1],
+            index=places[line.trial][2],
+        )
+        for line in run.corrections
     )
 
 

@@ -7,6 +7,7 @@ from msgspec import Struct
 from hthor import documents, rules
 from hthor.eval.config import cli_command
 from hthor.eval.records.trial_record import TrialRecord
+from hthor.eval.results import group_difference
 from hthor.report.analysis.document import ExampleTrial, FaultGroup
 from hthor.report.analysis.load_runs import Run, pairing_key
 
@@ -19,9 +20,11 @@ _FOLDER = "faults"
 def best_and_worst(run: Run, alone: Run | None, each: int = EACH) -> list[ExampleTrial]:
     """The ``each`` best and worst trials of a run with robots, each trial at most once.
 
-    If there is a run without a robot, trials are ranked by the time saved against the same people in that run, then by
+    If there is a run of the same people without a robot, trials are ranked by the time saved against it, then by
     time-weighted success. Otherwise they are ranked by time-weighted success, then by the time spent.
     """
+    if alone is not None and group_difference.are_groups(alone.plan, run.plan):
+        alone = None
     others = alone.by_pair if alone is not None else {}
     ranked = [record for record in run.records if alone is None or pairing_key(record) in others]
 

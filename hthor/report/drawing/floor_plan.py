@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import cv2
 import numpy as np
 from matplotlib import patheffects
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Arc, Polygon
 
@@ -169,9 +168,9 @@ def title(kind: str) -> str:
 
 
 @lettering.plain_lettering()
-def with_labels(
+def labelled_figure(
     picture: Any, house: HouseSpec, bounds: tuple[float, float, float, float], *, named: bool = True
-) -> Any:
+) -> Figure:
     """The picture with room names on bare floor, and a strip below it with a scale and the house's name.
 
     Args:
@@ -180,7 +179,6 @@ def with_labels(
     high, wide = picture.shape[:2]
     x0, y0, x1, y1 = bounds
     sheet = Figure(figsize=(wide / _DPI, (high + _STRIP_PX) / _DPI), dpi=_DPI, facecolor="white")
-    canvas = FigureCanvasAgg(sheet)
     ax = sheet.add_axes((0.0, _STRIP_PX / (high + _STRIP_PX), 1.0, high / (high + _STRIP_PX)))
     ax.imshow(picture, extent=(x0, x1, y0, y1), interpolation="none", aspect="auto")
     ax.axis("off")
@@ -201,5 +199,4 @@ def with_labels(
         xs, ys = zip(*(point for room in house.rooms for point in room.polygon), strict=True)
         words = f"{house.id}, {max(xs) - min(xs):.1f} × {max(ys) - min(ys):.1f} m"
         strip.text(x1 - edge, 0.5, words, ha="right", va="center", fontsize=9, color=trial_trace.INK)
-    canvas.draw()
-    return np.asarray(canvas.buffer_rgba())[:, :, :3].copy()
+    return sheet

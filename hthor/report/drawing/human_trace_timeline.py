@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from msgspec import UNSET
 
 from hthor import rules
+from hthor.episode import task_began
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.replay.human_trace import HumanTrace
 from hthor.humans.core.thoughts import Aim, Forgot, Noticed, RankedOptions, TrustNow, Weighed
@@ -63,6 +64,7 @@ def option_chances(choice: RankedOptions, beta: float) -> dict[str, float]:
 def draw_timeline(ax: Axes, record: TrialRecord, stream: HumanTrace) -> None:
     """Draw the lanes, trust lowest."""
     events, end, limit = stream.events, record.ticks * rules.TICK_S, record.spec.task.time_limit
+    limit += (task_began(record.log) or 0) * rules.TICK_S
     names = row_names(stream)
     rows = {name: float(row) for row, name in enumerate(names)}
     _draw_aims(ax, [event for event in events if isinstance(event, Aim)], end, rows["is about"], _CHAR * limit)

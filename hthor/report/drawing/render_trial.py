@@ -5,10 +5,11 @@ from pathlib import Path
 from hthor.errors import HthorError
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.houses import HouseLibrary
-from hthor.report.drawing import lettering
+from hthor.report.drawing import figure_file
 from hthor.types import HouseSpec
 
-PICTURES = (".png", ".svg", ".pdf")
+VIDEOS = (".webm",)
+"""Endings of the files that a video can be written to."""
 
 
 def draw_trial(run: Path, record: TrialRecord, path: Path, *, video: bool) -> None:
@@ -27,7 +28,7 @@ def draw_trial(run: Path, record: TrialRecord, path: Path, *, video: bool) -> No
     else:
         from hthor.report.drawing import trial_figure
 
-        lettering.save_figure(trial_figure.trial_figure(record.spec, record.log, plan), path)
+        figure_file.write_figure(trial_figure.trial_figure(record.spec, record.log, plan), path)
 
 
 def check_file_name(path: Path, *, video: bool) -> None:
@@ -36,9 +37,10 @@ def check_file_name(path: Path, *, video: bool) -> None:
     Raises:
         HthorError: if it has another ending.
     """
-    valid = (".webm",) if video else PICTURES
-    if path.suffix.lower() not in valid:
-        raise HthorError(f"{path}: the name of a {'film' if video else 'picture'} must end in {' or '.join(valid)}.")
+    if video:
+        figure_file.check_suffix(path, VIDEOS, "video")
+    else:
+        figure_file.check_name(path)
 
 
 def load_house(run: Path, record: TrialRecord) -> HouseSpec:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from matplotlib import patheffects
@@ -11,10 +10,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from hthor import catalog
-from hthor.errors import HthorError
-from hthor.eval.task_check.omniscient_solver import PACE_M_S, Solution
+from hthor.eval.task_check.omniscient_solver import PACE_M_S
+from hthor.eval.task_check.solution import Solution
 from hthor.report.drawing import floor_plan, lettering, text_fit, trial_legend, trial_trace
-from hthor.report.drawing.render_trial import PICTURES
 from hthor.types import HouseSpec, Placement, Pose, TaskSpec
 
 if TYPE_CHECKING:
@@ -27,24 +25,13 @@ _WIDE_IN, _TITLE_PT = 8.0, 10.0
 """Width of the figure [in], and size of the title's letters [pt]."""
 
 
-def draw_task(task: TaskSpec, house: HouseSpec, feat: Solution, path: Path) -> None:
-    """Write the picture of a task.
+@lettering.plain_lettering()
+def task_figure(task: TaskSpec, house: HouseSpec, feat: Solution) -> Figure:
+    """Draw a task, about 8 inches wide.
 
     Args:
         feat: how a person who knows everything does the task.
-
-    Raises:
-        HthorError: if the file's name has the wrong ending.
     """
-    if path.suffix.lower() not in PICTURES:
-        raise HthorError(f"{path}: the name of a picture must end in {' or '.join(PICTURES)}.")
-    path.parent.mkdir(parents=True, exist_ok=True)
-    lettering.save_figure(task_figure(task, house, feat), path)
-
-
-@lettering.plain_lettering()
-def task_figure(task: TaskSpec, house: HouseSpec, feat: Solution) -> Figure:
-    """Draw a task, about 8 inches wide."""
     xs, ys = zip(*(point for room in house.rooms for point in room.polygon), strict=True)
     sheet = Figure(figsize=(_WIDE_IN, max(3.6, 6.0 * (max(ys) - min(ys)) / (max(xs) - min(xs)) + 1.0)), dpi=200)
     sheet.set_layout_engine("constrained")
@@ -52,6 +39,8 @@ def task_figure(task: TaskSpec, house: HouseSpec, feat: Solution) -> Figure:
     wanted = {name for job in task.goal.todo for name in job.destinations}
     floor_plan.draw_house(ax, house, marked=[thing.id for thing in house.things if {thing.id, thing.kind} & wanted])
     ax.plot(*zip(*feat.way, strict=True), color=trial_trace.PEOPLE[0], lw=1.5, ls=(0, (4, 2)), zorder=8)
+    if task.goal.route:
+        _draw_route(ax, task)
     _draw_objects(ax, task)
     for pose in (task.human_start, *task.other_human_starts):
         _draw_start(ax, pose, 0)
@@ -59,8 +48,16 @@ def task_figure(task: TaskSpec, house: HouseSpec, feat: Solution) -> Figure:
         _draw_start(ax, pose, number)
     title = "\n".join(text_fit.wrapped(line, _WIDE_IN - 0.3, _TITLE_PT) for line in _headline(task, feat))
     sheet.suptitle(title, x=0.015, ha="left", fontsize=_TITLE_PT, color=trial_trace.INK)
-    _legend(sheet, bool(wanted))
+    _legend(sheet, task, bool(wanted))
     return sheet
+
+
+def _draw_route(ax: Axes, task: TaskSpec) -> None:
+    """Draw the way that the instruction describes, with an arrow at its end."""
+    xs, ys = zip(*task.goal.route, strict=True)
+    ax.plot(xs, ys, color=trial_trace.TARGET, lw=2.4, alpha=0.75, solid_capstyle="round", zorder=7)
+    head = {"arrowstyle": "-|>", "color": trial_trace.TARGET, "lw": 2.4, "shrinkA": 0, "shrinkB": 0}
+    ax.annotate("", task.goal.route[-1], task.goal.route[-2], arrowprops=head, zorder=9)
 
 
 def _draw_objects(ax: Axes, task: TaskSpec) -> None:
@@ -113,10 +110,13 @@ def _headline(task: TaskSpec, feat: Solution) -> tuple[str, str]:
     return f"“{task.instruction}”", f"{task.id}: T* {task.t_star:.1f} s{level}; all-knowing person {how}"
 
 
-def _legend(sheet: Figure, destined: bool) -> None:
+def _legend(sheet: Figure, task: TaskSpec, destined: bool) -> None:
+    shown = {placed.id for placed in task.objects}
+    targets = any(job.target in shown for job in task.goal.todo)
     handles = [
-        trial_legend.mark("*", trial_trace.TARGET, "target", size=10),
-        trial_legend.mark("o", _OTHER, "other object", size=5.5),
+        *([trial_legend.mark("*", trial_trace.TARGET, "target", size=10)] if targets else []),
+        trial_legend.mark("o", _OTHER, "other object" if targets else "object", size=5.5),
+        *([Line2D([], [], color=trial_trace.TARGET, lw=2.4, label="route")] if task.goal.route else []),
         *([trial_legend.destination(7)] if destined else []),
         trial_legend.mark("o", "white", "person's start", edge=trial_trace.PEOPLE[0], size=7),
         trial_legend.mark("o", "white", "robots' starts", edge=trial_trace.ROBOTS[0], size=7),

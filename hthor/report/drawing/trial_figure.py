@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.transforms import blended_transform_factory
 
 from hthor import rules
-from hthor.episode import EpisodeLog, Fault
+from hthor.episode import EpisodeLog, Fault, task_part
 from hthor.report.drawing import floor_plan, lettering, text_fit, trial_legend, trial_timeline, trial_trace
 from hthor.types import HouseSpec, TrialSpec, Vec2, is_person
 from hthor.types.events import Sent
@@ -36,28 +36,32 @@ _STROKE: list[patheffects.AbstractPathEffect] = [patheffects.withStroke(linewidt
 def trial_figure(spec: TrialSpec, log: EpisodeLog, house: HouseSpec) -> Figure:
     """Draw a trial, about 8 inches wide: the plan, the timeline below, and the messages' words.
 
+    Of the phases before the task itself, the paths are drawn thin, and the time before its beginning is negative.
+
     Args:
         spec: the trial. log: its log. house: the house of its task.
     """
+    whole, log = log, task_part(log)
     words = _words(log)
     wide, high = _size(house)
-    clock, told = 1.0 + 0.22 * (len(log.paths) + (log.progress is not None)), 0.2 * len(words)
+    clock, told = 1.0 + 0.22 * trial_timeline.row_count(log), 0.2 * len(words)
     sheet = Figure(figsize=(wide, high + clock - 1.5 + told), dpi=200, layout="constrained")
     rows = (high - 1.5, clock, told)[: 3 if words else 2]
     above, below, *rest = sheet.subplots(len(rows), 1, height_ratios=rows)
     floor_plan.draw_house(above, house, marked=trial_trace.destinations(spec, house))
     _name_destinations(above, spec, house)
     for seat in log.paths:
+        _draw_path_before(above, whole, seat, whole.ticks - log.ticks)
         draw_path(above, log, seat)
     _draw_targets(above, spec, house)
     draw_messages(above, log)
     _draw_acts(above, log)
-    title = headline(spec, log, _WIDE_IN - 2 * _EDGE_IN, HEAD_PT)
+    title = headline(spec, whole, _WIDE_IN - 2 * _EDGE_IN, HEAD_PT)
     sheet.suptitle(title, x=_EDGE_IN / _WIDE_IN, ha="left", fontsize=HEAD_PT, color=trial_trace.INK)
     text_fit.legend(
-        sheet, trial_legend.legend_entries(spec, log, house), _COLUMNS, loc="outside lower left", handlelength=1.6
+        sheet, trial_legend.legend_entries(spec, whole, house), _COLUMNS, loc="outside lower left", handlelength=1.6
     )
-    trial_timeline.draw_timeline(below, spec, log)
+    trial_timeline.draw_timeline(below, spec, whole)
     for ax in rest:
         _write_words(ax, words)
     return sheet
@@ -85,6 +89,14 @@ def draw_path(ax: Axes, log: EpisodeLog, seat: str, *, words: bool = True) -> No
         ax.scatter(way[-1, 0], way[-1, 1], s=46, facecolor=shade, edgecolor="white", linewidths=1.0, zorder=10)
     else:
         _draw_fault(ax, (float(way[-1, 0]), float(way[-1, 1])), fault, words=words)
+
+
+def _draw_path_before(ax: Axes, log: EpisodeLog, seat: str, ticks: int) -> None:
+    """Draw a thin line for the first ``ticks`` of a seat's path, before the task itself."""
+    way = trial_trace.points(log, seat)[: ticks // rules.LOG_EVERY_TICKS]
+    if not len(way):
+        return
+    ax.plot(way[:, 0], way[:, 1], color=trial_trace.seat_colour(seat), lw=0.7, ls=(0, (1, 1)), alpha=0.7, zorder=7)
 
 
 def _draw_fault(ax: Axes, place: Vec2, fault: Fault, *, words: bool) -> None:
@@ -232,12 +244,15 @@ def headline(spec: TrialSpec, log: EpisodeLog, inches: float, size: float) -> st
         inches: width of a line at most. size: of its letters [pt].
     """
     agents = " and ".join(dict.fromkeys(robot.agent.name for robot in spec.robots)) or "no robot"
+    whole, log = log, task_part(log)
     seconds = log.ticks * rules.TICK_S
     end = f"done in {seconds:.1f} s" if log.met else f"not done in {seconds:.0f} s"
     if log.voided:
         end = f"voided after {seconds:.1f} s, reason: {log.voided}"
     elif not log.met and log.progress is not None:
         end += f", {100.0 * log.progress:.0f} % of it done"
+    if spec.task.phases:
+        end += f", after {(whole.ticks - log.ticks) * rules.TICK_S:.0f} s of {trial_trace.phase_words(spec)}"
     lines = [f"“{spec.task.instruction}”", f"{agents}: {end} (T* {spec.task.t_star:.1f} s), {spec.task.id}"]
     for robot in spec.robots:
         if (fault := trial_trace.first_fault(log, robot.seat)) is not None:

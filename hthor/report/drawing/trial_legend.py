@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from hthor.episode import EpisodeLog
+from hthor.episode import EpisodeLog, task_part
 from hthor.report.drawing import floor_plan, trial_trace
+from hthor.report.drawing.person_display import timeline_bars
 from hthor.types import HouseSpec, TrialSpec
 
 if TYPE_CHECKING:
@@ -25,6 +26,8 @@ def legend_entries(spec: TrialSpec, log: EpisodeLog, house: HouseSpec, *, moving
         line(trial_trace.seat_colour(human.seat), trial_trace.person_words(human, spec)) for human in spec.humans
     ]
     found += [line(trial_trace.seat_colour(robot.seat), trial_trace.robot_words(robot)) for robot in spec.robots]
+    if spec.task.phases and not moving:
+        found.append(Line2D([], [], color="#555555", lw=0.7, ls=(0, (1, 1)), label=trial_trace.phase_words(spec)))
     if not moving:
         found += [mark("o", "white", "start", edge="#555555"), mark("o", "#555555", "end")]
     found.append(mark("*", trial_trace.TARGET, "target at the start", size=9))
@@ -42,7 +45,7 @@ def legend_entries(spec: TrialSpec, log: EpisodeLog, house: HouseSpec, *, moving
                 facecolor=floor_plan.RUG, edgecolor=floor_plan.RUG_EDGE, hatch=floor_plan.RUG_HATCH, label="rug, flat"
             )
         )
-    return found if moving else [*found, *_marks(log)]
+    return found if moving else [*found, *_marks(task_part(log)), *timeline_bars.legend_entries(task_part(log))]
 
 
 def _marks(log: EpisodeLog) -> list[Artist]:

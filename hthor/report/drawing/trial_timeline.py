@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any, Literal
 
 from hthor import rules
-from hthor.episode import EpisodeLog, Fault
+from hthor.episode import EpisodeLog, Fault, task_part
+from hthor.eval.metrics.definitions.theory_of_mind import belief_scores
 from hthor.report.drawing import trial_trace
+from hthor.report.drawing.person_display import timeline_bars
 from hthor.types import TrialSpec
-from hthor.types.events import Progress
+from hthor.types.events import Progress, SaidReady
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -25,19 +28,31 @@ _SIDES: tuple[_Side, _Side] = ("right", "left")
 """On which side of its mark the word of each of two close moments stands, the earlier moment first."""
 _LIFTS = (6, -14, 15)
 """Heights of a word above its mark [pt], the best one first."""
+_BELIEF_HEIGHT = 0.6
+"""Height of the row of beliefs for a score of 1."""
 _LINE_PT = 8.5
 """Height of a word [pt]."""
 
 
 def draw_timeline(ax: Axes, spec: TrialSpec, log: EpisodeLog) -> None:
-    """Draw who did what and when: one row per seat, and one for the progress of a goal with several parts."""
-    seats = list(log.paths)
+    """Draw who did what and when.
+
+    There is one row per seat, one for the progress of a goal with several parts, and one for robots' knowledge of a
+    person's beliefs, where they predicted these. Time counts from the beginning of the task itself; the phases before
+    it are a grey area.
+    """
+    whole, log = log, task_part(log)
+    before = (whole.ticks - log.ticks) * rules.TICK_S
+    seats, known = list(log.paths), belief_scores(log)
     steps = [event for event in log.events if isinstance(event, Progress)]
-    rows = len(seats) + (log.progress is not None)
+    rows = row_count(log)
     end, limit = log.ticks * rules.TICK_S, spec.task.time_limit
-    ax.set_xlim(-1, limit + 1)
+    span = before + limit
+    ax.set_xlim(-before - 1, limit + 1)
     ax.set_ylim(-rows + 0.4, 0.75)
-    words = _Words(ax, _WORD * limit)
+    words = _Words(ax, _WORD * span)
+    if before:
+        _draw_before(ax, spec, whole, before)
     for row, seat in enumerate(seats):
         fault = trial_trace.first_fault(log, seat)
         until = end if fault is None else fault.tick * rules.TICK_S
@@ -46,13 +61,16 @@ def draw_timeline(ax: Axes, spec: TrialSpec, log: EpisodeLog) -> None:
         )
         if fault is not None:
             ax.plot((until, end), (-row, -row), color=trial_trace.GONE, lw=1.0, ls=":", solid_capstyle="butt")
-        _draw_badges(ax, log, seat, -row, _LETTER * limit)
+        timeline_bars.draw_bars(ax, log, seat, -row)
+        _draw_badges(ax, log, seat, -row, _LETTER * span)
         _draw_acts(ax, log, seat, -row, words)
         if fault is not None:
             _mark_fault(ax, fault, until, -row)
-    if rows > len(seats):
-        _draw_progress(ax, steps, end, -len(seats), _WORD * limit)
-    beside = abs(spec.task.t_star - end) < _WORD * limit  # else one would be written over the other
+    if known:
+        _draw_beliefs(ax, known, end, 1 - rows)
+    if log.progress is not None:
+        _draw_progress(ax, steps, end, -len(seats), _WORD * span)
+    beside = abs(spec.task.t_star - end) < _WORD * span  # else one would be written over the other
     sides = _SIDES if beside else ("center", "center")
     first, last = sides if spec.task.t_star <= end else sides[::-1]
     if spec.task.t_star <= limit:  # a T* beyond the time limit has no place on the axis
@@ -60,12 +78,44 @@ def draw_timeline(ax: Axes, spec: TrialSpec, log: EpisodeLog) -> None:
     word, shade = trial_trace.end_word(log), trial_trace.TARGET if log.met else trial_trace.FAILED
     _moment(ax, end, word, shade, "-", last)
     names = [trial_trace.seat_name(seat, seats) for seat in seats]
-    ax.set_yticks([-row for row in range(rows)], [*names, "progress"][:rows], fontsize=8)
+    names += ["progress"] * (log.progress is not None) + ["beliefs known"] * bool(known)
+    ax.set_yticks([-row for row in range(rows)], names, fontsize=8)
     ax.set_xlabel("time [s]", fontsize=8)
     ax.tick_params(axis="x", labelsize=7.5)
     ax.tick_params(axis="y", length=0)
     for side in ("top", "right", "left"):
         ax.spines[side].set_visible(False)
+
+
+def row_count(log: EpisodeLog) -> int:
+    """How many rows the time axis has."""
+    return len(log.paths) + (log.progress is not None) + bool(belief_scores(log))
+
+
+def _draw_beliefs(ax: Axes, scores: Sequence[tuple[int, float]], end: float, row: float) -> None:
+    """Draw how well the robots knew what the person believed, from 0 (the row's lower edge) to 1, until asked again."""
+    seconds = [tick * rules.TICK_S for tick, _ in scores]
+    low = row - _BELIEF_HEIGHT / 2
+    for (begin, until), (_, score) in zip(pairwise([*seconds, end]), scores, strict=True):
+        size = _BELIEF_HEIGHT * score
+        ax.barh(low + size / 2, until - begin, left=begin, height=size, color=trial_trace.IDLE_MESSAGE, lw=0)
+    ax.plot((seconds[0], end), (low + _BELIEF_HEIGHT,) * 2, color=trial_trace.INK, lw=0.5, ls=":")
+
+
+def _draw_before(ax: Axes, spec: TrialSpec, log: EpisodeLog, before: float) -> None:
+    """Draw the time before the task itself, and when each seat was ready for it."""
+    ax.axvspan(-before, 0.0, color="#eef0f3", lw=0, zorder=0)
+    look: dict[str, Any] = {"transform": ax.get_xaxis_transform(), "fontsize": 7.5, "color": "#777777", "ha": "center"}
+    ax.text(-before / 2.0, 1.02, trial_trace.phase_words(spec), **look)
+    for row, seat in enumerate(log.paths):
+        shade = trial_trace.seat_colour(seat)
+        ax.plot((-before, 0.0), (-row, -row), color=shade, lw=2.2, alpha=0.15, solid_capstyle="butt")
+        for event in log.events:
+            if isinstance(event, SaidReady) and event.seat == seat:
+                x = event.tick * rules.TICK_S - before
+                trial_trace.draw_mark(ax, (x, -row), "o", 26, shade, 0.6, 3)
+                place = {"xytext": (0, 6), "textcoords": "offset points", "ha": "right", "fontsize": 7}
+                ax.annotate("ready", (x, -row), color=trial_trace.INK, **place)  # type: ignore[arg-type]
 
 
 def _draw_progress(ax: Axes, steps: Sequence[Progress], end: float, row: float, word_s: float) -> None:

@@ -62,6 +62,11 @@ def targets(spec: TrialSpec, house: HouseSpec) -> list[tuple[Job, Placement]]:
     return [(job, start) for job, start in pairs if not is_there(job, start)]
 
 
+def phase_words(spec: TrialSpec) -> str:
+    """The phases before the task itself in words."""
+    return " and ".join(phase.name for phase in spec.task.phases)
+
+
 def destinations(spec: TrialSpec, house: HouseSpec) -> list[str]:
     """Ids of the things and rooms that objects are to be taken to; none if almost any place is right."""
     wanted = {name for job in spec.task.goal.todo if job.place is None for name in job.destinations}

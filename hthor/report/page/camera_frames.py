@@ -3,13 +3,15 @@
 Taking pictures changes nothing, which is checked: the record of the repeated trial must equal the logged record.
 """
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import msgspec
+from msgspec import Struct
 
 from hthor import activity
+from hthor.comms import display
 from hthor.errors import RunError
 from hthor.eval.config.sessions import Session
 from hthor.eval.records import trial_record
@@ -20,9 +22,10 @@ from hthor.eval.replay.session_history import RunFiles
 from hthor.eval.runner import trial_runner
 from hthor.guest import AgentInputs, GuestConfig
 from hthor.types import TaskSpec
-from hthor.types.events import Event
+from hthor.types.events import Event, Sent
 
 SIZE = (400, 300)
+"""Width and height of the pictures of a case [pixels]."""
 _FINER = 2
 """Pictures are drawn this many times larger and then averaged, which makes edges smooth."""
 
@@ -30,18 +33,36 @@ Views = dict[int, dict[str, Any]]
 """Pictures (H, W, 3) uint8 by tick and seat."""
 
 
-class CameraFrames:
-    """A world that also keeps what its seats see at some ticks, for drawing later."""
+class Seen(Struct, frozen=True, kw_only=True, eq=False):
+    """What was seen in a trial: ``views`` of every seat, and ``images`` of messages (H, W, 3) uint8 by their number."""
 
-    def __init__(self, world: Any, ticks: Collection[int], profile: str) -> None:
+    views: Views
+    images: dict[int, Any] = {}
+
+
+class CameraFrames:
+    """A world that also keeps what its seats see at some ticks, for drawing later.
+
+    Args:
+        ticks: when to look. profile: how pictures are drawn, fast or nice. seats: whose views; by default everybody's.
+        height: [pixels] of pictures with the whole field of view and the shape of each seat's own camera; 0 for
+            pictures of `SIZE`, which show the middle of the field of view.
+    """
+
+    def __init__(
+        self, world: Any, ticks: Collection[int], profile: str, seats: Collection[str] = (), height: int = 0
+    ) -> None:
         self._world, self._ticks, self._profile = world, frozenset(ticks), profile
+        self._seats, self._height = tuple(seats), height
         self._kept: dict[int, dict[str, Callable[[], Any]]] = {}
+        self._sent: dict[tuple[int, str], Callable[[], Any]] = {}
 
     def __getattr__(self, name: str) -> Any:
         return getattr(self._world, name)
 
     def reset(self, task: TaskSpec, seed: int = 0) -> None:
         self._kept.clear()
+        self._sent.clear()
         self._world.reset(task, seed=seed)
         self._look()
 
@@ -50,15 +71,36 @@ class CameraFrames:
         self._look()
         return events
 
+    def frame(self, seat: str) -> Callable[[], Any]:
+        """The picture of a message that the seat sends now; kept for `images`."""
+        draw: Callable[[], Any] = self._world.frame(seat)
+        self._sent[self._world.tick, seat] = draw
+        return draw
+
+    def images(self, messages: Iterable[Sent]) -> dict[int, Any]:
+        """Draw and return the pictures of some messages, by their number; people's messages have none."""
+        return {one.message: self._sent[one.tick, one.seat]() for one in messages if (one.tick, one.seat) in self._sent}
+
     def views(self) -> Views:
         """Draw and return the pictures."""
-        return {tick: {seat: _averaged(draw()) for seat, draw in kept.items()} for tick, kept in self._kept.items()}
+        return {tick: {seat: self.draw(tick, seat) for seat in kept} for tick, kept in self._kept.items()}
+
+    def draw(self, tick: int, seat: str) -> Any:
+        """Draw one picture, (H, W, 3) uint8."""
+        return _averaged(self._kept[tick][seat]())
 
     def _look(self) -> None:
         world = self._world
         if world.tick in self._ticks:
-            size = (_FINER * SIZE[0], _FINER * SIZE[1])
-            self._kept[world.tick] = {seat: world.frame(seat, size, self._profile) for seat in world.seats}
+            seats = self._seats or world.seats
+            self._kept[world.tick] = {seat: world.frame(seat, self._size(seat), self._profile) for seat in seats}
+
+    def _size(self, seat: str) -> tuple[int, int]:
+        """Width and height in which a seat's view is drawn, before it is averaged [pixels]."""
+        if not self._height:
+            return (_FINER * SIZE[0], _FINER * SIZE[1])
+        width, height = self._world.camera(seat).size
+        return (_FINER * 2 * round(self._height * width / height / 2), _FINER * self._height)  # videos need even sides
 
 
 def render_frames(
@@ -70,8 +112,8 @@ def render_frames(
     agents: Sequence[str] = (),
     humans: str = "",
     given: AgentInputs | None = None,
-) -> Views:
-    """Play a trial again and return pictures of what its seats saw.
+) -> Seen:
+    """Play a trial again and return pictures of what its seats saw, and of the messages on people's panels.
 
     Args:
         folder: of the run. wanted: the trial. ticks: when to take pictures.
@@ -83,30 +125,63 @@ def render_frames(
         RunError: if trials before it are missing, another version of hthor played them, or the trial ends differently.
         HthorError: if a file that was not given is needed.
     """
+    files = RunFiles(agents=tuple(agents), humans=humans)
+    frames = film_trial(folder, wanted, ticks, files, profile=profile, given=given)
+    return Seen(views=frames.views(), images=frames.images(_on_panels(wanted, ticks)))
+
+
+def film_trial(
+    folder: Path,
+    wanted: TrialRecord,
+    ticks: Collection[int],
+    files: RunFiles,
+    *,
+    profile: str = "fast",
+    seats: Collection[str] = (),
+    height: int = 0,
+    given: AgentInputs | None = None,
+) -> CameraFrames:
+    """Play a trial again and return what its seats saw, which is drawn on request.
+
+    Args:
+        folder: of the run. wanted: the trial. ticks, profile, seats, height: see `CameraFrames`.
+        files: the user's files that the run's folder lacks. given: arguments and files that the agents were given.
+
+    Raises:
+        RunError, HthorError: see `render_frames`.
+    """
     spec, run = wanted.spec, RunFolder(folder)
     session = Session(number=spec.session, trials=session_history.session_before(run, wanted))
     guests = GuestConfig(hidden=(str(folder.resolve()),), inputs=given or AgentInputs())
-    files = RunFiles(agents=tuple(agents), humans=humans)
     stage = trial_runner.TrialRunner(session_history.replay_sources(run, spec, files, guests))
     with stage.enter(session) as company:
         for number, trial in enumerate(session.trials, 1):
             activity.say(f"playing {folder.name} again, trial {number} of {len(session.trials)}")
-            world = CameraFrames(stage.world(trial), ticks if trial == spec else (), profile)
+            world = CameraFrames(stage.world(trial), ticks if trial == spec else (), profile, seats, height)
             done = stage.run(company, trial, world).record
-        if _course(done) != _course(wanted):
+        if _course(run.corrected(done)) != _course(wanted):
             raise RunError(
                 f"{folder}: trial {wanted.key} did not repeat as it was logged, so its views would show another "
                 "trial. The agent is not deterministic, or the machine is different; 'hthor replay' draws the trial "
                 "from its log alone."
             )
         activity.say(f"drawing what was seen in {folder.name}")
-        return world.views()
+        return world
+
+
+def _on_panels(record: TrialRecord, ticks: Collection[int]) -> Iterator[Sent]:
+    """The messages that were on people's panels at some ticks."""
+    for tick in sorted(ticks):
+        for human in record.spec.humans:
+            state = display.state_at(record.events, human.seat, tick)
+            if state.message is not None and state.on["panel"]:
+                yield state.message
 
 
 def _averaged(picture: Any) -> Any:
     """The picture in its final size."""
-    wide, high = SIZE
-    parts = picture.reshape(high, _FINER, wide, _FINER, 3).astype("float32")
+    high, wide, _ = picture.shape
+    parts = picture.reshape(high // _FINER, _FINER, wide // _FINER, _FINER, 3).astype("float32")
     return parts.mean(axis=(1, 3)).round().astype("uint8")
 
 

@@ -61,7 +61,7 @@ def _of_runs(found: Findings) -> Iterator[NamedFigure]:
     )
     pairs = found.comparisons if len(found.comparisons) <= PAIRS_MOST else found.uplift
     if pairs:
-        words = "Differences between runs over shared trials, with 95 % intervals"
+        words = "Differences between runs, with 95 % intervals"
         yield NamedFigure(name="compared", words=words, figure=scores.comparison_figure(pairs, found.arms))
     words = "Box plots of the time spent, and the share of trials solved by each second"
     yield NamedFigure(name="time-spent", words=words, figure=session.time_figure(found.spent, found.arms))

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from hthor.eval.comparison.compare import Comparison
+from hthor.eval.comparison.comparison import Comparison
 from hthor.report.analysis.document import Findings
 from hthor.report.html.number_format import listed, signed
 from hthor.report.page import sentences
@@ -19,6 +19,8 @@ def headline(found: Findings) -> str:
     pairs = _of_the_best(found) if many else found.comparisons
     counts = {pair.n for pair in pairs}
     over = f"the same {counts.pop()} trials" if len(counts) == 1 else "the trials that they share"
+    if any(pair.groups_of for pair in pairs):
+        over = "groups of different people at the same tasks"
     said = [f"Over {over}, {'; '.join((*_better(found, pairs), *_unsure(pairs)))}."]
     among = max(pair.among for pair in found.comparisons)
     said += [f"These intervals are adjusted for {among} comparisons."] if among > 1 else []

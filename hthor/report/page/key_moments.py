@@ -26,20 +26,22 @@ class Moment(Struct, frozen=True, kw_only=True):
     words: str
 
 
-def key_moments(record: TrialRecord, house: HouseSpec | None = None) -> list[Moment]:
-    """Up to `MANY` moments in order; the last moment is the end.
+def key_moments(
+    record: TrialRecord, house: HouseSpec | None = None, many: int = MANY, seat: str = HUMAN
+) -> list[Moment]:
+    """Up to ``many`` moments in order; the last moment is the end.
 
     The first three are when a robot's first message that a person accepted was sent (if none was, the first message),
     when it was answered, and when a person's hands first did something. The others are in the middle of the longest
-    waits; if ``house`` is given, their words are the room in which the first person is.
+    waits; if ``house`` is given, their words are the room in which ``seat`` is.
     """
     found = [Moment(tick=record.ticks, words=trial_trace.end_word(record.log))]
     apart = round(_APART_S / rules.TICK_S)
     for one in _candidates(record):
-        if len(found) < MANY and one.tick > 0 and all(abs(one.tick - other.tick) >= apart for other in found):
+        if len(found) < many and one.tick > 0 and all(abs(one.tick - other.tick) >= apart for other in found):
             found.append(one)
-    while len(found) < MANY and (middle := _longest_wait(found, 2 * apart)):
-        where = _room(record, middle, house)
+    while len(found) < many and (middle := _longest_wait(found, 2 * apart)):
+        where = _room(record, middle, house, seat)
         found.append(Moment(tick=middle, words=f"in {where}" if where else "on the way"))
     return sorted(found, key=lambda one: one.tick)
 
@@ -75,7 +77,7 @@ def _longest_wait(found: list[Moment], least: int) -> int:
     return -first + wait // 2 if wait >= least else 0
 
 
-def _room(record: TrialRecord, tick: int, house: HouseSpec | None) -> str:
-    place = trial_trace.position_at(record.log, HUMAN, tick)
+def _room(record: TrialRecord, tick: int, house: HouseSpec | None, seat: str) -> str:
+    place = trial_trace.position_at(record.log, seat, tick)
     rooms = house.rooms if house is not None else ()
     return next((room.name for room in rooms if plane.inside(place, room.polygon)), "")

@@ -10,7 +10,7 @@ from hthor.report.page.sections import breakdown, provenance, results, session, 
 
 _SECTIONS: dict[str, tuple[str, Callable[[Findings, Mapping[str, str]], list[str]]]] = {
     "results": ("Results", results.scores),
-    "compared": ("Paired comparisons", results.comparison),
+    "compared": ("Comparisons", results.comparison),
     "time": ("Time spent", session.time_spent),
     "trust": ("Trust", session.trust),
     "channel": ("Communication, and being in the way", session.communication),

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Mapping, Sequence
 
-from hthor.eval.comparison.compare import Comparison
+from hthor.eval.comparison.comparison import Comparison
 from hthor.eval.results.paired_difference import Difference
 from hthor.report.analysis.document import Arm, ExampleTrial, Findings, IncomparablePair, Split, TimeSpent, TrustCurve
 from hthor.report.html.number_format import listed, plain, signed
@@ -17,6 +17,7 @@ _APART = {
     "suite.sha256": "they have different tasks",
     "kind.sha256": "their kind of task comes from different files",
     "humans.sha256": "they have different human models",
+    "design.study": "they are not of the same study, so other groups of people took part",
     "seed": "their seeds differ, so the participants and tasks do",
     "rules_sha256": "they were played under different rules",
     "code_sha256": "they were played by different versions of the code",
@@ -35,6 +36,8 @@ def page_facts(found: Findings) -> str:
     """How many runs, trials, tasks and people the page is about."""
     trials = sum(one.trials for one in found.origins)
     tasks, people = max(arm.tasks for arm in found.arms), max(arm.people for arm in found.arms)
+    if any(pair.groups_of for pair in found.comparisons):
+        people = sum(arm.people for arm in found.arms)
     runs = "1 run" if len(found.origins) == 1 else f"{len(found.origins)} runs"
     who = found.people if found.by_people is None else f"{found.people}; by kind of person others too"
     return f"{runs}, {trials} trials: {tasks} tasks, {people} {'person' if people == 1 else 'people'} ({who})."
@@ -183,7 +186,7 @@ def warnings(found: Findings) -> list[str]:
     if len({one.code_sha256 for one in found.origins}) > 1:
         said.append("These runs were played by different versions of the code, so their trials are not paired.")
     alone = next((arm for arm in found.arms if arm.label == found.baseline), None)
-    whose = [pair.second for pair in found.uplift if alone is not None and pair.n < alone.trials]
+    whose = [pair.second for pair in found.uplift if alone is not None and pair.n < alone.trials and not pair.groups_of]
     if whose:
         said.append(f"Not every trial of {listed(whose)} has its partner without a robot; only pairs are compared.")
     return said

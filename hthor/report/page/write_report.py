@@ -1,4 +1,4 @@
-"""Writes a report from the folders of runs: `report.html`, `report.json`, and the figures as SVG."""
+"""Writes a report from the folders of runs: `report.html`, `report.json`, and the figures as SVG and PDF."""
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -8,14 +8,19 @@ from hthor.errors import HthorError
 from hthor.report.analysis import build, load_runs
 from hthor.report.analysis.document import Findings, Published
 from hthor.report.analysis.load_runs import Run, pairing_key
-from hthor.report.drawing import render_trial
+from hthor.report.drawing import figure_file, render_trial
 from hthor.report.html import matplotlib_svg
 from hthor.report.page import figure_index, page
 from hthor.report.page.figure_index import MapScene
 
 
-def write_report(folders: Sequence[Path], out: Path, published: Published | None = None) -> Findings:
+def write_report(
+    folders: Sequence[Path], out: Path, published: Published | None = None, *, pdf: bool = False
+) -> Findings:
     """Read the runs, find baselines for those that have none, and write the report into ``out``.
+
+    Args:
+        folders: of the runs. published: the results that the page compares with. pdf: whether figures are also PDFs.
 
     Raises:
         RunError: if a run is damaged, or the runs do not belong together.
@@ -28,6 +33,9 @@ def write_report(folders: Sequence[Path], out: Path, published: Published | None
     elements: dict[str, str] = {}
     for one in figure_index.draw_figures(found, list(_scenes(runs, found))):
         elements[one.name] = matplotlib_svg.to_svg(one.figure, one.name, one.words)
+        if pdf:
+            with matplotlib_svg.style():
+                figure_file.write_figure(one.figure, out / "figures" / f"{one.name}.pdf")
     text = page.render(found, elements)
     for name, element in elements.items():
         jsonio.write(out / "figures" / f"{name}.svg", matplotlib_svg.svg_document(element).encode())

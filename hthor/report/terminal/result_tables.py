@@ -12,14 +12,16 @@ from hthor.eval.results import result_file
 from hthor.eval.results.paired_difference import Difference
 from hthor.eval.results.result_file import RunResult, Scores
 from hthor.eval.statistics.intervals import Estimate
+from hthor.report.terminal import corrections
 from hthor.types.specs import LOCKSTEP
 
 if TYPE_CHECKING:
     from rich.table import Table
 
-    from hthor.eval.comparison.compare import Comparison
+    from hthor.eval.comparison.comparison import Comparison
     from hthor.eval.comparison.population_matrix import PopulationMatrix
 
+BETWEEN_WORDS = "between subjects: the two had different people at the same tasks, so no trial has a partner"
 Row = tuple[str, Unit, Estimate]
 """Title, unit and value of a metric."""
 _HEADINGS = ("difference", "95 % interval", "could have seen", "p", "trials")
@@ -32,6 +34,7 @@ def result_table(result: RunResult, *, everything: bool = False) -> Table:
         everything: whether to show all metrics, not only the main ones.
     """
     title = f"{result.label}: {result.suite.name}, {result.counts.trials} trials, {result.humans.name} people"
+    title += ", between subjects" if result.design else ""
     title += "" if result.mode == LOCKSTEP else f", {result.mode} clock"
     table = new_table(title, "mean", "95 % interval", "could have seen", "trials")
     later = enumerate(result.trust_by_trial if everything else (), 1)
@@ -59,6 +62,8 @@ def result_notes(results: Iterable[RunResult]) -> Iterator[str]:
     for result in held:
         if result.counts.voided:
             yield f"note: {voided_words(result.label, result.counts.voided)}."
+        if result.corrections:
+            yield f"note: {corrections.corrections_note(result.label, result.corrections.count)}."
         if result.uplift is not None and result.uplift.note:
             yield f"note: uplift of {result.label}: {result.uplift.note}."
 
@@ -220,14 +225,18 @@ def groups_table(pair: Comparison, by: str) -> Table:
 def comparison_lines(pair: Comparison) -> Iterator[str]:
     """The rest of a comparison in words, the verdict last."""
     mcnemar, tally = pair.mcnemar, pair.tally
-    yield (
-        f"success in one of the two only: {mcnemar.only_second} times {pair.second}, {mcnemar.only_first} times "
-        f"{pair.first}; exact McNemar p {_chance(mcnemar.p)}"
-    )
-    yield (
-        f"{pair.second} was better in time-weighted success in {tally.wins} trials, the same in {tally.ties}, worse in "
-        f"{tally.losses}"
-    )
+    if pair.groups_of:
+        yield BETWEEN_WORDS
+    if mcnemar:
+        yield (
+            f"success in one of the two only: {mcnemar.only_second} times {pair.second}, {mcnemar.only_first} times "
+            f"{pair.first}; exact McNemar p {_chance(mcnemar.p)}"
+        )
+    if tally:
+        yield (
+            f"{pair.second} was better in time-weighted success in {tally.wins} trials, the same in {tally.ties}, "
+            f"worse in {tally.losses}"
+        )
     if any(pair.dropped):
         yield f"without a partner: {pair.dropped[0]} trials of {pair.first}, {pair.dropped[1]} of {pair.second}"
     if pair.among > 1:

@@ -70,13 +70,13 @@ class ReachableFloor:
         mask[mask] = lit
         return mask
 
-    def touching(self, placement: Placement) -> Bools:
-        """The cells from which the object's centre is within reach."""
-        return self._disc((placement.position[0], placement.position[1]), REACH_M + SLACK_M)
+    def touching(self, placement: Placement, spare: float = 0.0) -> Bools:
+        """The cells from which the object's centre is within reach, or farther away by at most ``spare`` [m]."""
+        return self._disc((placement.position[0], placement.position[1]), REACH_M + spare + SLACK_M)
 
-    def beside(self, thing: Thing) -> Bools:
-        """The cells from which the nearest edge of the thing is within reach."""
-        return self._around(thing.centre[:2], thing.size[:2], thing.yaw)
+    def beside(self, thing: Thing, reach_m: float = REACH_M) -> Bools:
+        """The cells from which the nearest edge of the thing is within ``reach_m`` [m]."""
+        return self._around(thing.centre[:2], thing.size[:2], thing.yaw, reach_m + SLACK_M)
 
     def serving(self, kind: str) -> Bools:
         """The cells from which the nearest point of any surface of any thing of this kind is within reach."""
@@ -91,6 +91,15 @@ class ReachableFloor:
     def walk(self, stops: Sequence[Bools]) -> Walk:
         """The shortest walk through one cell of each mask, in this order."""
         return Walk(self, stops)
+
+    def within(self, mask: Bools, places: Floats) -> Bools:
+        """(N,) Which of the places (N, 2) [m] lie in a cell of the mask."""
+        return np.array([self._holds(mask, x, y) for x, y in places], dtype=bool)
+
+    def _holds(self, mask: Bools, x: float, y: float) -> bool:
+        row, column = self.space.cell_of(x, y)
+        ny, nx = mask.shape
+        return 0 <= row < ny and 0 <= column < nx and bool(mask[row, column])
 
     def _disc(self, centre: Vec2, radius: float) -> Bools:
         return self._around(centre, (0.0, 0.0), 0.0, radius)
@@ -118,7 +127,7 @@ class Walk:
     """The shortest walk from any place through one cell of each mask, in the masks' order."""
 
     def __init__(self, ground: ReachableFloor, stops: Sequence[Bools]) -> None:
-        self._space, self._stops = ground.space, tuple(stops)
+        self._ground, self._stops = ground, tuple(stops)
         self._fields: dict[int, DistanceField] = {}
         for number in reversed(range(len(self._stops))):
             edge = ground.space.centres(entry_cells(self._stops[number], ground.space.free))
@@ -134,15 +143,9 @@ class Walk:
         if stop == len(self._stops):
             return np.zeros(len(places))
         lengths = self._fields[stop].at(places)
-        there = np.array([self._holds(stop, x, y) for x, y in places], dtype=bool)
-        if there.any():
+        if (there := self._ground.within(self._stops[stop], places)).any():
             lengths[there] = self._left(places[there], stop + 1)
         return lengths
-
-    def _holds(self, stop: int, x: float, y: float) -> bool:
-        row, column = self._space.cell_of(x, y)
-        ny, nx = self._space.free.shape
-        return 0 <= row < ny and 0 <= column < nx and bool(self._stops[stop][row, column])
 
 
 def entry_cells(mask: Bools, free: Bools) -> Bools:

@@ -1,12 +1,13 @@
 """Scene graphs: for each target, the relation of the priors that decides its place, drawn by weight."""
 
-from collections.abc import Iterator, Mapping, Set
+from collections.abc import Iterator, Mapping, Sequence, Set
 from functools import cache
+from typing import NamedTuple
 
 from hthor import catalog, seeds
 from hthor.catalog import priors
 from hthor.catalog.priors import Triplet
-from hthor.types import HouseSpec
+from hthor.types import HouseSpec, Placement
 
 CODE_PART = "tools"
 
@@ -76,6 +77,30 @@ def find_triplet(target: str, relation: str, reference: str) -> Triplet:
         KeyError: when the table has no such row. UnknownName: when ``target`` is not one of the six.
     """
     return _rows(target)[relation, reference]
+
+
+class Relation(NamedTuple):
+    """The relation of an object in a task: to a kind of thing or object, and the kind of thing that supports it."""
+
+    relation: str
+    reference: str
+    support: str
+
+
+def read_graph(objects: Sequence[Placement], house: HouseSpec) -> dict[str, Relation]:
+    """The scene graph that placements record, by the objects' ids.
+
+    An object that was placed near something has that relation; any other has the relation to its support.
+    """
+    kinds = {thing.id: thing.kind for thing in house.things} | {placed.id: placed.kind for placed in objects}
+    return {placed.id: _relation(placed, kinds) for placed in objects}
+
+
+def _relation(placed: Placement, kinds: Mapping[str, str]) -> Relation:
+    support = kinds.get(placed.support, placed.support or "floor")
+    if placed.near:
+        return Relation("near", kinds.get(placed.near, placed.near), support)
+    return Relation(placed.relation, support, support)
 
 
 def triplet_words(row: Triplet) -> str:

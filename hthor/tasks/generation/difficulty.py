@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from hthor import catalog, plugins
 from hthor.catalog import priors
 from hthor.tasks.arrangement.reachability import ReachableFloor
+from hthor.tasks.jobs import jobs_left
 from hthor.tasks.kind import TaskKind
 from hthor.types import HouseSpec, Placement, TaskSpec
 
@@ -19,17 +20,23 @@ Level = Literal["easy", "medium", "hard"]
 SEARCH_S = 20.0
 """[s] How much a task's score rises if all other expected places are searched first: about as much as the success of
 people without a robot suggests."""
-MEDIUM_S, HARD_S = 22.0, 29.0
-"""Scores at which medium and hard begin: each stratum has about a third of `navigation` and `manipulation`."""
 _PACE_M_S, _LOOK_S = 0.4, 5.0
 """Speed of the searcher [m/s] and time to look at a place [s]: chosen by us."""
 
 
 class Difficulty(Struct, frozen=True, kw_only=True):
-    """The ``least`` time [s], and the share [0, 1] of the priors' mass that is searched ``before`` the target."""
+    """How difficult a task is.
+
+    Attributes:
+        least: the least time [s]. before: the share [0, 1] of the priors' mass that is searched before the target; a
+            task without an object to search for has `hthor.tasks.kind.TaskKind.doubt` in its place.
+        medium_from, hard_from: the scores at which the strata of the task's kind begin.
+    """
 
     least: float
     before: float
+    medium_from: float = TaskKind.medium_from
+    hard_from: float = TaskKind.hard_from
 
     @property
     def score(self) -> float:
@@ -39,7 +46,7 @@ class Difficulty(Struct, frozen=True, kw_only=True):
     @property
     def level(self) -> Level:
         """The stratum of this score."""
-        return "easy" if self.score < MEDIUM_S else "medium" if self.score < HARD_S else "hard"
+        return "easy" if self.score < self.medium_from else "medium" if self.score < self.hard_from else "hard"
 
 
 def level_of(task: TaskSpec, house: HouseSpec, kind: TaskKind | None = None) -> Level:
@@ -48,12 +55,13 @@ def level_of(task: TaskSpec, house: HouseSpec, kind: TaskKind | None = None) -> 
 
 
 def measure_difficulty(task: TaskSpec, house: HouseSpec, kind: TaskKind | None = None) -> Difficulty:
-    """The measures that give a task's stratum; averaged over several targets."""
+    """The measures that give a task's stratum; averaged over the targets of all jobs that are not done at the start."""
     own: TaskKind = kind or plugins.load("task kind", task.kind)
-    wanted = {job.target for job in task.goal.todo}
+    wanted = {job.target for job in jobs_left(task.goal, task.objects, house)}
     targets = [placement for placement in task.objects if placement.id in wanted]
     shares = [_before(task, placement, house) for placement in targets]
-    return Difficulty(least=own.least(task), before=sum(shares) / len(shares) if shares else 0.0)
+    before = sum(shares) / len(shares) if shares else own.doubt(task, house)
+    return Difficulty(least=own.least(task), before=before, medium_from=own.medium_from, hard_from=own.hard_from)
 
 
 def _before(task: TaskSpec, target: Placement, house: HouseSpec) -> float:

@@ -24,8 +24,6 @@ from hthor.tasks.suite import Suite, encode_suite, in_turn, make_suite
 from hthor.tasks.suites import library
 from hthor.types import Goal, HouseSpec, Placement, TaskSpec
 
-EASY_S, HARD_S = 4.0, 20.5
-"""Least times intended for the easiest and the hardest task of a house; a small house does not reach the latter."""
 _CLOSE_S = 0.5
 Split = Literal["", "seen", "new"]
 _TRIES = 20
@@ -69,6 +67,7 @@ def make_ordered_task(
         split=split,
         serial=spec.serial,
         record_difficulty=spec.record_difficulty,
+        phases=spec.phases,
     )
 
 
@@ -87,6 +86,7 @@ def make_task(
     split: Split = "",
     serial: bool = False,
     record_difficulty: bool = True,
+    phases: bool = True,
 ) -> TaskSpec:
     """A task of any kind, fixed by ``root`` and ``name``.
 
@@ -94,21 +94,23 @@ def make_task(
         goal: the goal; if None, the kind draws a goal and an arrangement (`TaskKind.draw`).
         name: the task's id, such as ``navigation/alder/apple-in-fridge``.
         fixed: a triplet that must hold for the goal's target.
-        share: how hard, in [0, 1]: the intended least time is at that share of the way from `EASY_S` to `HARD_S`; drawn
+        share: how hard, in [0, 1]: the intended size is at that share of the range `TaskKind.intended_s`; drawn
             when None.
         robots: how many robots have start poses.
-        candidates: how many arrangements are compared, to take the nearest to that time; a near one ends the search.
+        candidates: how many arrangements are compared, to take the nearest to that size; a near one ends the search.
         level: the required stratum of difficulty, empty for any.
         split: whether the house is one of the ten scenes; empty when the suite does not record that.
         serial: as for `hthor.tasks.arrangement.target_arrangement.arrange`.
         record_difficulty: whether the task records its difficulty.
+        phases: whether the task has the phases of its kind.
 
     Raises:
         HthorError: when the house has no arrangement or no start poses for it.
     """
     hardness = seeds.draw(root, name, "share") if share is None else share
-    wanted = EASY_S + hardness * (HARD_S - EASY_S)
-    best: tuple[StartPoses, Goal, tuple[Placement, ...]] | None = None
+    easiest, hardest = kind.intended_s
+    wanted = easiest + hardness * (hardest - easiest)
+    best: tuple[float, TaskSpec, int] | None = None
     reason = ""
     for attempt in range(2 * _TRIES):
         own = seeds.derive(root, name, attempt)
@@ -120,18 +122,20 @@ def make_task(
         found = draw_start_poses(house, kind, aim, objects, wanted, own, robots=robots, strict=attempt < _TRIES)
         if found is None:
             continue
-        made = _spec(house, kind, name, found, aim, objects)
+        made = kind.completed(_spec(house, kind, name, found, aim, objects), house)
         problem = kind.misfit(made, house)
         if problem or (level and difficulty.level_of(made, house, kind) != level):
             reason = f": {problem or f'none was {level}'}"
             continue
-        if best is None or abs(found.least - wanted) < abs(best[0].least - wanted):
-            best = (found, aim, objects)
-        if best is not None and (abs(best[0].least - wanted) <= _CLOSE_S or attempt + 1 >= candidates):
+        if best is None or abs(found.size - wanted) < abs(best[0] - wanted):
+            best = (found.size, made, own)
+        if best is not None and (abs(best[0] - wanted) <= _CLOSE_S or attempt + 1 >= candidates):
             break
     if best is None:
         raise HthorError(f"no arrangement was found for task '{name}' in {2 * _TRIES} tries{reason}")
-    made = msgspec.structs.replace(_spec(house, kind, name, *best), split=split)
+    made = msgspec.structs.replace(best[1], split=split)
+    if phases:
+        made = msgspec.structs.replace(made, phases=kind.phases(made, house, best[2]))
     if not record_difficulty:
         return made
     return msgspec.structs.replace(made, difficulty=difficulty.level_of(made, house, kind))

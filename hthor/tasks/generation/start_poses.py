@@ -1,4 +1,4 @@
-"""Start poses of the person and the robots, chosen so that the least time is near an intended time."""
+"""Start poses of the person and the robots, chosen so that the size of the task is near an intended one."""
 
 import math
 
@@ -22,9 +22,10 @@ _STARTS = 400
 
 
 class StartPoses(Struct, frozen=True, kw_only=True):
-    """All start poses, the person's first, and the least time [s] from there."""
+    """All start poses, the person's first, the ``least`` time [s] from there, and the `TaskKind.size_of` [s]."""
 
     least: float
+    size: float
     poses: tuple[Pose, ...]
 
 
@@ -39,7 +40,7 @@ def draw_start_poses(
     robots: int,
     strict: bool = True,
 ) -> StartPoses | None:
-    """Starts of the person and of ``robots`` robots, with the least time as near to ``wanted`` [s] as the floor allows.
+    """Starts of the person and of ``robots`` robots, with a size as near to ``wanted`` [s] as the floor allows.
 
     The person starts on ample floor, at least `AWAY_M` from the target, and does not see it from close by.
 
@@ -60,7 +61,8 @@ def draw_start_poses(
         fits, times = _possible(kind, house, objects, goal, places)
     if not len(fits):
         return None
-    first = int(np.argmin(np.abs(times - wanted)))
+    sizes = kind.size_of(house, objects, goal, times)
+    first = int(np.argmin(np.abs(sizes - wanted)))
     chosen = [fits[first]]
     for place in fits if strict else np.concatenate((fits, places)):
         if len(chosen) <= robots and all(math.dist(place, other) >= APART_M for other in chosen):
@@ -68,7 +70,8 @@ def draw_start_poses(
     if len(chosen) <= robots:
         return None
     poses = tuple(_pose(place, root, number) for number, place in enumerate(chosen))
-    return StartPoses(least=round(float(times[first]), 3), poses=poses)
+    least, size = round(float(times[first]), 3), round(float(sizes[first]), 3)
+    return StartPoses(least=least, size=size, poses=poses)
 
 
 def _possible(

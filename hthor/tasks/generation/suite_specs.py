@@ -17,7 +17,7 @@ from hthor.errors import HthorError
 from hthor.tasks.arrangement import scene_graph
 from hthor.tasks.generation.difficulty import Level
 from hthor.tasks.kind import TaskKind
-from hthor.types import Goal, HouseSpec
+from hthor.types import WALKERS, Goal, HouseSpec
 
 SCENES = ("alder", "birch", "cedar", "elder", "hazel", "juniper", "linden", "maple", "rowan", "willow")
 """The ten scenes of the benchmark."""
@@ -48,7 +48,8 @@ class SuiteSpec(Struct, frozen=True, kw_only=True):
     arrangements are compared by difficulty. ``serial`` is explained in
     `hthor.tasks.arrangement.target_arrangement.arrange`. ``record_difficulty`` says whether tasks record their
     difficulty. ``redrawn`` says how often a task was drawn again because ``hthor tasks check`` found that it cannot be
-    done in the simulated world: small things hide the target, or the way takes too long.
+    done in the simulated world: small things hide the target, or the way takes too long. ``phases`` says whether tasks
+    begin with the phases of their kind.
     """
 
     name: str
@@ -61,6 +62,7 @@ class SuiteSpec(Struct, frozen=True, kw_only=True):
     serial: bool = False
     record_difficulty: bool = True
     redrawn: tuple[tuple[str, int], ...] = ()
+    phases: bool = True
 
 
 def by_count(*counts: tuple[str, int]) -> Callable[[SuiteSpec, HouseSpec], list[TaskOrder]]:
@@ -82,12 +84,34 @@ def by_count(*counts: tuple[str, int]) -> Callable[[SuiteSpec, HouseSpec], list[
     return orders
 
 
-def by_kind(kind: str, count: int) -> Callable[[SuiteSpec, HouseSpec], list[TaskOrder]]:
-    """Orders for ``count`` tasks per house, of a kind that draws goals and arrangements itself."""
+def by_kind(kind: str, count: int, stem: str = "") -> Callable[[SuiteSpec, HouseSpec], list[TaskOrder]]:
+    """Orders for ``count`` tasks per house, of a kind that draws goals and arrangements itself.
+
+    Their names begin with ``stem``, by default with the suite's name. Tasks with the same name and root are the same.
+    """
 
     def orders(spec: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
-        names = [f"{spec.name}/{house.id}/{number + 1:02d}" for number in range(count)]
+        names = [f"{stem or spec.name}/{house.id}/{number + 1:02d}" for number in range(count)]
         return [TaskOrder(name=name, kind=kind, share=seeds.draw(spec.root, name, "share")) for name in names]
+
+    return orders
+
+
+def by_target(kind: str, *targets: str) -> Callable[[SuiteSpec, HouseSpec], list[TaskOrder]]:
+    """Orders for one task per house and target, of a kind whose goals depend on the house alone."""
+
+    def orders(spec: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
+        made: TaskKind = plugins.load("task kind", kind)
+        found = []
+        for number, target in enumerate(targets, 1):
+            name = f"{spec.name}/{house.id}/{number:02d}"
+            goals = [goal for goal in made.goals(house) if goal.target == target]
+            if not goals:
+                raise HthorError(f"house '{house.id}' has nothing for a task of kind '{kind}' for '{target}'")
+            goal = goals[seeds.choice([1.0] * len(goals), spec.root, name, "goal")]
+            share = seeds.draw(spec.root, name, "share")
+            found.append(TaskOrder(name=name, kind=kind, share=share, goal=goal))
+        return found
 
     return orders
 
@@ -194,10 +218,25 @@ SUITE_SPECS = {
             orders=each_template,
             redrawn=(("manipulation/birch/tomato-to-fridge/near-apple", 1),),
         ),
-        SuiteSpec(name="collect", version=1, root=20240612, houses=SCENES, orders=by_kind("multi_robot_collection", 2)),
-        SuiteSpec(name="rearrange", version=1, root=20240613, houses=SCENES, orders=by_kind("room_rearrangement", 2)),
-        SuiteSpec(name="tidy", version=1, root=20240614, houses=SCENES, orders=by_kind("tidying_up", 2)),
-        SuiteSpec(name="carry", version=1, root=20240615, houses=SCENES, orders=by_kind("collaborative_carrying", 2)),
+        SuiteSpec(name="collect", version=2, root=20240612, houses=SCENES, orders=by_kind("multi_robot_collection", 2)),
+        SuiteSpec(name="rearrange", version=2, root=20240613, houses=SCENES, orders=by_kind("room_rearrangement", 2)),
+        SuiteSpec(
+            name="rearrange-record",
+            version=1,
+            root=20240613,
+            houses=SCENES,
+            orders=by_kind("room_rearrangement", 2, stem="rearrange"),
+            phases=False,
+        ),
+        SuiteSpec(name="tidy", version=2, root=20240614, houses=SCENES, orders=by_kind("tidying_up", 2)),
+        SuiteSpec(name="carry", version=2, root=20240615, houses=SCENES, orders=by_kind("collaborative_carrying", 2)),
+        SuiteSpec(
+            name="vln",
+            version=1,
+            root=20240616,
+            houses=SCENES,
+            orders=by_target("visual_language_navigation", *WALKERS),
+        ),
     )
 }
 """The suites that this package makes, by name."""

@@ -23,7 +23,8 @@ from hthor.catalog import priors
 from hthor.errors import HthorError
 from hthor.tasks.arrangement.free_spots import find_spot, room_of, unique_things
 from hthor.tasks.arrangement.reachability import ReachableFloor
-from hthor.tasks.subgoals import JobKind, carrying_way
+from hthor.tasks.job_times import carrying_way
+from hthor.tasks.subgoals import JobKind
 from hthor.types import Goal, HouseSpec, Job, Placement, Pose, TaskSpec, Thing
 
 PLACES = ("dining_table", "counter_top", "coffee_table", "desk", "tv_stand")
@@ -51,6 +52,7 @@ class MultiRobotCollection(JobKind):
     name = "multi_robot_collection"
     short = "collect"
     crew = ("tender", "puck")
+    medium_from, hard_from = 57.0, 61.0
 
     def goals(self, house: HouseSpec) -> tuple[Goal, ...]:
         return tuple(_goal(place) for place in unique_things(house, PLACES))

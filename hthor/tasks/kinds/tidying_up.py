@@ -32,6 +32,7 @@ class TidyingUp(JobKind):
     short = "tidy"
     crew = ("tender",)
     time_limit = TIME_LIMIT_S
+    medium_from, hard_from = 35.0, 41.0
 
     def goals(self, house: HouseSpec) -> tuple[Goal, ...]:
         present = {thing.kind for thing in house.things}

@@ -34,8 +34,21 @@ from hthor.types.events.journal import (
     Replied,
     Stick,
 )
-from hthor.types.events.messages import Accepted, Answered, Covered, Declined, MessageEvent, Sent, Shown
-from hthor.types.events.trial import AgentFault, Paused, Progress, Resumed, Success, Thought, Timeout, Voided
+from hthor.types.events.messages import Accepted, Answered, Covered, Declined, Displayed, MessageEvent, Sent, Shown
+from hthor.types.events.predictions import Believed, Predicted
+from hthor.types.events.trial import (
+    AdoptionJudged,
+    AgentFault,
+    Paused,
+    PhaseBegan,
+    Progress,
+    Resumed,
+    SaidReady,
+    Success,
+    Thought,
+    Timeout,
+    Voided,
+)
 
 Event = (
     Sent
@@ -44,6 +57,7 @@ Event = (
     | Declined
     | Covered
     | Answered
+    | Displayed
     | Picked
     | Placed
     | Dropped
@@ -56,30 +70,37 @@ Event = (
     | Blocked
     | InWay
     | Refused
+    | Predicted
     | Thought
     | Progress
+    | PhaseBegan
+    | SaidReady
     | AgentFault
     | Paused
     | Resumed
+    | AdoptionJudged
     | Voided
     | Success
     | Timeout
 )
 """An event of the trial."""
-JournalEntry = Stick | Head | Inputs | Attempt | Exposure | Choice | Offer | Misled | Asked | Replied | Note
+JournalEntry = Stick | Head | Inputs | Attempt | Exposure | Choice | Offer | Misled | Asked | Replied | Believed | Note
 """An entry of the journal."""
 
 __all__ = [
     "Accepted",
+    "AdoptionJudged",
     "AgentFault",
     "Answered",
     "Asked",
     "Attempt",
+    "Believed",
     "Blocked",
     "Choice",
     "Closed",
     "Covered",
     "Declined",
+    "Displayed",
     "Dropped",
     "Event",
     "Exposure",
@@ -99,13 +120,16 @@ __all__ = [
     "Opened",
     "OptionRow",
     "Paused",
+    "PhaseBegan",
     "Picked",
     "Placed",
+    "Predicted",
     "Progress",
     "Refused",
     "Released",
     "Replied",
     "Resumed",
+    "SaidReady",
     "Sent",
     "Shown",
     "Stick",

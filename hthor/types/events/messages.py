@@ -1,5 +1,7 @@
 """Events of the mailbox: what became of each message."""
 
+from typing import Literal
+
 from msgspec import UNSET, UnsetType
 
 from hthor.types.events.entry import LogEntry
@@ -97,6 +99,23 @@ class Answered(LogEntry, frozen=True, kw_only=True, tag="answered"):
     message: int
     sender: str
     yes: bool | None = None
+
+
+class Displayed(LogEntry, frozen=True, kw_only=True, tag="displayed"):
+    """The person in the seat showed or hid a part of their display.
+
+    What the display does by itself has no event of its own: the panel is shown from `Sent` of a message for the person
+    until their answer, and the map from their first `Accepted` on. `hthor.comms.display` works out when each was shown.
+
+    Attributes:
+        what: "panel" or "map".
+        on: whether it is shown from this tick on, or hidden.
+        message: the number of the message on the panel; for the map, of the message confirmed last.
+    """
+
+    what: Literal["panel", "map"]
+    on: bool
+    message: int
 
 
 MessageEvent = Shown | Accepted | Declined | Covered | Answered

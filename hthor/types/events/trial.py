@@ -57,6 +57,32 @@ class Voided(LogEntry, frozen=True, kw_only=True, tag="voided"):
     reason: str
 
 
+class AdoptionJudged(LogEntry, frozen=True, kw_only=True, tag="adoption_judged"):
+    """Somebody who knows better than the log said whether the person adopted a suggestion of a robot.
+
+    Attributes:
+        adopted: whether they did; None if it cannot be said, so that the trial has no adoption.
+        reason: why.
+    """
+
+    adopted: bool | None
+    reason: str
+
+
+class PhaseBegan(LogEntry, frozen=True, kw_only=True, tag="phase_began"):
+    """A phase of the task began; only in tasks with phases before the task itself.
+
+    Attributes:
+        name: the phase's name; empty for the task itself.
+    """
+
+    name: str = ""
+
+
+class SaidReady(LogEntry, frozen=True, kw_only=True, tag="said_ready"):
+    """The seat is ready for the next phase."""
+
+
 class Success(LogEntry, frozen=True, kw_only=True, tag="success"):
     """The goal was met; always the last event. In a search the seat is that of the person who found the target."""
 

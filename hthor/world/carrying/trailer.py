@@ -8,9 +8,8 @@ Seen from above, the thing is a rectangle with a handle at either end; each bear
 Like a trailer on a drawbar, the thing has no drive of its own. Each step is solved by position-based dynamics (Müller
 et al. 2007, "Position based dynamics"): the handles are pulled towards the bearers until no arm is longer than allowed,
 and the rectangle is pushed out of walls and bodies. Each correction is the smallest shift and turn of a uniform plate
-that satisfies its constraint (`hthor.world.carrying.trailer_kernel`). Then each follower walks after its handle, along
-the handle's path, and so goes round the same corners. A solved step is taken only if the thing then overlaps no wall
-and no body, and no arm is longer than its body's reach.
+that satisfies its constraint (`hthor.world.carrying.trailer_kernel`). Then each follower walks along its handle's path,
+round the same corners. A step is taken only if the thing then overlaps nothing and no arm is beyond its body's reach.
 
 All lengths, angles and counts below are our choice.
 """
@@ -118,7 +117,8 @@ class TrailerLoad(Load):
                 if other is not None and self._displacement(other) > _STEER_GAIN_M:
                     step, self._steer_angle, self._steer_left = other, angle, _STEER_TICKS
                     break
-        return step is not None and self._take_step(*step, obstacles, leader)
+        least = min(_STANDSTILL_M, math.hypot(dx, dy) / 2.0)  # the end of a move may be shorter than a standstill
+        return step is not None and self._take_step(*step, obstacles, leader, least)
 
     def body_in_the_way(self, leader: BodyState) -> str:
         """The seat of a body too close to the leader or, unless it is a bearer, to the thing; empty for none."""
@@ -256,10 +256,14 @@ class TrailerLoad(Load):
         paths: dict[str, tuple[Vec2, ...]],
         obstacles: Floats,
         leader: BodyState,
+        least: float,
     ) -> bool:
-        """Take the step unless it moves almost nothing; returns whether it was taken."""
+        """Take the step unless nothing moves by more than ``least`` [m]; returns whether it was taken."""
         ways_gone = (math.dist(places[seat.name], (seat.pose.x, seat.pose.y)) for seat in self.bearers)
-        if max(self._displacement((state, places, paths)), *ways_gone) <= _STANDSTILL_M:
+        if max(self._displacement((state, places, paths)), *ways_gone) <= least:
+            return False
+        ways = {seat: (places[seat.name][0] - seat.pose.x, places[seat.name][1] - seat.pose.y) for seat in self.bearers}
+        if not all(seat.loose is None or seat.loose.make_way(seat, way) for seat, way in ways.items()):
             return False
         for seat in self.bearers:
             place, pose = places[seat.name], seat.pose

@@ -194,8 +194,10 @@ class Manipulation:
         if not where:
             x, y, z = item.position
             met = self._geoms.first((seat.pose.x, seat.pose.y, z), (x, y, z), item.id)
-            return f"{met} is between {seat.name} and {item.id}" if met else ""
-        return f"{item.id} would be inside {where}"
+            if met:
+                return f"{met} is between {seat.name} and {item.id}"
+            where = seat.loose.wedged(item) if seat.loose is not None else ""
+        return f"{item.id} would be inside {where}" if where else ""
 
     # ------------------------------------------------------------------------------------------------------ place
 

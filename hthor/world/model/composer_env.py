@@ -1,7 +1,7 @@
-"""A composer environment that does no work while nothing moves.
+"""A composer environment that does no work while nothing moves, and in which a step can be a tick of a trial.
 
-Bodies are puppets that collide with nothing. So every tree of the engine sleeps, and a tick costs nothing, except while
-an object falls or a door swings. The states are bitwise those of an environment that makes every step.
+Bodies are puppets without contacts in the engine. So every tree of the engine sleeps, and a tick costs nothing, except
+while an object falls or a door swings. The states are bitwise those of an environment that makes every step.
 
 The long step at which resting things fall asleep is far too long for falling things, which would pass through a board
 between two steps. So a step in which anything moves farther than `STEP_TRAVEL_MAX_M` or turns farther than
@@ -12,9 +12,11 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+import dm_env
 import numpy as np
 
-from hthor.world.model.engine import Environment, mujoco
+from hthor.world.model.engine import Environment, composer, mujoco
+from hthor.world.model.trial_control import TrialControl
 from hthor.world.records import EngineRecord
 
 QPose = tuple[float, float, float, float, float, float, float]
@@ -50,13 +52,38 @@ faster.
 class LazyComposerEnv(Environment):
     """The environment of a `HouseTask`.
 
-    It is an ordinary composer environment with the usual `reset` and `step`. `tick` is a faster way to make one control
-    step, which `Simulation` uses.
+    By itself it is an ordinary composer environment with the usual `reset` and `step`, in which bodies stand still.
+    With a `TrialControl`, `reset` begins a trial and `step` is one tick of it. `Simulation` needs neither: it calls
+    `begin` and `tick`, which reset the engine and make one control step; a control does so too, through its simulation.
     """
 
     def __init__(self, task: Any) -> None:
-        super().__init__(task, random_state=0, legacy_step=False, recompile_mjcf_every_episode=False)
+        super().__init__(
+            task,
+            random_state=0,
+            legacy_step=False,
+            recompile_mjcf_every_episode=False,
+            strip_singleton_obs_buffer_dim=True,
+        )
         self._mjcf_never_compiled = False  # the constructor has just compiled it; composer would compile it again
+
+    def hand_over(self, control: TrialControl | None) -> None:
+        """From now on a step is a tick of ``control``'s trial, which begins at the next reset; None: an engine's step.
+
+        A control step then has a single substep, the tick, so that observables are updated once in it.
+        """
+        self._task.take(control)
+        self._n_sub_steps = self._steps_per_tick if control is None else 1
+        self._observation_updater = self._make_observation_updater()
+        self._observation_updater.reset(self._physics_proxy, self._random_state)
+        self._reset_next_step = True
+
+    def close(self) -> None:
+        """Let go of the control; an environment without one frees the engine, and its world with it."""
+        if self._task.control is None:
+            super().close()
+        else:
+            self.hand_over(None)
 
     def _recompile_physics(self) -> None:
         super()._recompile_physics()
@@ -65,19 +92,68 @@ class LazyComposerEnv(Environment):
         self._carried = np.full(self.model.ntree, -(1 << 30), np.int32)  # 0 while that tree is carried
         self._held: dict[int, tuple[int, int, Callable[[], QPose]]] = {}
         self._still, self._restless = False, 0
+        self._puppets = np.flatnonzero(self.model.body_mocapid >= 0).tolist()
         self._step_s = float(self.model.opt.timestep)
+        self._steps_per_tick = self._task.physics_steps_per_control_step
         free = self.model.jnt_dofadr[self.model.jnt_type == int(mujoco.mjtJoint.mjJNT_FREE)]
         self._free = (free[:, None] + np.arange(6)).ravel()
         self._limits = np.tile((STEP_TRAVEL_MAX_M,) * 3 + (STEP_TURN_MAX_RAD,) * 3, len(free)) / self._step_s
         self._sound = self.data.qpos.copy()
         self._most = np.tile((SPEED_MAX_M_S,) * 3 + (SPIN_MAX_RAD_S,) * 3, len(free))
 
-    def reset(self) -> Any:
-        """Start an episode: nothing is carried, and everything sleeps at the place that the task gives it."""
+    def begin(self) -> None:
+        """Start an episode of the engine: nothing is carried, and all sleeps at the place that the task gives it."""
         self._held.clear()
         self._carried[:] = -(1 << 30)
         self._still, self._restless = False, 0
-        return super().reset()
+        self._reset_next_step = self._task.control is not None  # an episode that the control did not begin is not its
+        with self._physics.reset_context():
+            self._hooks.initialize_episode(self._physics_proxy, self._random_state)
+
+    def _reset_attempt(self) -> Any:
+        """What composer does, but a control begins the episode of the engine itself."""
+        if self._task.control is None:
+            self.begin()
+        else:
+            self._task.control.reset()
+            self._show_puppets()
+        self._observation_updater.reset(self._physics_proxy, self._random_state)
+        self._reset_next_step = False
+        return dm_env.restart(self._observation_updater.get_observation())
+
+    def _substep(self, action: Any) -> None:
+        """One of the engine's steps; with a control, a tick."""
+        if self._task.control is None:
+            super()._substep(action)
+            return
+        self._hooks.before_substep(self._physics_proxy, action, self._random_state)
+        self._task.control.advance()
+        self._reset_next_step = False  # a trial whose task begins after a tour goes on, though the engine began again
+        self._show_puppets()
+        self._hooks.after_substep(self._physics_proxy, self._random_state)
+
+    def _make_observation_updater(self) -> Any:
+        steps = self._steps_per_tick if self._task.control is None else 1
+        return composer.observation.Updater(self._task.observables, steps, self._strip_singleton_obs_buffer_dim)
+
+    def _show_puppets(self) -> None:
+        """Move the mocap bodies' shapes to their poses, which the engine does only when something else moves.
+
+        It does this as `mj_kinematics` does, which must not be called here: it would wake what is carried.
+        """
+        model, data = self.model, self.data
+        for body in self._puppets:
+            place, turn = data.mocap_pos[model.body_mocapid[body]], data.mocap_quat[model.body_mocapid[body]]
+            if (data.xpos[body] == place).all() and (data.xquat[body] == turn).all():
+                continue
+            data.xpos[body], data.xquat[body] = place, turn
+            mujoco.mju_quat2Mat(data.xmat[body], turn)
+            pos, quat, frame = model.body_ipos[body], model.body_iquat[body], model.body_sameframe[body]
+            mujoco.mj_local2Global(data, data.xipos[body], data.ximat[body], pos, quat, body, frame)
+            first = int(model.body_geomadr[body])
+            for geom in range(first, first + int(model.body_geomnum[body])):
+                pos, quat, frame = model.geom_pos[geom], model.geom_quat[geom], model.geom_sameframe[geom]
+                mujoco.mj_local2Global(data, data.geom_xpos[geom], data.geom_xmat[geom], pos, quat, body, frame)
 
     @property
     def still(self) -> bool:
@@ -111,6 +187,11 @@ class LazyComposerEnv(Environment):
             self.data.qpos[qpos : qpos + 7] = pose()
             self.data.qvel[dof : dof + 6] = 0.0
 
+    def before(self, qpos: int) -> QPose:
+        """The pose, before the last tick that moved anything, of the free object with this address."""
+        x, y, z, *turn = self._sound[qpos : qpos + 7].tolist()
+        return (x, y, z, *turn)
+
     def tick(self) -> bool:
         """Make one control step; returns whether anything may have moved. Carried objects are moved only by `pin`."""
         if self._still:
@@ -119,7 +200,7 @@ class LazyComposerEnv(Environment):
         mujoco.mj_kinematics(self.model, self.data)  # wakes the trees whose state was changed
         if not self._quiet():
             self._sound[:] = self.data.qpos
-            for _ in range(self._n_sub_steps):
+            for _ in range(self._steps_per_tick):
                 self._advance()
             self.pin()
             mujoco.mj_kinematics(self.model, self.data)

@@ -101,8 +101,8 @@ class DriveMotion:
         if pace is None:
             length = self._speed * _STEP_S
             step = (self._along[0] * length, self._along[1] * length)
-            met = go(seat, self._others, *step)
-            stuck = met != FREE and not slide(seat, self._others, step, length)
+            met = go(seat, self._others, *step, _STEP_S)
+            stuck = met != FREE and not slide(seat, self._others, step, length, _STEP_S)
         elif last:
             length = min(self._speed, pace) * rules.TICK_S
             step = (self._along[0] * length, self._along[1] * length)

@@ -11,7 +11,8 @@ from hthor import rules
 from hthor.geometry import plane
 from hthor.geometry.plane import turn, wrap
 from hthor.houses.space import solids
-from hthor.houses.space.free_space import STEP_M
+from hthor.houses.space.obstacles import furniture_in_the_way
+from hthor.houses.space.solids import Slab
 from hthor.types import BodySpec, HouseSpec, Move, Opening, Outcome, Pose, Rotate, Vec2, Wait
 from hthor.types.events import Blocked, Event, InWay
 from hthor.world import numbers
@@ -202,8 +203,8 @@ class ObstacleFootprints:
     """The footprints of a house's walls and furniture."""
 
     def __init__(self, house: HouseSpec) -> None:
-        self._slabs = [(WALL, slab) for slab in solids.wall_slabs(house)]
-        self._slabs += [(thing.id, slab) for thing, slab in solids.furniture_slabs(house) if slab.high > STEP_M]
+        self._house = house
+        self._slabs: dict[float, list[tuple[str, Slab]]] = {}
 
     def nearest(self, place: Vec2, height: float, shut: Iterable[Opening] = ()) -> str:
         """Id of the thing nearest to ``place`` [m] that stands in the way of a body ``height`` [m] tall, or "wall".
@@ -211,14 +212,22 @@ class ObstacleFootprints:
         Args:
             shut: the doorways that are shut now; a shut door is named unless something else is clearly nearer.
         """
+        slabs = self._of(height)
         gaps = (
             (plane.distance_to_rectangle(place, slab.centre, slab.size, slab.yaw), index)
-            for index, (_, slab) in enumerate(self._slabs)
-            if slab.low < height
+            for index, (_, slab) in enumerate(slabs)
         )
         gap, index = min(gaps, default=(0.0, -1))
         for opening in shut:
             x, y, half, deep, yaw = leaf_rectangle(opening)
             if plane.distance_to_rectangle(place, (x, y), (2 * half, 2 * deep), yaw) <= gap + _JAMB_M:
                 return opening.id
-        return self._slabs[index][0] if index >= 0 else WALL
+        return slabs[index][0] if index >= 0 else WALL
+
+    def _of(self, height: float) -> list[tuple[str, Slab]]:
+        """What is in the way of a body ``height`` [m] tall, the walls first."""
+        if height not in self._slabs:
+            walls = [(WALL, slab) for slab in solids.wall_slabs(self._house) if slab.low < height]
+            things = [(thing.id, slab) for thing, slab in furniture_in_the_way(self._house, height)]
+            self._slabs[height] = walls + things
+        return self._slabs[height]

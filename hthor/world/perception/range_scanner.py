@@ -8,7 +8,7 @@ from msgspec import UNSET
 
 from hthor.geometry import plane
 from hthor.geometry.ray_casting import Bools, Floats
-from hthor.houses.space import grid_kernel, solids
+from hthor.houses.space import grid_kernel, obstacles, solids
 from hthor.houses.space.free_space import FreeSpace
 from hthor.types import BodySpec, HouseSpec, Pose, RobotSpec, Scan
 
@@ -38,7 +38,7 @@ class RangeScanner:
 def _tops(house: HouseSpec, space: FreeSpace, height: float) -> np.ndarray:
     """(ny, nx) [m], the height of the tallest furniture that stops a body in each cell; infinite in other cells."""
     tops = np.full(space.raw.shape, np.inf)
-    slabs = [slab for _, slab in solids.furniture_slabs(house) if slab.low < height]
+    slabs = [slab for _, slab in obstacles.furniture_in_the_way(house, height)]
     walls = np.array(
         [(*slab.centre, slab.size[0] / 2, slab.size[1] / 2, slab.yaw) for slab in solids.wall_slabs(house)]
     )

@@ -67,7 +67,7 @@ class Photographer:
         split = inventory.split_things(house, ())
         task = HouseTask(house, split, seats)
         env = LazyComposerEnv(task)
-        env.reset()
+        env.begin()
         scene = GeomIndex(env, task)
         self._names, self._qpos = scene.names, env.data.qpos.copy()
         self._studio = OpenGLRenderer(house, split, seats, env.model, scene, pack)

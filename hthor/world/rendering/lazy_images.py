@@ -26,6 +26,7 @@ from hthor.world.state.body_state import BodyState
 if TYPE_CHECKING:
     from hthor.world.rendering.opengl_renderer import OpenGLRenderer
     from hthor.world.rendering.ray_renderer import RayRenderer
+    from hthor.world.rendering.viewpoint import Viewpoint
 
 PROFILES = ("fast", "nice")
 MODES = ("rgb", "depth", "segmentation")
@@ -146,6 +147,15 @@ class LazyImages:
         moment = self._moment()
         with self._lock:
             picture: NDArray[np.uint8] = self._draw(profile).top_view(moment, self.bounds, pixels_per_metre)
+        return picture
+
+    def overview(self, viewpoint: Viewpoint, mode: str, size: tuple[int, int], profile: str | None) -> NDArray[Any]:
+        """The house now from any viewpoint, without ceilings: rgb (H, W, 3) uint8 or depth (H, W) float32 [m]."""
+        _check(("rgb", "depth"), mode=mode)
+        camera.check_size(size)
+        moment = self._moment()
+        with self._lock:
+            picture: NDArray[Any] = self._draw(profile).overview(moment, viewpoint, mode, size)
         return picture
 
     @property

@@ -28,6 +28,7 @@ from hthor.world.rendering.scene.compile_scene import SceneBuilder
 from hthor.world.rendering.scene.lights import RoomLights
 from hthor.world.rendering.scene.pose_sync import PoseSync
 from hthor.world.rendering.scene.scene_mesh import ABOVE, ALWAYS, INSIDE
+from hthor.world.rendering.viewpoint import Viewpoint
 
 CODE_PART = "pictures"
 
@@ -104,6 +105,15 @@ class OpenGLRenderer:
             place_above(eye, bounds)
         self._lamps.daylight(self._scene, ((x0 + x1) / 2, (y0 + y1) / 2), _ABOVE_M)
         return self._shoot("rgb", (round((x1 - x0) * pixels_per_metre), round((y1 - y0) * pixels_per_metre)))
+
+    def overview(self, moment: PoseSnapshot, viewpoint: Viewpoint, mode: str, size: tuple[int, int]) -> Any:
+        """The house without ceilings from any viewpoint: rgb or depth."""
+        self._pose(moment)
+        self._compose(ABOVE)
+        for eye in self._scene.camera:
+            place_at_viewpoint(eye, viewpoint, size)
+        self._lamps.daylight(self._scene, viewpoint.target[:2], _ABOVE_M)
+        return self._shoot(mode, size)
 
     def _pose(self, moment: PoseSnapshot, without: str = "") -> None:
         """Put everything where it was at ``moment``, and the body ``without`` far away."""
@@ -187,7 +197,16 @@ def _free(gl: Any, context: Any) -> None:
 def place_at_eye(camera: Any, pose: Pose, spec: BodySpec, lens: Vec2) -> None:
     """Put the camera where the body's eye is; ``lens`` are the tangents of half its fields of view."""
     view = view_frustum.view_vector(pose, spec)
-    camera.pos, camera.forward, camera.up = view[:3], view[3:6], view[9:12]
+    _place(camera, view[:3], view[3:12].reshape(3, 3), lens)
+
+
+def place_at_viewpoint(camera: Any, viewpoint: Viewpoint, size: tuple[int, int]) -> None:
+    """Put the camera at a viewpoint, for pictures of ``size`` (width, height)."""
+    _place(camera, viewpoint.eye, viewpoint.axes, viewpoint.tangents(size))
+
+
+def _place(camera: Any, eye: Any, axes: Any, lens: Vec2) -> None:
+    camera.pos, camera.forward, camera.up = eye, axes[0], axes[2]
     camera.orthographic, camera.frustum_center = 0, 0.0
     camera.frustum_near, camera.frustum_far = _NEAR_M, _FAR_M
     top = _NEAR_M * lens[1]

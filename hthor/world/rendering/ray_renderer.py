@@ -20,11 +20,14 @@ from hthor.world.model.engine import mujoco
 from hthor.world.model.geom_index import GeomIndex
 from hthor.world.rendering import camera, rasterizer, shading
 from hthor.world.rendering.camera import Images, PoseSnapshot
+from hthor.world.rendering.viewpoint import Viewpoint
 
 CODE_PART = "pictures"
 
 _CLEAR = 0.5
 """[0..1] Solids less opaque than this are transparent: they tint colours but are not in depth and segmentation."""
+LOW_WALL_M = 1.0
+"""[m] Height at which walls are cut in overviews, so that they hide little of what is behind them."""
 _HIDDEN_GROUP = 5
 _UNSET = (0.5, 0.5, 0.5, 1.0)
 """The engine's default colour; a geom with it has the colour of its material."""
@@ -56,6 +59,7 @@ class RayRenderer:
         order = np.argsort(-self._radius, kind="stable")
         self._solid, self._glass = order[(shown & ~clear)[order]], order[(shown & clear)[order]]
         self._roofless = self._solid[model.geom_group[self._solid] != geoms.CEILINGS]
+        self._walls = np.flatnonzero(model.geom_group == geoms.WALLS)
 
     def look(self, moment: PoseSnapshot, seat: str, size: tuple[int, int], by: CameraSpec = camera.OWN) -> Images:
         """All three pictures of the camera of ``seat``, without its own body."""
@@ -80,6 +84,26 @@ class RayRenderer:
         w, hit = _blank(view, size)
         self._draw(view, self._roofless, w, hit)
         return self._shade(view, w, hit)
+
+    def overview(self, moment: PoseSnapshot, viewpoint: Viewpoint, mode: str, size: tuple[int, int]) -> Any:
+        """The house without ceilings and with low walls from any viewpoint: rgb or depth."""
+        self._pose(moment, "")
+        view = viewpoint.vector(size)
+        w, hit = _blank(view, size)
+        half, pos = self._half.copy(), self._pos.copy()
+        foot, top = pos[self._walls, 2] - half[self._walls, 2], pos[self._walls, 2] + half[self._walls, 2]
+        top = np.minimum(top, LOW_WALL_M)
+        half[self._walls, 2], pos[self._walls, 2] = (top - foot) / 2, (top + foot) / 2
+        shown = self._roofless[~np.isin(self._roofless, self._walls[top <= foot])]
+        rasterizer.fill(view, shown, self._shape, half, self._radius, pos, self._mat, w, hit)
+        if mode == "depth":
+            return _depth(w)
+        none = np.full_like(hit, -1)
+        out = np.empty((*w.shape, 3), np.uint8)
+        shading.shade(
+            view, w, hit, none, self._shape, half, pos, self._mat, self._rgba, self._skin, self._grain, self._noise, out
+        )
+        return out
 
     def _fill(self, moment: PoseSnapshot, seat: str, size: tuple[int, int], by: CameraSpec) -> tuple[Any, Any, Any]:
         self._pose(moment, seat)

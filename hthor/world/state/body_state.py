@@ -1,7 +1,7 @@
 """The state of each body in an episode: its pose, motion, held object and room."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from typing import Protocol
 
 from hthor.errors import UnknownName
@@ -10,6 +10,7 @@ from hthor.houses.space.free_space import FreeSpace
 from hthor.types import BodySpec, Drive, HouseSpec, Outcome, Pose, Vec2, Vec3, is_person
 from hthor.types.events import Event
 from hthor.world.records import ActivityState, Driving
+from hthor.world.state.movable_object import MovableObject
 
 _ROUNDING_M = 1e-9
 """[m] Safety margin against rounding on the distance within which a body cannot have left its room."""
@@ -44,6 +45,20 @@ class Driver(Protocol):
         """All that it needs to go on later."""
 
 
+class PushedThings(Protocol):
+    """The loose things on the floor; `hthor.world.motion.loose_things.LooseThings`."""
+
+    @property
+    def low(self) -> Collection[int]:
+        """Numbers of the objects that lie on the floor, or fall."""
+
+    def make_way(self, seat: "BodyState", step: Vec2, seconds: float = ...) -> bool:
+        """Push what is in the way of a step [m]; False if a body cannot make the step."""
+
+    def wedged(self, item: MovableObject) -> str:
+        """The seat of a body that an object, where it is now, is in and could not be pushed out of; empty for none."""
+
+
 class BodyState:
     """One body in an episode.
 
@@ -53,13 +68,15 @@ class BodyState:
         activity: the motion under way, None while idle. outcome: how the last motion ended.
         drive: the set-point that it drives by, None if it does not drive. has_neck: whether its head turns by itself.
         holding: id of the object in hand or held by a handle, empty for none.
+        loose: what it pushes, or is stopped by, on the floor; None for a body that never moves.
     """
 
-    __slots__ = ("activity", "drive", "has_neck", "holding", "name", "outcome", "pose", "space", "spec")
+    __slots__ = ("activity", "drive", "has_neck", "holding", "loose", "name", "outcome", "pose", "space", "spec")
 
     def __init__(self, name: str, spec: BodySpec, space: FreeSpace) -> None:
         self.name, self.spec, self.space = name, spec, space
         self.has_neck = is_person(name)
+        self.loose: PushedThings | None = None
         self.clear(Pose(x=0.0, y=0.0))
 
     def clear(self, pose: Pose) -> None:

@@ -10,8 +10,9 @@ from hthor.world.model.composer_env import LazyComposerEnv, QPose
 from hthor.world.model.geom_index import GeomIndex
 from hthor.world.model.inventory import MovableSpec
 from hthor.world.records import ObjectRecord
+from hthor.world.state.bearer import bearer
 from hthor.world.state.movable_object import ABSENT_POSITION, MovableObject
-from hthor.world.state.overlap_test import FLOOR, OverlapTest
+from hthor.world.state.overlap_test import OverlapTest
 from hthor.world.state.support_surfaces import SupportSurface, SupportSurfaces
 
 
@@ -22,6 +23,7 @@ class Objects:
         changes: grows whenever any object's position, holder or support changes. roster: grows whenever an object may
             have entered or left the episode.
         positions: (N, 3) float64 [m], the objects' centres. present: (N,) bool, which objects are in the episode.
+        low: numbers of the objects that lie or roll on the floor, lie on others there, or fall.
     """
 
     def __init__(
@@ -45,6 +47,7 @@ class Objects:
         self._ghosts: set[str] = set()
         self._loose: set[int] = set()
         self._news: set[int] = set()
+        self.low: set[int] = set()
         self.changes = self.roster = 0
 
     def __iter__(self) -> Iterator[MovableObject]:
@@ -64,11 +67,29 @@ class Objects:
         news, self._news = self._news, set()
         return [self._list[number] for number in sorted(news)]
 
+    def _moving(self) -> list[MovableObject]:
+        """The objects, in no hand, that the engine may have moved in the last tick; by id."""
+        awake = np.flatnonzero(self._env.asleep[self._trees] < 0).tolist() if len(self._trees) else []
+        items = (self._list[number] for number in sorted({*awake, *self._loose}))
+        return [item for item in items if item.present and not item.held_by]
+
+    def shove(self, item: MovableObject, pose: QPose, velocity: Sequence[float]) -> None:
+        """Put an object that nobody holds at ``pose``, with a velocity (6,) [m/s, rad/s]; call the engine's `touch`
+        after the last.
+        """
+        data = self._env.data
+        data.qpos[item.qpos : item.qpos + 7] = pose
+        data.qvel[item.dof : item.dof + 6] = velocity
+        self._read(item, pose)
+        self._loose.add(item.number)
+        self.changes += 1
+
     def reset(self, starts: Mapping[str, tuple[Vec3, float, str]]) -> None:
         """Begin an episode after a reset of the engine; ``starts`` maps id -> (position [m], yaw [rad], support)."""
         for id in sorted(self._ghosts):
             self._collide(self._items[id], True)
         self._loose.clear()
+        self.low.clear()
         self.positions[:], self.present[:] = ABSENT_POSITION, False
         for item in self._list:
             item.clear()
@@ -79,6 +100,8 @@ class Objects:
                 home = self._homes.get(item.id)
                 beneath = self._beneath[item.id] if home == position else self._below(item)
                 item.support = beneath or support
+                if not beneath:
+                    self._sort(item)
         self._geoms.hide_all_but(())
         self._news.update(range(len(self._list)))
         self.changes += 1
@@ -90,6 +113,7 @@ class Objects:
         item.held_by, item.support = seat, ""
         self._news.add(item.number)
         self._loose.discard(item.number)
+        self.low.discard(item.number)
         self._collide(item, False)
         self._env.carry(item.tree, item.qpos, item.dof, hand)
         self._after_handling()
@@ -108,6 +132,8 @@ class Objects:
         item.held_by, item.support = "", support
         self._loose.add(item.number)
         self._read(item, pose)
+        if not support:
+            self._sort(item)
         self._collide(item, True)
         self._env.release(item.tree, pose)
         self._after_handling()
@@ -122,9 +148,16 @@ class Objects:
         data.qvel[item.dof : item.dof + 6] = (*velocity, 0.0, 0.0, 0.0)
         self._read(item, pose)
         item.support = self._below(item)
+        self._sort(item)
         self._env.touch()
         self.changes += 1
         self.roster += 1
+
+    def pose(self, id: str) -> QPose:
+        """The present pose of an object."""
+        at = self._items[id].qpos
+        x, y, z, w, i, j, k = self._env.data.qpos[at : at + 7].tolist()
+        return x, y, z, w, i, j, k
 
     def remove(self, id: str, parking: QPose) -> None:
         """Take an object that nobody holds out of the episode, to the pose ``parking``."""
@@ -134,6 +167,7 @@ class Objects:
         item.clear()
         self.positions[item.number], self.present[item.number] = ABSENT_POSITION, False
         self._loose.discard(item.number)
+        self.low.discard(item.number)
         self._news.add(item.number)
         self._env.touch()
         self.changes += 1
@@ -175,6 +209,7 @@ class Objects:
         for id in sorted(self._ghosts ^ ghosts):
             self._collide(self._items[id], id not in ghosts)
         self._loose.clear()
+        self.low.clear()
         self.positions[:], self.present[:] = ABSENT_POSITION, False
         for item in self._list:
             item.clear()
@@ -185,6 +220,8 @@ class Objects:
             self.positions[item.number], self.present[item.number] = item.position, True
             if record.loose:
                 self._loose.add(item.number)
+            if not item.held_by:
+                self._sort(item)
             if item.held_by:
                 self._env.carry(item.tree, item.qpos, item.dof, hand(item))
         self._news.update(range(len(self._list)))
@@ -218,44 +255,37 @@ class Objects:
                 self._loose.add(item.number)
         self.changes += 1
 
-    def settle(self) -> None:
-        """Read from the engine the objects that moved in the last tick, and find the support of those now at rest."""
-        awake = np.flatnonzero(self._env.asleep[self._trees] < 0).tolist() if len(self._trees) else []
-        for number in sorted({*awake, *self._loose}):
-            item = self._list[number]
-            if not item.present or item.held_by:
-                continue
+    def settle(self) -> list[tuple[MovableObject, Vec3]]:
+        """Read from the engine the objects that moved in the last tick, and find the support of those now at rest.
+
+        Returns:
+            the objects, by id, each with its position [m] before.
+        """
+        moved = [(item, item.position) for item in self._moving()]
+        for item, _ in moved:
             self._read(item, self._env.data.qpos[item.qpos : item.qpos + 7].tolist())
-            self._loose.add(number)
+            self._loose.add(item.number)
             if self._env.asleep[item.tree] >= 0:
-                self._loose.discard(number)
-                item.support = self._below(item) or self._bearer(item)
+                self._loose.discard(item.number)
+                item.support = self._below(item) or bearer(item, self.get, self._surfaces, self._overlap)
+            self._sort(item)
             self.changes += 1
+        return moved
 
     def _read(self, item: MovableObject, pose: Sequence[float]) -> None:
         item.at(pose)
         self.positions[item.number] = item.position
         self._news.add(item.number)
 
+    def _sort(self, item: MovableObject) -> None:
+        """Note whether the object is low: at rest on no furniture, dropped or thrown and not yet at rest, or moving and
+        no longer above a surface of furniture.
+        """
+        borne = item.support and (item.number not in self._loose or self._below(item))
+        (self.low.discard if borne else self.low.add)(item.number)
+
     def _below(self, item: MovableObject) -> str:
         return self._surfaces.support(item.position, item.size[2])
-
-    def _bearer(self, item: MovableObject, above: tuple[str, ...] = ()) -> str:
-        """The support of an object at rest whose middle is over no surface because it leans or lies across an edge.
-
-        ``above`` are the objects on top of it whose support is being searched for.
-        """
-        for owner in self._overlap.touched(item):
-            other = self.get(owner)
-            if owner == FLOOR:
-                return ""
-            if other is None and self._surfaces.of(owner):
-                return owner
-            if other is not None and owner not in above:
-                found = self._below(other) or self._bearer(other, (*above, item.id))
-                if found:
-                    return found
-        return ""
 
     def _collide(self, item: MovableObject, on: bool) -> None:
         bits = geom_bits.MOVABLE if on else geom_bits.GHOST

@@ -57,6 +57,20 @@ class OverlapTest:
                     return str(index.owner[other])
         return ""
 
+    def depths(self, item: MovableObject, deep: float) -> dict[str, float]:
+        """Owners of the solids that the object overlaps by more than ``deep`` [m] where its shapes are now, and by how
+        much; the floor is not among them.
+        """
+        model, data = self._env.model, self._env.data
+        found: dict[str, float] = {}
+        for geom in range(item.geoms.start, item.geoms.stop):
+            for other in self._near(item, geom):
+                over = -float(mujoco.mj_geomDistance(model, data, geom, other, 1.0, None))
+                if over > deep:
+                    owner = str(self._geoms.owner[other])
+                    found[owner] = max(over, found.get(owner, 0.0))
+        return found
+
     def _near(self, item: MovableObject, geom: int, gap: float = 0.0) -> list[int]:
         """Solids of other owners whose bounding spheres are within ``gap`` [m] of that of solid ``geom``."""
         model, data, radius = self._env.model, self._env.data, self._geoms.radius

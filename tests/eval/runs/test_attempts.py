@@ -139,7 +139,7 @@ def test_who_reads_a_run_reads_what_counts(disturbed: RunFolder, tmp_path: Path)
     assert (compared.pairs[0].n, compared.pairs[0].dropped) == (COUNT, (0, 0)), "an attempt has its partner"
     assert [one.voided for one in compared.runs] == [msgspec.UNSET, 2]
     (read,) = load_runs.load_runs([disturbed.path])
-    assert (len(read.records), read.voided) == (COUNT, 2)
+    assert (len(read.records), len(read.voided)) == (COUNT, 2)
     logged = _logged_trials.read_logged_trials(str(disturbed.path))
     assert [len(own) for own in logged.values()] == [10, 10]
     assert all(trial.spec.attempt == 2 for trial in logged[0] if trial.spec.index == 2)

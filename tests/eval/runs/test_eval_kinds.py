@@ -68,7 +68,7 @@ def test_what_does_not_fit_is_told(suite: str, kind: str, told: str):
     assert told in str(caught.value)
 
 
-@pytest.mark.parametrize("name", ["navigation", "manipulation", "collect", "rearrange", "tidy", "carry"])
+@pytest.mark.parametrize("name", ["navigation", "manipulation", "collect", "rearrange", "tidy", "carry", "vln"])
 def test_a_kind_with_a_suite_of_its_own_needs_no_other(name: str):
     if name not in tasks.suite_names():
         pytest.skip(f"no suite '{name}' yet")

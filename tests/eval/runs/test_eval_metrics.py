@@ -457,6 +457,7 @@ def test_somebody_who_is_absent_changes_only_what_is_shared_by_all():
         TWO, shared(*rows, idle={HUMAN: 40, SECOND: 900}, ratings={HUMAN: 4, SECOND: None}, met=True, journal=NEW)
     )
     shares = {"adoption": 0.5, "idle_s": 47.0, "hindered_s": alone.hindered_s / 2}
+    shares |= {"panel_shown_s": (alone.panel_shown_s + 89.0) / 2, "map_shown_s": alone.map_shown_s / 2}
     for metric in registry.SINGLE:
         wanted = shares.get(metric.name, alone[metric.name])
         assert beside[metric.name] == wanted, metric.name
@@ -470,3 +471,22 @@ def test_one_person_has_no_values_by_person():
     assert (line["adoption"], line["trust"], line["idle_s"]) == (0, 4, 0.9)
     trials = [make_record(trial, fakes.episode(trial)) for trial in fakes.run_of(10)[1][0].trials]
     assert "trust_by" not in msgspec.to_builtins(aggregate.estimate_metrics(trials))
+
+
+# ------------------------------------------------------------------------------------------------------------ displays
+
+
+def test_how_long_panel_and_map_were_shown():
+    """The panel from 4 to 6 s, hidden for the last half second of it; the map from 6 s on, without 20 to 50 s."""
+    events = [
+        (40, "robot", "sent", {"message": 0}),
+        (55, HUMAN, "displayed", {"what": "panel", "on": False, "message": 0}),
+        (60, HUMAN, "accepted", {"message": 0, "sender": "robot"}),
+        (200, HUMAN, "displayed", {"what": "map", "on": False, "message": 0}),
+        (500, HUMAN, "displayed", {"what": "map", "on": True, "message": 0}),
+    ]
+    shown = trial_metrics.measure(TRIAL, log(*events))
+    assert (shown["panel_shown_s"], shown["map_shown_s"]) == pytest.approx((1.5, 54.0))
+    silent = trial_metrics.measure(TRIAL, log())
+    assert (silent["panel_shown_s"], silent["map_shown_s"]) == (0.0, 0.0)
+    assert trial_metrics.measure(ALONE, log(paths={HUMAN: [(0, 0, 0)] * 451}))["map_shown_s"] is None

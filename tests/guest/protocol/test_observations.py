@@ -30,11 +30,15 @@ from hthor.types import (
     Briefing,
     Camera,
     Detection,
+    Display,
+    DisplayMap,
     Drive,
     Job,
+    MapBody,
     Message,
     Observation,
     Outcome,
+    PhaseBriefing,
     Pose,
     Receipt,
     Scan,
@@ -75,7 +79,7 @@ class AllSenses:
 
 
 def trial() -> tuple[Briefing, list[Observation]]:
-    """Two people, mail of every kind, a head that looks aside, hands that are busy, and the truth."""
+    """A tour, two people, mail of every kind, a head that looks aside, hands that are busy, and the truth."""
     bodies = dict.fromkeys(("human", "human2", "robot", "robot2"), BRIEFING.body)
     briefing = msgspec.structs.replace(
         BRIEFING,
@@ -84,17 +88,20 @@ def trial() -> tuple[Briefing, list[Observation]]:
         house=houses.load("alder"),
         privileges=mirror_agent.Agent.privileges,
         kind="collect",
-        jobs=(Job(target="apple", relation="on", destinations=("table", "desk")),),
+        jobs=(Job(target="apple", relation="on", destinations=("table", "desk")), Job(target="mug", relation="back")),
+        phases=(PhaseBriefing(name="tour", instruction="Look around.", time_limit=60.0),),
     )
     question = Message(id=4, sender="human2", tick=3, text="Where is the mug?", object="mug", to="robot", question=True)
     answer = Message(id=5, sender="human", tick=4, text="In the kitchen.", position=(1.0, 2.0, 0.8), answers=1)
     picture = Message(id=6, sender="robot2", tick=4, text="Look.", image=lambda: np.full((2, 2, 3), 7, np.uint8))
     more: list[dict[str, Any]] = [
-        {"pose": HEAD},
+        {"pose": HEAD, "phase": "tour"},
         {"inbox": (question,), "receipt": Receipt(message=1, status="shown", tick=4, by="human2")},
         {"inbox": (question, answer, picture), "receipt": Receipt(message=1, status="answered", tick=5, yes=False)},
         {"outcome": Outcome(motion="drive", ok=True), "idle": False, "holding": "mug", "room": "room|1"},
         {"truth": (ThingState(id="mug", kind="mug", position=(1.0, 2.0, 0.9), held_by="human2", bearers=("human",)),)},
+        {"phase": "tour"},
+        {"display": Display(message=answer, map=DisplayMap(bodies=(MapBody(seat="robot", forward=1.0, left=-2.0),)))},
     ]
     senses: Any = AllSenses()
     plain = Observation(tick=0, pose=Pose(x=1.0, y=2.0), idle=True, senses=senses)

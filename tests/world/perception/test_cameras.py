@@ -18,7 +18,7 @@ from hthor import jsonio, plugins
 from hthor.console import completion
 from hthor.errors import HthorError, UnknownName
 from hthor.eval.config import cli_command, robot_team, run_config, sessions, task_selection
-from hthor.eval.runner import run_options
+from hthor.eval.runner import run_options, run_teams
 from hthor.guest.host.info import GuestConfig
 from hthor.leaderboard.entries import overrides
 from hthor.types import Pose, RobotSeat, cameras
@@ -177,7 +177,7 @@ def test_every_trial_s_key_knows_the_camera() -> None:
 @pytest.mark.slow
 def test_the_options_reach_the_seats() -> None:
     options = run_options.RunOptions(agents=("frontier",), camera="thor", camera_size="32x32")
-    (team,) = run_options._teams(options, task_selection.select_tasks("smoke", ""), GuestConfig())
+    (team,) = run_teams.choose_teams(options, task_selection.select_tasks("smoke", ""), GuestConfig())
     assert [seat.camera for seat in team.seats] == ["thor:32x32"]
     (team,) = robot_team.parse_teams("tall:oracle,small:frontier", (), camera="square")
     assert [seat.camera for seat in team.seats] == ["square", "square"]

@@ -95,9 +95,12 @@ class Passing:
 
     def _pass(self, observation: Observation, people: Mapping[str, Vec2], goal: Vec2, most_m: float) -> Motion | None:
         """The next motion round people, without turning; None when there is no path of at most ``most_m`` [m]."""
-        here = (observation.pose.x, observation.pose.y)
-        if self._around.done or self._is_blocked((here, *self._around.rest), people):
-            self._around.take(self.routes.past(here, goal, self._discs(people), most_m))
+        here, outcome = (observation.pose.x, observation.pose.y), observation.outcome
+        stopped = outcome is not None and not outcome.ok and outcome.motion == "move"  # by furniture, at a tight corner
+        if stopped or self._around.done or self._is_blocked((here, *self._around.rest), people):
+            start = self.routes.loose(here) if stopped else here
+            way = self.routes.past(start, goal, self._discs(people), most_m)
+            self._around.take((start, *way) if way and stopped else way)
         motion = self._around.next(observation.pose)
         self._passes = motion is not None
         return motion

@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 
 from hthor.agents.skills.task_allocation import seat_order
-from hthor.agents.skills.viewpoints import Routes, keeps_clear
+from hthor.agents.skills.viewpoints import Routes, keeps_clear, path_length
 from hthor.geometry.plane import turn
 from hthor.navigation.path_follower import shift
 from hthor.types import Briefing, Motion, Move, Observation, Vec2, Wait, is_person
@@ -14,6 +14,10 @@ _YIELD_S, _REST_S = 3.0, 2.0
 _STEP_M = 0.4
 _ELBOW_M = 0.45
 _BESIDE_M = 0.15
+_DETOUR_M = 4.0
+"""A path round another body may be this much longer than without that body [m]."""
+_STARTS = 6
+"""How many places beside the other body a path round it may begin with."""
 _STILL_M = 0.02
 """Whoever has moved less than this between two looks stands still [m]."""
 _SIDEWAYS = 1.5
@@ -46,7 +50,7 @@ class Yielding:
         """A step out of the way, or None to carry on."""
         seconds = observation.tick * self.tick_s
         by = seat_bumped(observation)
-        if by and not is_person(by) and self._precedence(by) < self._precedence(self.seat) and seconds >= self._rest:
+        if by and not is_person(by) and self._goes_first(by) and seconds >= self._rest:
             self._until, self._rest = seconds + _YIELD_S, seconds + _YIELD_S + _REST_S
         if seconds >= self._until:
             return None
@@ -58,16 +62,17 @@ class Yielding:
         return Wait(seconds=0.3) if aside is None else shift(observation.pose, aside, _STEP_M)
 
     def give_way(self, observation: Observation, places: Mapping[str, Vec2]) -> Motion | None:
-        """A step away from a robot that moves close by, for a robot without a job; None if none does or no step helps.
+        """A step away from a robot close by that moves, or that has an arm and so may have work here.
 
-        ``places`` are the positions of the other robots [m].
+        For a robot without a job; None if there is no such robot or no step helps. ``places`` are the positions of the
+        other robots [m].
         """
         here, was, self._were = _here(observation), self._were, dict(places)
         if seat_bumped(observation):
             return None
         for seat in sorted(places, key=seat_order):
-            moves = seat not in was or math.dist(was[seat], places[seat]) > _STILL_M
-            if seat != self.seat and not is_person(seat) and moves and math.dist(here, places[seat]) < self._room(seat):
+            works = seat not in was or math.dist(was[seat], places[seat]) > _STILL_M or self._goes_first(seat)
+            if seat != self.seat and not is_person(seat) and works and math.dist(here, places[seat]) < self._room(seat):
                 aside = self.aside(here, places[seat])
                 if aside is not None:
                     return shift(observation.pose, aside, _STEP_M)
@@ -84,6 +89,9 @@ class Yielding:
         share = self.touching(seat) / length
         return (observation.pose.x + share * self._along[0], observation.pose.y + share * self._along[1])
 
+    def _goes_first(self, seat: str) -> bool:
+        return self._precedence(seat) < self._precedence(self.seat)
+
     def _precedence(self, seat: str) -> tuple[bool, tuple[bool, int, str]]:
         body = self.bodies.get(seat)
         return (body is None or "pick" not in body.capabilities, seat_order(seat))
@@ -96,7 +104,7 @@ class Yielding:
         return self.touching(seat) + _ELBOW_M
 
     def around(self, observation: Observation, goal: Vec2) -> tuple[Vec2, ...]:
-        """A path to ``goal`` past the body that is in the way; () when there is none."""
+        """A path to ``goal`` that keeps out of the body in the way; () when it has to go away first."""
         here, by = _here(observation), seat_bumped(observation)
         other = self.place(observation, by)
         if other is None:
@@ -109,11 +117,12 @@ class Yielding:
             and self.routes.fits(here, spot)
             and keeps_clear(here, spot, other, apart - _BESIDE_M)
         ]
-        if not spots:
-            return ()
-        left = self.routes.lengths(goal, spots)
-        best = min(range(len(spots)), key=lambda k: (math.dist(here, spots[k]) + left[k], k))
-        return (spots[best], *self.routes.way(spots[best], goal)) if math.isfinite(left[best]) else ()
+        body, most = (*other, apart - _BESIDE_M), path_length(self.routes.way(here, goal)) + _DETOUR_M
+        for spot in sorted(spots, key=lambda spot: math.dist(here, spot))[:_STARTS]:
+            way = self.routes.past(spot, goal, [body], most)
+            if way:
+                return (spot, *way)
+        return ()
 
     def is_taken(self, observation: Observation, spot: Vec2) -> bool:
         """Whether the body that is in the way stands at this spot."""

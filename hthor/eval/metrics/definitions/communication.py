@@ -14,24 +14,29 @@ from hthor.comms import claims
 from hthor.episode import EpisodeLog
 from hthor.eval.metrics.metric import HIGHER, LOWER, SECONDS, SHARE, Metric, Trial
 from hthor.types import is_person
-from hthor.types.events import Accepted, Covered, Declined, Offer, Sent, Shown
+from hthor.types.events import Accepted, AdoptionJudged, Covered, Declined, Offer, Sent, Shown
 
 _End = Accepted | Declined | Covered
 _ENDS: tuple[type[_End], ...] = (Accepted, Declined, Covered)
 """The ends of a suggestion, the best first."""
 
 
-def adoption(trial: Trial) -> float:
-    """1 when the human accepted at least one robot message, else 0 (P); with several people, the share who did."""
+def adoption(trial: Trial) -> float | None:
+    """1 when the human accepted at least one robot message, else 0 (P); with several people, the share who did.
+
+    An event `adoption_judged`, which a correction adds, replaces what the log says, or leaves the person out.
+    """
     shares = adoption_by_person(trial)
-    return statistics.mean(map(int, shares.values()))
+    return statistics.mean(map(int, shares.values())) if shares else None
 
 
 def adoption_by_person(trial: Trial) -> dict[str, float]:
     """1 for each person who accepted at least one robot message, else 0; only with several people."""
     suggestions, answers = _suggestions(trial.log), _answers(trial.log, Accepted)
     accepting = {seat for seat, message in answers if message in suggestions}
-    return {seat: float(seat in accepting) for seat in trial.people}
+    found: dict[str, bool | None] = {seat: seat in accepting for seat in trial.people}
+    found |= {event.seat: event.adopted for event in trial.log.events if isinstance(event, AdoptionJudged)}
+    return {seat: float(adopted) for seat, adopted in found.items() if adopted is not None}
 
 
 def sent(trial: Trial) -> int:

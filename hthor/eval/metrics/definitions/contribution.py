@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from hthor.episode import EpisodeLog
 from hthor.eval.metrics.metric import SHARE, Metric, Trial
-from hthor.types import TrialSpec
+from hthor.types import WALKERS, TrialSpec
 from hthor.types.events import Closed, Dropped, Event, Lifted, Lowered, Opened, Picked, Placed, Progress, Success
 
 _FINISH = (Placed, Dropped, Lifted, Lowered, Opened, Closed)
@@ -31,7 +31,8 @@ def shares(spec: TrialSpec, log: EpisodeLog) -> Credit | None:
     - the openings before it of the furniture that the object was taken out of or put into.
 
     An action that several seats did together counts in equal parts for them. A find is credited to the person who saw
-    the target, and to the seat that opened its furniture. A fall of the progress takes back the latest credit.
+    the target, and to the seat that opened its furniture; a walk to the seat that walks. A fall of the progress takes
+    back the latest credit.
     """
     ledger: list[tuple[float, Credit]] = []
     for tick, rise, seer in _steps(spec, log):
@@ -75,6 +76,8 @@ def _credit(spec: TrialSpec, log: EpisodeLog, tick: int, seer: str) -> Credit:
     past = [event for event in log.events if event.tick <= tick]
     if all(job.relation == "find" for job in spec.task.goal.todo):
         parts = [(seer,), *_openers(past, [_start(spec, job.target) for job in spec.task.goal.todo])]
+    elif all(job.relation == "go" for job in spec.task.goal.todo):
+        parts = [(WALKERS[job.target],) for job in spec.task.goal.todo]
     else:
         parts = _chain(spec, past)
     credit: Credit = {}

@@ -129,7 +129,7 @@ def trial_limit_s(tasks: Sequence[TaskSpec], guests: int, step_limit_s: float | 
     Args:
         step_limit_s: the deadline of an action [s], None for the default.
     """
-    ticks = max((task.time_limit for task in tasks), default=0.0) / rules.TICK_S
+    ticks = max((task.longest for task in tasks), default=0.0) / rules.TICK_S
     return LIMIT_S + guests * (_GUEST_S + (max(_GUEST_STEP_S, step_limit_s or 0.0) + _SLACK_S) * ticks)
 
 

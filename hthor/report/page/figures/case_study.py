@@ -7,15 +7,20 @@ import string
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+import cv2
+import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from msgspec import Struct
 
 from hthor import rules
+from hthor.episode import task_part
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.report.drawing import floor_plan, text_fit, trial_figure, trial_legend, trial_trace
+from hthor.report.drawing.person_display.display_pictures import DisplayPictures
 from hthor.report.html import matplotlib_svg
-from hthor.report.page.camera_frames import Views
+from hthor.report.page import camera_frames
+from hthor.report.page.camera_frames import Seen
 from hthor.report.page.key_moments import MANY, Moment
 from hthor.types import HouseSpec, Vec2
 
@@ -27,21 +32,25 @@ _HEAD, _EDGES = 0.36, 0.5
 """Height of the words above each row, and of the space above and below all rows [in]."""
 _MAP_HIGH = 3.3
 """Height of a map at most [in]."""
+_DISPLAY = 0.42
+"""Height of a person's display below their view, as a share of the view's width."""
 _NEAR_M, _BESIDE_M = 0.5, 0.6
 _LETTER_PT, _BADGE_IN = 6.5, 0.12
 """Size of a letter on a badge [pt], and the badge's width besides its letters [in]."""
 _HEAD_PT, _TASK_PT, _EDGE_IN = 8.5, 9.0, 0.2
 """Size of the words above a row and above all rows [pt], and free space at their ends [in]."""
+_HEAD_LINES, _LINE = 3, 0.15
+"""Lines at most of the words above a row or above all rows, and the height of each line after the first [in]."""
 _CORNERS: tuple[Vec2, ...] = ((1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0))
 
 
 class Row(Struct, frozen=True, kw_only=True, eq=False):
-    """One robot's trial: its name, its key moments, and each seat's view at them."""
+    """One robot's trial: its name, its key moments, and what was seen at them."""
 
     label: str
     record: TrialRecord
     moments: Sequence[Moment]
-    views: Views
+    seen: Seen
 
 
 def case_study_figure(rows: Sequence[Row], house: HouseSpec) -> Figure:
@@ -50,30 +59,69 @@ def case_study_figure(rows: Sequence[Row], house: HouseSpec) -> Figure:
     deep = _MAP_WIDE * (max(ys) - min(ys) + 1.0) / (max(xs) - min(xs) + 0.7)
     deep = min(deep, _MAP_HIGH)
     seats = [list(row.record.paths) for row in rows]
-    highs = [max(deep, 0.75 * _VIEW_WIDE * len(held) + 0.2) + _HEAD for held in seats]
     wide = _MAP_WIDE + MANY * _VIEW_WIDE
+    heads = [_lines(_headline(row), wide, _HEAD_PT, bold=True) for row in rows]
+    task = _lines(_task(rows[0].record), wide, _TASK_PT)
+    highs = [
+        max(deep, _views_high(row) + 0.2) + _HEAD + _LINE * head.count("\n")
+        for row, head in zip(rows, heads, strict=True)
+    ]
     with matplotlib_svg.style():
-        made = matplotlib_svg.new_figure(sum(highs) + _EDGES, wide)
+        made = matplotlib_svg.new_figure(sum(highs) + _EDGES + _LINE * task.count("\n"), wide)
         made.set_facecolor("white")
         bands = made.subfigures(len(rows), 1, height_ratios=highs, squeeze=False)[:, 0]
-        for band, row, held in zip(bands, rows, seats, strict=True):
+        for band, row, held, head in zip(bands, rows, seats, heads, strict=True):
             band.set_facecolor("white")
-            grid = band.add_gridspec(len(held), MANY + 1, width_ratios=[_MAP_WIDE, *[_VIEW_WIDE] * MANY])
+            shown = DisplayPictures(row.record.log, row.seen.images)
+            grid = band.add_gridspec(
+                len(held),
+                MANY + 1,
+                width_ratios=[_MAP_WIDE, *[_VIEW_WIDE] * MANY],
+                height_ratios=[_view_high(seat, shown) for seat in held],
+            )
             _draw_map(band.add_subplot(grid[:, 0]), row, house)
             for column, moment in enumerate(row.moments):
                 for line, seat in enumerate(held):
-                    view = row.views[moment.tick][seat]
+                    view = _with_display(row.seen.views[moment.tick][seat], shown, seat, moment.tick)
                     ax = band.add_subplot(grid[line, column + 1])
                     ax.set_anchor("C" if len(held) == 1 else "S" if line == 0 else "N")
                     _draw_view(ax, view, seat, column, moment, first=line == 0)
-            words = text_fit.shorten(_headline(row), wide - _EDGE_IN, _HEAD_PT, bold=True)
-            band.suptitle(words, x=0.012, ha="left", fontsize=_HEAD_PT, weight="bold", color=matplotlib_svg.INK)
+            band.suptitle(head, x=0.012, ha="left", fontsize=_HEAD_PT, weight="bold", color=matplotlib_svg.INK)
         destined = bool(trial_trace.destinations(rows[0].record.spec, house))
         handles = _legend(rows, destined=destined)
         text_fit.legend(made, handles, len(handles), size=7.0, loc="outside lower left", columnspacing=1.4)
-        task = text_fit.shorten(_task(rows[0].record), wide - _EDGE_IN, _TASK_PT)
         made.suptitle(task, x=0.012, ha="left", fontsize=_TASK_PT, color=matplotlib_svg.INK)
     return made
+
+
+def _lines(words: str, wide: float, size: float, *, bold: bool = False) -> str:
+    """Words in up to `_HEAD_LINES` lines of the figure's width [in]; an ellipsis stands for those that do not fit."""
+    room = wide - 2 * _EDGE_IN
+    lines = text_fit.wrap(words, room, size, bold=bold)
+    rest = " ".join(lines[_HEAD_LINES - 1 :])
+    last = [text_fit.shorten(rest, room, size, bold=bold)] if rest else []
+    return "\n".join([*lines[: _HEAD_LINES - 1], *last])
+
+
+def _views_high(row: Row) -> float:
+    """Height of a column of views, one of each seat [in]."""
+    shown = DisplayPictures(row.record.log)
+    return sum(_view_high(seat, shown) for seat in row.record.paths)
+
+
+def _view_high(seat: str, displays: DisplayPictures) -> float:
+    """Height of a view [in], with the display below it if the seat's display showed anything."""
+    return _VIEW_WIDE * (0.75 + (_DISPLAY if seat in displays.people else 0.0))
+
+
+def _with_display(view: Any, displays: DisplayPictures, seat: str, tick: int) -> Any:
+    """A view with panel and map below it, if the seat's display showed anything in the trial."""
+    if seat not in displays.people:
+        return view
+    wide, high = camera_frames.SIZE[0], round(_DISPLAY * camera_frames.SIZE[0])
+    strip = displays.strip(seat, tick, wide, high)
+    share = view.shape[1] / wide
+    return np.vstack([view, strip if share == 1.0 else cv2.resize(strip, None, fx=share, fy=share)])
 
 
 def _draw_map(ax: Axes, row: Row, house: HouseSpec) -> None:
@@ -158,7 +206,7 @@ def _badge(seat: str) -> dict[str, Any]:
 
 
 def _headline(row: Row) -> str:
-    record, seconds = row.record, row.record.ticks * rules.TICK_S
+    record, seconds = row.record, task_part(row.record.log).ticks * rules.TICK_S
     end = f"done in {seconds:.1f} s" if record.met else f"not done in {seconds:.0f} s"
     sent = trial_trace.messages(record.log)
     failed = [

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from hthor.eval.comparison.compare import Comparison
+from hthor.eval.comparison.comparison import Comparison
 from hthor.eval.metrics import registry
 from hthor.eval.results import result_file
 from hthor.report.analysis.document import Arm, Findings

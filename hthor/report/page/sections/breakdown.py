@@ -75,7 +75,7 @@ def _made(
             own = gains.get(group.name, {})
             rows.append([group.name, *rates, *(table_cells.difference(own.get(one), success) for one in helped)])
     long = any(len(one.groups) > _LONG for one in held)
-    told = "Success rates [%]" + (", and gains over no robot [points], trial by trial" if helped else "")
+    told = "Success rates [%]" + (", and gains over no robot [points]" if helped else "")
     table = elements.table(head, rows, f"{told}. {table_cells.NOTE}")
     return [
         *(elements.paragraph(text) for text in said if text),

@@ -8,6 +8,7 @@ from hthor.report.analysis.document import Findings
 from hthor.report.analysis.run_provenance import Platform, Provenance
 from hthor.report.html import elements
 from hthor.report.html.elements import Code, Piece
+from hthor.report.terminal import corrections
 
 
 def parts(found: Findings, _: Mapping[str, str]) -> list[str]:
@@ -26,9 +27,30 @@ def parts(found: Findings, _: Mapping[str, str]) -> list[str]:
         )
         if beside
         else "",
+        *_corrections(found),
         elements.paragraph(f"The commands that play these runs again{_own(found)}:"),
         elements.block("\n".join(one.command for one in found.origins)),
     ]
+
+
+def _corrections(found: Findings) -> list[str]:
+    """The corrections of all runs, if there are any."""
+    rows = [
+        (
+            one.name,
+            str(each.correction.number),
+            f"{each.task}, session {each.session}, trial {each.index + 1}",
+            corrections.correction_words(each.correction),
+            each.correction.reason,
+            ", ".join(part for part in (each.correction.by, each.correction.date) if part),
+        )
+        for one in found.origins
+        for each in one.corrections
+    ]
+    if not rows:
+        return []
+    said = "Corrections: what people found out about trials afterwards. All numbers follow them; logs do not change."
+    return [elements.table(("run", "no.", "trial", "correction", "reason", "by"), rows, said, words=range(6))]
 
 
 def _own(found: Findings) -> str:
@@ -82,7 +104,8 @@ def _people(one: Provenance) -> str:
     drawn = f" out of the population {one.humans.population}" if one.humans.population else ""
     each = len(one.humans.members)
     together = f", {each} in each trial" if each > 1 else ""
-    return f"{one.participants} {one.humans.name}{drawn}, model {one.humans.model}{together}"
+    group = f"; a group of a study: {one.design.study}" if one.design else ""
+    return f"{one.participants} {one.humans.name}{drawn}, model {one.humans.model}{together}{group}"
 
 
 def _versions(one: Provenance) -> str:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 
-from hthor.eval.comparison.compare import Comparison
+from hthor.eval.comparison.comparison import Comparison
 from hthor.eval.metrics import registry
 from hthor.eval.results import result_file
 from hthor.report.analysis.document import Findings
@@ -14,10 +14,10 @@ _PUBLISHED = {"none": "no robot", "frontier": "frontier", "oracle": "oracle"}
 _SHORT = 24
 """Names up to this long stand in one line."""
 _COLUMNS = (
-    "Below: n, the trials that both runs share, and mde, the smallest true difference that these would have seen in "
-    "four of five cases. Won: only the robot that is named first succeeded; lost: only the other; with the exact "
-    "McNemar test of that. Tied: both succeeded, or neither did. p (Holm): two-sided, of no difference in success, "
-    "adjusted for all comparisons here."
+    "Below: n, the trials that both runs share (or have together, where their people differ), and mde, the smallest "
+    "true difference that these would have seen in four of five cases. Won: only the robot that is named first "
+    "succeeded; lost: only the other; with the exact McNemar test of that. Tied: both succeeded, or neither did. "
+    "p (Holm): two-sided, of no difference in success, adjusted for all comparisons here."
 )
 _PAIR_HEAD = ("", *(registry.get(name).gain for name in result_file.UPLIFT_METRICS), "won : lost", "tied", "p (Holm)")
 
@@ -72,8 +72,7 @@ def comparison(found: Findings, drawings: Mapping[str, str]) -> list[str]:
         elements.drawn(
             drawings,
             "compared",
-            "Differences trial by trial: the same people with the same task at the same point of the session. Right of "
-            f"the line the robot that is named first is better. Bars: {_bars(found)}.",
+            f"{_compared(found)} Right of the line the robot that is named first is better. Bars: {_bars(found)}.",
         ),
         elements.table(
             _PAIR_HEAD,
@@ -82,6 +81,16 @@ def comparison(found: Findings, drawings: Mapping[str, str]) -> list[str]:
         ),
         *apart,
     ]
+
+
+def _compared(found: Findings) -> str:
+    """What is compared with what."""
+    if any(pair.groups_of for pair in found.comparisons):
+        return (
+            "Differences between groups of a between-subjects study: each robot met other people, who did the same "
+            "tasks, so that no trial has a partner."
+        )
+    return "Differences trial by trial: the same people with the same task at the same point of the session."
 
 
 def _among(found: Findings) -> int:
@@ -106,7 +115,7 @@ def _intervals(found: Findings) -> str:
 
 def _pair_row(pair: Comparison) -> list[Piece]:
     only = pair.mcnemar
-    told = f"p {'' if only.p < 0.001 else '= '}{table_cells.p_value(only.p)}"
+    told = "" if only is None else f"p {'' if only.p < 0.001 else '= '}{table_cells.p_value(only.p)}"
     name = f"{pair.second} − {pair.first}"
     return [
         name.replace(" ", "\u00a0") if len(name) <= _SHORT else name,
@@ -114,7 +123,7 @@ def _pair_row(pair: Comparison) -> list[Piece]:
             table_cells.difference(pair.success if name == "sr" else pair.differences.get(name), registry.get(name))
             for name in result_file.UPLIFT_METRICS
         ),
-        Value(f"{only.only_second} : {only.only_first}", "", told),
-        str(pair.n - only.only_first - only.only_second),
+        Value("–" if only is None else f"{only.only_second} : {only.only_first}", "", told),
+        "–" if only is None else str(pair.n - only.only_first - only.only_second),
         table_cells.p_value(pair.p_holm),
     ]

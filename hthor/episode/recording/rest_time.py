@@ -22,6 +22,11 @@ class RestTime:
             self._ticks[seat] += tick - since
         self._since[seat] = None if not resting else tick if since is None else since
 
+    def restart(self, tick: int) -> None:
+        """Begin to count at this tick, as if nobody had rested before."""
+        self._ticks = dict.fromkeys(self._ticks, 0)
+        self._since = {seat: None if since is None else tick for seat, since in self._since.items()}
+
     def note_motion(self, tick: int, seat: str, motion: Motion, *, started: bool) -> None:
         """Note a motion that begins; ``started`` is false if the body is still free: refused, or a `Drive`."""
         if isinstance(motion, Drive):

@@ -5,8 +5,8 @@ from collections.abc import Mapping, Sequence
 from msgspec import Struct
 
 from hthor import rules
-from hthor.episode.episode_log import EpisodeLog, Fault
-from hthor.episode.rest_time import RestState, RestTime
+from hthor.episode.recording.episode_log import EpisodeLog, Fault
+from hthor.episode.recording.rest_time import RestState, RestTime
 from hthor.episode.trial_world import TrialWorld
 from hthor.humans.core.behaviour_log import BehaviourRecorder, RecorderState
 from hthor.types import HUMAN, BodySpec, Motion, Pose, is_person

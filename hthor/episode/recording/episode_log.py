@@ -21,13 +21,13 @@ class EpisodeLog(Struct, frozen=True, kw_only=True):
         events: what happened, in order; docs/logs.md lists the kinds of events.
         paths: for each seat, (x, y, yaw) every `rules.LOG_EVERY_TICKS` ticks from tick 0, house frame, in whole
             millimetres and milliradians.
-        ticks: the trial's length.
+        ticks: the trial's length, with all its phases; `hthor.episode.task_part` is the task itself.
         met: whether the goal was met.
         ratings: each person's rating of trust in the robots, 1 to 7, by seat; None without a robot.
         faults: failures of agents.
         progress: the share of the goal that is met at the end, from 0 to 1; None for task kinds without partial goals.
             Every change of it is an event "progress" with the new ``value``.
-        idle: for how many ticks each seat's body carried out no motion, or only waited.
+        idle: for how many ticks of the task itself each seat's body carried out no motion, or only waited.
         journal: entries from the human's recorder and model: stick, pitch, attempts, glimpses and choices, see
             `hthor.types.events.journal`.
     """

@@ -5,20 +5,17 @@ call. A trial, in which all bodies act at once, uses `hthor.world.simulation.Sim
 """
 
 import math
-from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hthor import rules
-from hthor.errors import HthorError
 from hthor.geometry import plane
 from hthor.types import (
     BodySpec,
     Close,
     Detection,
     Drop,
-    Message,
     Motion,
     Move,
     Open,
@@ -26,20 +23,15 @@ from hthor.types import (
     Pick,
     Place,
     Pose,
-    Receipt,
-    Reply,
     Rotate,
     Scan,
-    Send,
     Vec2,
     Vec3,
     View,
     Wait,
-    is_person,
 )
-from hthor.types.events import Event, Refused
 from hthor.world import numbers, walk_to
-from hthor.world.interactive_simulation import InteractiveSimulation
+from hthor.world.actor.seat_messages import SeatMessages
 from hthor.world.rendering.lazy_images import Size
 
 _EPS = 1e-9
@@ -49,15 +41,12 @@ MOVE_CALL_MAX_M = 1000.0
 """[m] The longest distance of one call of `Actor.move`."""
 
 
-class Actor:
+class Actor(SeatMessages):
     """One seat of a `World`: the person, or a robot.
 
     Calls that move return the `Outcome`: ``ok``, or the ``reason`` of the failure. A motion that the house or a rule
     forbids never raises; wrong arguments do, such as a name that does not exist.
     """
-
-    def __init__(self, world: InteractiveSimulation, seat: str) -> None:
-        self._world, self.seat = world, seat
 
     def __repr__(self) -> str:
         pose = self.pose
@@ -226,62 +215,3 @@ class Actor:
     def scan(self) -> Scan:
         """Ranges to walls, furniture and shut doors, which would stop this body."""
         return self._world.scan(self.seat)
-
-    # ----------------------------------------------------------------------------------------------- communication
-
-    def send(
-        self,
-        text: str,
-        object: str = "",
-        position: Vec3 | None = None,
-        *,
-        to: str = "",
-        question: bool = False,
-        answers: int | None = None,
-    ) -> Receipt:
-        """Send a message; a robot's has an image, its own view now.
-
-        Args:
-            text: its words. object: id or kind of the thing it is about. position: [m] where the sender believes it is.
-            to, question, answers: as in `hthor.types.Send`.
-
-        Raises:
-            HthorError: when this seat may not send that, or an argument is invalid.
-        """
-        world = self._world
-        send = Send(text=text, object=object, position=position, to=to, question=question, answers=answers)
-        image = None if is_person(self.seat) else world.frame(self.seat)
-        self._post(world.mail.send(world.tick, self.seat, send, image))
-        receipt = world.mail.receipt(self.seat)
-        assert receipt is not None
-        return receipt
-
-    def inbox(self) -> tuple[Message, ...]:
-        """A person's open message; a robot's new messages and open questions. Reading sets their status to "shown"."""
-        messages = self._world.mail.inbox(self.seat)
-        if messages:
-            self._post(self._world.mail.shown(self._world.tick, self.seat))
-        return messages
-
-    def reply(self, accept: bool, message: int | None = None) -> None:
-        """Accept or decline a message: the one with number ``message``, or the open one if None.
-
-        Raises:
-            HthorError: when no message waits for an answer, or this seat may not reply.
-        """
-        if message is None:
-            waiting = self.inbox()
-            if not waiting:
-                raise HthorError(f"there is no message for {self.seat} to answer")
-            message = waiting[0].id
-        self._post(self._world.mail.reply(self._world.tick, self.seat, Reply(message=message, accept=accept)))
-
-    def receipt(self) -> Receipt | None:
-        """The latest status of this seat's last message, see `hthor.types.Receipt`; None before any."""
-        return self._world.mail.receipt(self.seat)
-
-    def _post(self, events: Iterable[Event]) -> None:
-        for event in events:
-            if isinstance(event, Refused):
-                raise HthorError(f"{self.seat}: {event.reason}")
-        self._world.note(events)

@@ -1,0 +1,1 @@
+"""What all videos share: the file, and words drawn into frames."""
