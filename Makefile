@@ -1,13 +1,14 @@
 # `make demo` runs the main job, `make test` checks the whole project. For work on hthor itself: `make fmt` formats,
-# `make check` is the quick check before a commit, `make docs` builds the documentation site in site/, `make bench` times
-# trials, physics and pictures. All of them make their own .venv with the pinned dependencies of constraints.txt.
+# `make check` is the quick check before a commit, `make nightly` runs the checks that take longer, `make docs` builds the
+# documentation site in site/, `make bench` times trials, physics and pictures. All of them make their own .venv with the
+# pinned dependencies of constraints.txt.
 
 PYTHON ?= $(shell for p in python3.12 python3.11 python3; do \
   $$p -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 12))' 2>/dev/null && { echo $$p; break; }; done)
 BIN := .venv/bin
 JOBS ?= $(shell nproc 2>/dev/null || echo 1)
 
-.PHONY: demo test check fmt lint docs bench install clean python
+.PHONY: demo test check nightly fmt lint docs bench install clean python
 
 demo: .venv/.installed
 	$(BIN)/hthor eval --agent none --agent frontier --agent oracle --humans proxy --suite smoke
@@ -19,11 +20,16 @@ test: lint
 check: lint
 	$(BIN)/pytest -q -n $(JOBS) --dist loadfile -m "not slow"
 
+# all parts, or one: make nightly PART=redteam
+nightly: .venv/.installed-dev
+	scripts/nightly.sh $(PART)
+
 lint: .venv/.installed-dev
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	@$(BIN)/python scripts/size_warnings.py
 
 fmt: .venv/.installed-dev
 	$(BIN)/ruff check --fix .
@@ -43,18 +49,19 @@ python:
 	  || { echo "hthor needs Python 3.11 or 3.12, and $(if $(PYTHON),$(PYTHON) is neither,none is on the PATH): install one, or name it: make demo PYTHON=/path/to/python3.12" >&2; exit 2; }
 
 .venv/bin/python: | python
-	$(PYTHON) -m venv .venv
+	@echo "Making .venv with $(PYTHON)"
+	@$(PYTHON) -m venv .venv
 
 .venv/.installed: pyproject.toml constraints.txt | .venv/bin/python
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e .
+	@$(BIN)/python scripts/install.py
 	@touch $@
 
 .venv/.installed-dev: pyproject.toml constraints.txt | .venv/bin/python
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[dev,calibration]'
+	@$(BIN)/python scripts/install.py dev calibration
 	@touch .venv/.installed $@
 
 .venv/.installed-docs: pyproject.toml constraints.txt | .venv/bin/python
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[docs]'
+	@$(BIN)/python scripts/install.py docs
 	@touch .venv/.installed $@
 
 clean:

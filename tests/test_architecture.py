@@ -1,10 +1,12 @@
-"""The shape of the house: no circles, few arrows, small files and folders, and words that are read once."""
+"""The shape of the package: no circles, few arrows, short functions, declared libraries, words that are read once."""
 
 from __future__ import annotations
 
 import ast
 import re
 import statistics
+import sys
+import tomllib
 from collections import defaultdict
 from collections.abc import Iterator
 from functools import cache
@@ -12,11 +14,14 @@ from pathlib import Path
 
 import grimp
 import pytest
+from packaging.requirements import Requirement
 
 PACKAGE = Path(__file__).resolve().parents[1] / "hthor"
 FILES = sorted(PACKAGE.rglob("*.py"))
 ROOMS = ("eval", "world", "humans", "calibration", "guest")
-MOST_ARROWS, MOST_FILES, MOST_LINES, MEDIAN_FUNCTION = 200, 14, 300, 10
+MOST_ARROWS, MEDIAN_FUNCTION = 200, 10
+DISTRIBUTIONS = {"cv2": "opencv-python-headless", "skimage": "scikit-image", "sklearn": "scikit-learn"}
+"""The name on PyPI of each library that is imported by another name."""
 PRIVATE_WORDS = (
     "anew",
     "but for",
@@ -93,15 +98,6 @@ def test_rooms_have_few_inner_arrows() -> None:
     assert sum(counts.values()) < MOST_ARROWS, counts
 
 
-def test_folders_and_files_are_small() -> None:
-    folders: dict[Path, int] = defaultdict(int)
-    for path in FILES:
-        folders[path.parent] += 1
-    assert not {str(folder) for folder, count in folders.items() if count > MOST_FILES}
-    lengths = {path: len(path.read_text(encoding="utf-8").splitlines()) for path in FILES}
-    assert not {str(path): count for path, count in lengths.items() if count > MOST_LINES}
-
-
 @pytest.mark.slow
 def test_the_median_function_is_short() -> None:
     trees = [ast.parse(path.read_text(encoding="utf-8")) for path in FILES]
@@ -128,3 +124,32 @@ def test_private_words_do_not_come_back() -> None:
         for match in pattern.finditer(" ".join(text.split()))
     ]
     assert not found
+
+
+def libraries(path: Path) -> Iterator[tuple[str, bool]]:
+    """The libraries that a module imports, by their names on PyPI, and whether it can be imported without them."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    late = {
+        node
+        for part in ast.walk(tree)
+        if isinstance(part, ast.FunctionDef | ast.If)  # `if TYPE_CHECKING`
+        for node in ast.walk(part)
+    }
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            names = [node.module or ""]
+        else:
+            continue
+        for name in {name.partition(".")[0] for name in names} - {"hthor"} - sys.stdlib_module_names:
+            yield DISTRIBUTIONS.get(name, name.replace("_", "-")), node in late
+
+
+def test_every_imported_library_is_declared() -> None:
+    project = tomllib.loads((PACKAGE.parent / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    core = {Requirement(line).name for line in project["dependencies"]}
+    extras = {Requirement(line).name for lines in project["optional-dependencies"].values() for line in lines}
+    imported = {(path.relative_to(PACKAGE), *library) for path in FILES for library in libraries(path)}
+    assert not {(path, name) for path, name, late in imported if name not in (core | extras if late else core)}
+    assert not core - {name for _, name, _ in imported}, "declared and never imported"

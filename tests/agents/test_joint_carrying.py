@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import msgspec
 import pytest
 import world_house as tiny
-from hypothesis import assume, given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 
 from hthor import plugins
@@ -121,6 +121,7 @@ def test_a_stand_is_free_floor_nearer_to_its_own_handle() -> None:
     a=st.tuples(st.floats(0.5, 9.5), st.floats(0.5, 3.5)),
     b=st.tuples(st.floats(0.5, 9.5), st.floats(0.5, 3.5)),
 )
+@example(x=1.03125, y=3.0, yaw=2.0, a=(1.0, 1.0), b=(2.0, 3.0))  # the shortest path has a bend beside the trunk
 @settings(max_examples=60, deadline=None)
 def test_a_route_round_the_trunk_keeps_off_it(x: float, y: float, yaw: float, a: Vec2, b: Vec2) -> None:
     around = RoutesAround(routes(), outline((x, y, HEIGHT_M), yaw))

@@ -65,10 +65,11 @@ class RoutesAround:
         points = (start, *way)
         blocked = [k for k, (a, b) in enumerate(itertools.pairwise(points)) if not self._keeps_clear(a, b)]
         if blocked:
-            first, last = points[blocked[0]], points[blocked[-1] + 1]
-            most = path_length(points[blocked[0] : blocked[-1] + 2]) + _DETOUR_M
-            round_it = self.past(first, last, (), most)
-            way = (*way[: blocked[0]], *round_it, *way[blocked[-1] + 1 :]) if round_it else ()
+            first, beyond = blocked[0], range(blocked[-1] + 1, len(points))
+            last = next((k for k in beyond if self._is_clear(points[k])), len(points) - 1)
+            most = path_length(points[first : last + 1]) + _DETOUR_M
+            round_it = self.past(points[first], points[last], (), most)
+            way = (*way[:first], *round_it, *way[last:]) if round_it else ()
         return (start, *way) if way and start != here else way
 
     def past(self, here: Vec2, goal: Vec2, discs: Sequence[Disc], most_m: float) -> tuple[Vec2, ...]:

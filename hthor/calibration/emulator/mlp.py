@@ -106,7 +106,7 @@ def single_thread() -> AbstractContextManager[Any]:
     """A context in which numerical libraries use one thread.
 
     Raises:
-        MissingExtra: without scikit-learn, which brings the library for this.
+        MissingExtra: without the extra `calibration`.
     """
     try:
         from threadpoolctl import threadpool_limits

@@ -198,7 +198,7 @@ def p_value(centre: float, variance: float, freedom: float) -> float:
     """Two-sided p of a mean of 0, by Student's t."""
     if variance <= 0.0:
         return 1.0 if centre == 0.0 else 0.0
-    from scipy import special  # comes with the core: scikit-image needs it
+    from scipy import special
 
     return float(f"{2.0 * float(special.stdtr(freedom, -abs(centre) / math.sqrt(variance))):.6g}")
 

@@ -137,7 +137,7 @@ def _inverse_worth(found: variance_components.MeanSpread, count: int, within: Ra
 
 def student_quantile(freedom: np.ndarray, level: float) -> np.ndarray:
     """The quantile of Student's t."""
-    from scipy import special  # comes with the core: scikit-image needs it
+    from scipy import special
 
     found: np.ndarray = special.stdtrit(freedom, level)
     return found

@@ -117,6 +117,6 @@ def _positive(what: str, **given: float) -> None:
 
 
 def _special() -> Any:
-    from scipy import special  # always installed, because scikit-image needs it
+    from scipy import special
 
     return special

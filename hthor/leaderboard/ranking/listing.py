@@ -166,7 +166,7 @@ def _checked(entry: Entry, kept: KeeperRecords) -> Checked | None:
 
 def group_duplicates(entries: Sequence[Entry], held: Sequence[Outcomes]) -> list[list[int]]:
     """Group entries that are one agent, by their indices; entries that are linked through others are in one group."""
-    from scipy.sparse import csgraph  # installed with the core, because scikit-image needs it
+    from scipy.sparse import csgraph
 
     alike = np.zeros((len(entries), len(entries)), dtype=bool)
     for one, other in itertools.combinations(range(len(entries)), 2):

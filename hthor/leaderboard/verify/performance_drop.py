@@ -72,7 +72,7 @@ def _welch(
     claimed: np.ndarray, participants: np.ndarray, fresh: np.ndarray, people: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Differences of means and one-sided p-values, for rows of fresh values (R, M)."""
-    from scipy import special  # installed with the core, because scikit-image needs it
+    from scipy import special
 
     there = variance_components.two_way_spread(claimed[None], np.arange(len(claimed)), participants)
     here = variance_components.two_way_spread(fresh, np.arange(fresh.shape[-1]), people)
