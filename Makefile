@@ -8,6 +8,9 @@ PYTHON ?= $(shell for p in python3.12 python3.11 python3; do \
 BIN := .venv/bin
 JOBS ?= $(shell nproc 2>/dev/null || echo 1)
 
+# compiled files save each of the thousands of processes that tests start most of its start
+unexport PYTHONDONTWRITEBYTECODE
+
 .PHONY: demo test check nightly fmt lint docs bench install clean python
 
 demo: .venv/.installed
@@ -15,10 +18,10 @@ demo: .venv/.installed
 
 test: lint
 	@# a file's tests share worlds and runs, so one process does them all
-	$(BIN)/pytest -n $(JOBS) --dist loadfile
+	$(BIN)/pytest -q -n $(JOBS) --dist loadfile -m "not nightly" --durations 25
 
 check: lint
-	$(BIN)/pytest -q -n $(JOBS) --dist loadfile -m "not slow"
+	$(BIN)/pytest -q -n $(JOBS) --dist loadfile -m "not nightly" --quick
 
 # all parts, or one: make nightly PART=redteam
 nightly: .venv/.installed-dev

@@ -2,7 +2,7 @@
 # nightly.sh [PART...]: the checks that take longer than those of every commit, all or some.
 #   tests        the tests marked nightly, and the laws with other cases than every commit has
 #   redteam      hostile agents at every level of isolation
-#   fuzz         random calls of a world, and random actions among loose things
+#   fuzz         random calls of a world, random actions among loose things, damaged files and made-up command lines
 #   determinism  the same run twice, byte for byte, with other numbers of jobs
 #   resume       a run that is killed again and again
 #   composer     trials through dm_control's composer, byte for byte those of the batch
@@ -28,6 +28,7 @@ part() {
     fuzz)
       "$PYTHON" -m benchmarks.worldfuzz --calls 5000
       "$PYTHON" -m benchmarks.loose_things --actions 5000
+      "$PYTHON" -m benchmarks.damage --files 300 --lines 60
       ;;
     determinism)
       for jobs in 1 3; do hthor eval --agent frontier --no-control --quiet --jobs "$jobs" --out "$folder/$jobs"; done

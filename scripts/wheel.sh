@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # wheel.sh [FOLDER]: builds the wheel and the sdist into FOLDER (default: a temporary one) and tries them without the source
 # tree: the wheel has every file of hthor/ that git tracks, the sdist builds a wheel with the same files, and in an empty
-# environment, called from an empty folder, the wheel passes `hthor doctor` and plays a few trials.
+# environment, called from an empty folder, the wheel passes `hthor doctor`, plays a few trials, and imports every module.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 python=$root/.venv/bin/python
@@ -66,4 +66,18 @@ import hthor
 
 here = pathlib.Path(hthor.__file__).resolve()
 sys.exit(None if pathlib.Path(sys.argv[1]).resolve() in here.parents else f"hthor came from {here}, not from the wheel")
+PY
+
+echo "-- every module can be imported with what the wheel requires, without any extra"
+"$work/env/bin/python" - <<'PY'
+import importlib
+import pkgutil
+
+import hthor
+
+names = [module.name for module in pkgutil.walk_packages(hthor.__path__, "hthor.")]
+for name in names:
+    if not name.endswith("__main__"):
+        importlib.import_module(name)
+print(len(names), "modules")
 PY

@@ -5,9 +5,19 @@ from __future__ import annotations
 import functools
 import os
 import re
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
+from durations import (  # noqa: F401  hooks of pytest
+    pytest_addoption,
+    pytest_collection_modifyitems,
+    pytest_fixture_setup,
+    pytest_runtest_logreport,
+    pytest_runtest_makereport,
+    pytest_sessionfinish,
+)
 from hypothesis import settings
 
 from hthor import code_identity
@@ -38,15 +48,52 @@ def samples() -> list[Path]:
     return files
 
 
+_WORLDS: dict[Any, Any] = {}
+_MOST_WORLDS = 12
+
+
+@pytest.fixture(scope="module")
+def shared_worlds() -> Iterator[None]:
+    """Trials in this process share the worlds of the houses that ship with hthor: each takes a third of a second.
+
+    A trial does not depend on those before it in its world, which `test_real_episode` and the main job's tests show.
+    """
+    from hthor.eval.runner.trial_runner import Sources, TrialRunner
+
+    begin = TrialRunner.__init__
+
+    def begin_with_worlds(self: TrialRunner, sources: Sources | None = None, pool: Any = None) -> None:
+        begin(self, sources, pool)
+        if sources is None or not (sources.robot_paths or sources.houses or sources.assets):
+            if len(_WORLDS) > _MOST_WORLDS:
+                _WORLDS.clear()
+            self._worlds = _WORLDS
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(TrialRunner, "__init__", begin_with_worlds)
+        yield
+
+
+@pytest.fixture(scope="module")
+def no_workers() -> Iterator[None]:
+    """Sessions of evaluations are run in this process, which saves starting others."""
+    import eval_fakes
+
+    from hthor.eval.runner import engines
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(engines, "find_engine", lambda *_, **__: eval_fakes.Here())
+        yield
+
+
 def pytest_configure(config: pytest.Config) -> None:
     config.addinivalue_line("markers", "outside: may depend on bubblewrap, a browser or Node; see scripts/bare_path.sh")
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+def pytest_itemcollected(item: pytest.Item) -> None:
     """Mark the tests that may go otherwise on a machine without these programs."""
-    for item in items:
-        if _mentions_outside(item.path):
-            item.add_marker("outside")
+    if _mentions_outside(item.path):
+        item.add_marker("outside")
 
 
 @functools.cache

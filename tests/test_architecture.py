@@ -98,11 +98,14 @@ def test_rooms_have_few_inner_arrows() -> None:
     assert sum(counts.values()) < MOST_ARROWS, counts
 
 
-@pytest.mark.slow
+def lengths(path: Path) -> list[int]:
+    """The lines of each function of a module."""
+    functions = (node for node in ast.walk(ast.parse(path.read_bytes())) if isinstance(node, ast.FunctionDef))
+    return [(node.end_lineno or 0) - node.lineno + 1 for node in functions]
+
+
 def test_the_median_function_is_short() -> None:
-    trees = [ast.parse(path.read_text(encoding="utf-8")) for path in FILES]
-    functions = [node for tree in trees for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]
-    assert statistics.median((node.end_lineno or 0) - node.lineno + 1 for node in functions) < MEDIAN_FUNCTION
+    assert statistics.median(length for path in FILES for length in lengths(path)) < MEDIAN_FUNCTION
 
 
 def texts(path: Path) -> Iterator[str]:
@@ -114,7 +117,6 @@ def texts(path: Path) -> Iterator[str]:
     yield from re.findall(r"(?<!['\"])#[^'\"\n]*$", source, flags=re.MULTILINE)
 
 
-@pytest.mark.slow
 def test_private_words_do_not_come_back() -> None:
     pattern = re.compile(rf"\b({'|'.join(PRIVATE_WORDS)})\b", re.IGNORECASE)
     found = [
@@ -128,13 +130,8 @@ def test_private_words_do_not_come_back() -> None:
 
 def libraries(path: Path) -> Iterator[tuple[str, bool]]:
     """The libraries that a module imports, by their names on PyPI, and whether it can be imported without them."""
-    tree = ast.parse(path.read_text(encoding="utf-8"))
-    late = {
-        node
-        for part in ast.walk(tree)
-        if isinstance(part, ast.FunctionDef | ast.If)  # `if TYPE_CHECKING`
-        for node in ast.walk(part)
-    }
+    tree = ast.parse(path.read_bytes())
+    first = {id(node) for node in tree.body}
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]
@@ -143,7 +140,7 @@ def libraries(path: Path) -> Iterator[tuple[str, bool]]:
         else:
             continue
         for name in {name.partition(".")[0] for name in names} - {"hthor"} - sys.stdlib_module_names:
-            yield DISTRIBUTIONS.get(name, name.replace("_", "-")), node in late
+            yield DISTRIBUTIONS.get(name, name.replace("_", "-")), id(node) not in first
 
 
 def test_every_imported_library_is_declared() -> None:

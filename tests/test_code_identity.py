@@ -107,18 +107,17 @@ def mutated(text: str, which: int) -> str:
     return ast.unparse(ast.fix_missing_locations(_Changed(which).visit(ast.parse(text))))
 
 
-@pytest.mark.slow
-def test_spelling_does_not_count(sources: Sources, whole: str) -> None:
-    """Every counted module rewritten without comments and layout, with other docstrings and annotations."""
+@pytest.mark.parametrize("every", [4, pytest.param(1, marks=pytest.mark.nightly)])
+def test_spelling_does_not_count(sources: Sources, whole: str, every: int) -> None:
+    """Counted modules rewritten without comments and layout, with other docstrings and annotations."""
     other = {
         name: "# a comment\n"
         + ast.unparse(ast.fix_missing_locations(_Annotated().visit(ast.parse(text_of(sources, name)))))
-        for name in sources.closure(ROOTS)
+        for name in sorted(sources.closure(ROOTS))[::every]
     }
     assert edited(sources, other).sha256(ROOTS) == whole
 
 
-@pytest.mark.slow
 def test_place_does_not_count(copy: Path, whole: str) -> None:
     """A module with another name in another package, imported as a module and by what is in it."""
     for old, new in (
@@ -169,7 +168,6 @@ def _move(root: Path, old: str, new: str) -> None:
             path.write_text(ast.unparse(ast.fix_missing_locations(moved)), encoding="utf-8")
 
 
-@pytest.mark.slow
 def test_every_number_of_every_counted_module_counts(sources: Sources) -> None:
     """One number changed in each module changes what that module says."""
     for name in sources.closure(ROOTS):
@@ -183,7 +181,6 @@ def test_every_number_of_every_counted_module_counts(sources: Sources) -> None:
             assert before.tokens != after.tokens or before.part != after.part, name
 
 
-@pytest.mark.slow
 def test_what_one_module_says_reaches_the_hash(sources: Sources, whole: str) -> None:
     """Thirty mutations, drawn from all numbers of all counted modules."""
     texts = {name: text_of(sources, name) for name in sources.closure(ROOTS)}
@@ -194,7 +191,6 @@ def test_what_one_module_says_reaches_the_hash(sources: Sources, whole: str) -> 
         assert edited(sources, {name: mutated(texts[name], which)}).sha256(ROOTS) != whole, (name, which)
 
 
-@pytest.mark.slow
 def test_pictures_count_only_where_they_are_asked_for(sources: Sources, whole: str) -> None:
     drawn = sources.sha256(ROOTS, (SIMULATION, PICTURES))
     for name in ("hthor.looks.furniture.beds", "hthor.world.rendering.shading"):
@@ -204,13 +200,11 @@ def test_pictures_count_only_where_they_are_asked_for(sources: Sources, whole: s
         assert other.sha256(ROOTS, (SIMULATION, PICTURES)) != drawn
 
 
-@pytest.mark.slow
 def test_processes_and_printing_do_not_count(sources: Sources, whole: str) -> None:
     for name in ("hthor.guest.host.channel", "hthor.report.terminal.result_tables", "hthor.commands.eval.evaluate"):
         assert name not in sources.closure(ROOTS)
 
 
-@pytest.mark.slow
 def test_switching_an_import_counts(sources: Sources, whole: str) -> None:
     """Two modules that both count have something of the same name: taking it from the other is another program."""
     text = text_of(sources, "hthor.eval.metrics.definitions.success")
@@ -241,7 +235,6 @@ def test_a_circle_of_modules_has_a_hash(tmp_path: Path) -> None:
     assert Sources(root).sha256(["round.a"]) != first
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("suite", "agent", "robot", "model"),
     [
@@ -286,7 +279,6 @@ def _called(act: Any) -> set[str]:
     return {".".join(one[:-1] if one[-1] == "__init__" else one) for one in parts}
 
 
-@pytest.mark.slow
 def test_what_robots_bring_counts_apart() -> None:
     """A run with a robot and its control without one have the same code."""
     assert code_identity.agent_sha256("frontier") != code_identity.agent_sha256("oracle")
@@ -296,7 +288,6 @@ def test_what_robots_bring_counts_apart() -> None:
     assert code_identity.code_sha256(["my_human.py"], kinds) == code_identity.code_sha256(["other"], kinds)
 
 
-@pytest.mark.slow
 def test_a_hash_that_is_kept_is_the_one_that_is_worked_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     first = code_identity.agent_sha256("oracle")

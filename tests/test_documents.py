@@ -188,7 +188,6 @@ def entry(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return board_fakes.entry_of(board, "helper")
 
 
-@pytest.mark.slow
 @settings(max_examples=150, deadline=None)
 @given(data=st.data())
 def test_the_schema_is_kept_without_a_library_for_schemas(

@@ -307,7 +307,6 @@ def test_nothing_is_said_while_the_target_is_out_of_range(frontier: Any) -> None
     assert live(frontier, flat, 900) == []
 
 
-@pytest.mark.slow
 def test_a_person_in_the_doorway_is_not_pushed(frontier: Any, oracle: Any) -> None:
     for agent, told in ((frontier, briefing()), (oracle, briefing(flat_house()))):
         flat = Flat(person=(3.5, 3.0))
@@ -367,7 +366,6 @@ def test_words() -> None:
     assert sighting_text(apple, {"table": "dining_table"}) == "I found the apple on the dining table in front of me."
 
 
-@pytest.mark.slow
 def test_runs_are_repeated_exactly() -> None:
     ends = []
     for _ in range(2):
@@ -377,7 +375,6 @@ def test_runs_are_repeated_exactly() -> None:
     assert ends[0] == ends[1]
 
 
-@pytest.mark.slow
 def test_the_template_works_as_it_is(tmp_path: Path) -> None:
     path = agents.write_template(tmp_path / "my_agent.py")
     assert len(path.read_text().splitlines()) < 80
@@ -409,7 +406,6 @@ def test_the_template_overwrites_nothing_unasked(tmp_path: Path) -> None:
         agents.write_template(tmp_path / "mine.txt")
 
 
-@pytest.mark.slow
 def test_the_example_finds_the_apple(root: Path) -> None:
     path = root / "examples" / "sweeper.py"
     ((_, message),) = live(load(path)(), Flat(), 900)
@@ -435,7 +431,6 @@ def errand(house: HouseSpec) -> TaskSpec:
     )
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["frontier", "oracle"])
 def test_a_minute_in_a_real_house(name: str) -> None:
     """Nothing raises, every motion is legal, and the body gets about."""

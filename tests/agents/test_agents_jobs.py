@@ -168,7 +168,6 @@ def a_task(kind: str, limit: float) -> TaskSpec:
     return task(kind, (mug,), (Job(target="mug", relation="on", destinations=destinations, place=place),), limit=limit)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("agent", [name for name in plugins.names("agent") if name in ("frontier", "oracle", "none")])
 def test_every_agent_takes_part_in_every_kind_with_every_body(kind: str, agent: str) -> None:
@@ -178,7 +177,6 @@ def test_every_agent_takes_part_in_every_kind_with_every_body(kind: str, agent: 
     assert not [reason for reason in reasons if "cannot" in reason or "at most" in reason or "no object" in reason]
 
 
-@pytest.mark.slow
 def test_the_same_trial_goes_the_same_way() -> None:
     made = a_task("multi_robot_collection", 25.0)
     logs = [run(made, "tender:oracle", "puck:frontier")[0] for _ in range(2)]
@@ -188,7 +186,6 @@ def test_the_same_trial_goes_the_same_way() -> None:
 # ------------------------------------------------------------------------------------------------------------ carrying
 
 
-@pytest.mark.slow
 def test_the_oracle_gathers_what_lies_about_and_opens_the_fridge_for_it() -> None:
     log, share = run(task("multi_robot_collection", *apples(("fridge", 1), ("desk", 0))), "tender:oracle")
     assert (log.met, share) == (True, 1.0)
@@ -196,7 +193,6 @@ def test_the_oracle_gathers_what_lies_about_and_opens_the_fridge_for_it() -> Non
     assert said(log)[0].startswith("I put the apple on the dining table"), "so that nobody looks for it any longer"
 
 
-@pytest.mark.slow
 def test_two_oracles_do_not_fetch_the_same_thing() -> None:
     log, _ = run(task("multi_robot_collection", *apples(("fridge", 1), ("desk", 0))), "tender:oracle", "tender:oracle")
     picked = {event.seat: event.object for event in log.events if event.kind == "picked"}
@@ -204,7 +200,6 @@ def test_two_oracles_do_not_fetch_the_same_thing() -> None:
     assert sorted(picked.values()) == ["apple", "apple_2"], "each has fetched one"
 
 
-@pytest.mark.slow
 def test_the_oracle_puts_things_back_exactly() -> None:
     made = a_task("room_rearrangement", 180.0)
     log, _ = run(made, "tender:oracle")
@@ -216,13 +211,11 @@ def test_the_oracle_puts_things_back_exactly() -> None:
     assert math.dist(state.position[:2], place[:2]) < 0.05
 
 
-@pytest.mark.slow
 def test_what_is_out_of_place_is_tidied_up() -> None:
     log, _ = run(a_task("tidying_up", 180.0), "tender:oracle")
     assert log.met
 
 
-@pytest.mark.slow
 def test_the_frontier_robot_carries_what_it_has_seen_to_where_it_has_seen() -> None:
     jobs = (Job(target="mug", relation="on", destinations=("bed",)),)
     made = task("tidying_up", (lying("mug", "mug", "desk"),), jobs)
@@ -232,7 +225,6 @@ def test_the_frontier_robot_carries_what_it_has_seen_to_where_it_has_seen() -> N
     assert log.met
 
 
-@pytest.mark.slow
 def test_what_lies_well_is_left_alone() -> None:
     mug, apple = lying("mug", "mug", "desk"), lying("apple", "apple", "dining_table")
     jobs = (
@@ -243,7 +235,6 @@ def test_what_lies_well_is_left_alone() -> None:
     assert [event.object for event in log.events if event.kind == "picked"] == ["mug"]
 
 
-@pytest.mark.slow
 def test_two_robots_carry_what_is_too_heavy_for_one() -> None:
     log, _ = run(a_task("collaborative_carrying", 120.0), "porter:oracle", "porter:oracle")
     kinds = [event.kind for event in log.events]
@@ -252,7 +243,6 @@ def test_two_robots_carry_what_is_too_heavy_for_one() -> None:
     assert log.met
 
 
-@pytest.mark.slow
 def test_one_robot_asks_for_a_hand() -> None:
     log, _ = run(a_task("collaborative_carrying", 40.0), "porter:oracle")
     assert said(log) == [help_carry_text("trunk", held=False)]
@@ -263,7 +253,6 @@ def test_one_robot_asks_for_a_hand() -> None:
 # ------------------------------------------------------------------------------------------------------------- telling
 
 
-@pytest.mark.slow
 def test_who_cannot_open_the_fridge_asks_the_person_to_look_inside() -> None:
     made = task("multi_robot_collection", *apples(("fridge", 1), ("desk", 0)), limit=60.0)
     log, _ = run(made, "puck:oracle")
@@ -272,7 +261,6 @@ def test_who_cannot_open_the_fridge_asks_the_person_to_look_inside() -> None:
     assert event.object == "apple"
 
 
-@pytest.mark.slow
 def test_it_asks_again_ten_seconds_after_it_was_turned_down() -> None:
     made = task("multi_robot_collection", *apples(("fridge", 1)), limit=60.0)
     log, _ = run(made, "puck:oracle", human=Bystander(accept=False))
@@ -282,7 +270,6 @@ def test_it_asks_again_ten_seconds_after_it_was_turned_down() -> None:
     assert declined[0] + 100 <= sent[1] <= declined[0] + 150
 
 
-@pytest.mark.slow
 def test_the_frontier_robot_asks_for_what_it_has_not_seen() -> None:
     made = task("multi_robot_collection", *apples(("fridge", 1)), limit=15.0)
     made = starting(made, Pose(x=1.3, y=4.1, yaw=math.pi))
@@ -292,7 +279,6 @@ def test_the_frontier_robot_asks_for_what_it_has_not_seen() -> None:
     assert event.object == "fridge", "it does not claim that the apple is there"
 
 
-@pytest.mark.slow
 def test_in_the_papers_kinds_nobody_asks() -> None:
     (apple,), _ = apples(("fridge", 1))
     for agent in ("oracle", "frontier"):
@@ -359,7 +345,6 @@ def test_the_person_is_left_what_is_nearest_to_its_place_where_somebody_can_tell
     assert team.reserved(jobs, knowledge) == "", "with nobody to tell them, nothing is kept for the person"
 
 
-@pytest.mark.slow
 def test_points_to_put_things_on_lie_on_the_thing() -> None:
     table = thing("dining_table")
     points = resting_points(table, 0.1)
@@ -371,7 +356,6 @@ def test_points_to_put_things_on_lie_on_the_thing() -> None:
         assert z == pytest.approx(table.centre[2] + table.size[2] / 2, abs=0.05)
 
 
-@pytest.mark.slow
 def test_the_closest_thing_is_the_one_with_the_shortest_way() -> None:
     house = houses.load(HOUSE)
     routes = HouseRoutes(house, body("tall"))
@@ -390,7 +374,6 @@ def test_the_closest_thing_is_the_one_with_the_shortest_way() -> None:
     assert len(chosen) > 2
 
 
-@pytest.mark.slow
 def test_the_closest_of_things_without_a_way_is_the_first_by_id() -> None:
     routes = HouseRoutes(houses.load(HOUSE), body("tall"))
     outside = [msgspec.structs.replace(thing("dining_table"), id=id, centre=(-50.0, 0.0, 0.4)) for id in ("b", "a")]

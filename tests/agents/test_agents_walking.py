@@ -10,7 +10,6 @@ from hthor.types import Pose
 from hthor.world.robots.scout import SPEC
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("house", ["alder", "elder", "maple"])
 @pytest.mark.parametrize("agent", ["frontier", "oracle"])
 def test_a_robot_walks_where_the_instruction_leads_and_stops(agent, house):
@@ -21,7 +20,6 @@ def test_a_robot_walks_where_the_instruction_leads_and_stops(agent, house):
     assert log.ticks / 10 >= task.t_star, "nobody is faster than the least time"
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("agent", ["frontier", "oracle"])
 def test_a_robot_tells_the_person_who_walks_where_the_landmark_is(agent):
     task, log = walk("vln/rowan/01", agent)

@@ -264,7 +264,6 @@ def carry(trunk: Placement, human: Pose, robots: Sequence[Pose], participant: in
     return log
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("participant", range(3))
 def test_the_trunk_gets_through_the_only_door(participant: int) -> None:
     trunk = Placement(id="trunk", kind="trunk", position=(4.1, 2.0, HEIGHT_M), yaw=0.0, support="room|1")
@@ -272,7 +271,6 @@ def test_the_trunk_gets_through_the_only_door(participant: int) -> None:
     assert carry(trunk, human, [robot], participant).met
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("participant", range(2))
 def test_a_porter_goes_round_the_trunk_to_the_free_end(participant: int) -> None:
     """They come from the same side: one of them has to get past the trunk, which stops bodies."""
@@ -283,7 +281,6 @@ def test_a_porter_goes_round_the_trunk_to_the_free_end(participant: int) -> None
     assert sum(isinstance(event, Blocked) and event.by == "trunk" for event in log.events) < 20
 
 
-@pytest.mark.slow
 def test_two_porters_do_not_stand_off_in_the_only_door() -> None:
     trunk = Placement(id="trunk", kind="trunk", position=(3.2, 2.0, HEIGHT_M), yaw=0.0, support="room|1")
     starts = [Pose(x=6.0, y=2.0, yaw=math.pi), Pose(x=1.0, y=2.6)]

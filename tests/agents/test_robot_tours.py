@@ -137,7 +137,6 @@ def toured(kind: type, seconds: float) -> tuple[object, Episode]:
     raise AssertionError("the task never began")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("kind", [oracle.Agent, frontier.Agent])
 def test_after_a_tour_a_robot_knows_what_it_saw_and_no_more(kind: type) -> None:
     mind, episode = toured(kind, 200.0)
@@ -150,7 +149,6 @@ def test_after_a_tour_a_robot_knows_what_it_saw_and_no_more(kind: type) -> None:
         assert math.dist(job.place, truth[job.target].place) < 0.05
 
 
-@pytest.mark.slow
 def test_what_was_not_seen_on_a_tour_is_left_to_others() -> None:
     mind, _ = toured(oracle.Agent, 30.0)
     jobs = mind.policy.jobs  # type: ignore[attr-defined]

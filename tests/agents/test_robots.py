@@ -178,7 +178,6 @@ def test_the_eye_is_in_the_head(spec: RobotSpec) -> None:
     assert low <= spec.eye <= high
 
 
-@pytest.mark.slow
 @every_body
 @given(share=st.floats(-1.0, 1.0))
 def test_the_head_turns_about_the_neck_and_looks_where_the_camera_does(spec: RobotSpec, share: float) -> None:
@@ -231,7 +230,6 @@ def _reset(world: World) -> None:
     world.reset(task(on(TABLE, "apple"), human=Pose(x=5.6, y=3.4), robots=tuple(aside)))
 
 
-@pytest.mark.slow
 @every_robot
 def test_every_robot_moves_and_turns_and_tilts(world: World, spec: RobotSpec) -> None:
     _reset(world)
@@ -244,7 +242,6 @@ def test_every_robot_moves_and_turns_and_tilts(world: World, spec: RobotSpec) ->
     assert (pose.yaw, pose.pitch) == pytest.approx((math.pi / 2, spec.pitch_limit / 2))
 
 
-@pytest.mark.slow
 @every_robot
 def test_every_robot_senses(world: World, spec: RobotSpec) -> None:
     _reset(world)
@@ -257,7 +254,6 @@ def test_every_robot_senses(world: World, spec: RobotSpec) -> None:
     assert isinstance(world.detections(seat), tuple)
 
 
-@pytest.mark.slow
 @every_robot
 def test_every_robot_that_picks_fetches_an_object(world: World, spec: RobotSpec) -> None:
     _reset(world)
@@ -306,7 +302,6 @@ def look():
 """
 
 
-@pytest.mark.slow
 def test_a_user_s_robot_is_one_file(tmp_path: Path) -> None:
     file = tmp_path / "rover_of_mine.py"
     file.write_text(MINE.format(name="rover_of_mine"))
@@ -320,7 +315,6 @@ def test_a_user_s_robot_is_one_file(tmp_path: Path) -> None:
     assert len(plugins.sha256(str(file))) == 64
 
 
-@pytest.mark.slow
 def test_a_run_knows_the_file_and_notices_a_change(tmp_path: Path) -> None:
     file = tmp_path / "rover_that_changes.py"
     file.write_text(MINE.format(name="rover_that_changes"))

@@ -119,7 +119,6 @@ def test_any_answers_give_possible_rates(seed):
     assert (spread <= 0.51).all()
 
 
-@pytest.mark.slow
 def test_a_network_finds_a_known_law():
     chance = np.random.Generator(np.random.Philox(3))
     told = chance.uniform(-1.0, 1.0, (6000, 5))
@@ -135,7 +134,6 @@ def test_a_network_finds_a_known_law():
 # ------------------------------------------------------------------------------------------------------------ emulator
 
 
-@pytest.mark.slow
 def test_the_emulator_is_near_the_truth(learnt):
     where = toy.points(200, 9)
     said, truth = learnt.rates(where), toy.exact(where)
@@ -147,7 +145,6 @@ def test_the_emulator_is_near_the_truth(learnt):
     assert np.abs(said.ratio_sd - truth.ratio_sd).max() < 0.08
 
 
-@pytest.mark.slow
 def test_what_does_nothing_changes_little(learnt):
     where = toy.points(200, 10)
     moved = {}
@@ -159,7 +156,6 @@ def test_what_does_nothing_changes_little(learnt):
     assert moved["tau_mem"] < 0.05 < 0.3 < moved["v_pace"]
 
 
-@pytest.mark.slow
 def test_same_seed_same_emulator():
     made = toy.sessions(toy.points(24, 11), 11)
     first, again, other = (emulator.fit_emulator(made, toy.LEAST, seed=seed, members=2) for seed in (0, 0, 1))
@@ -180,7 +176,6 @@ def test_without_the_extra_one_sentence_names_it(monkeypatch):
 # ------------------------------------------------------------------------------------------------------ design effects
 
 
-@pytest.mark.slow
 def test_people_cluster_trials_and_the_errors_say_so(studied):
     where, found = studied
     quality = design_effects.emulator_quality(toy.exact(where), found)
@@ -204,7 +199,6 @@ def test_known_noise_is_found_again(studied):
     assert 0.9 < design_effects.emulator_quality(rates, found).z_sd < 1.1
 
 
-@pytest.mark.slow
 def test_a_learnt_emulator_knows_how_far_it_is_off(learnt, studied):
     assert 0.9 < design_effects.emulator_quality(learnt.rates(studied[0]), studied[1]).z_sd < 1.1
 
@@ -266,7 +260,6 @@ def test_what_was_not_observed_says_nothing():
 # ----------------------------------------------------------------------------------------------------------- posterior
 
 
-@pytest.mark.slow
 def test_the_posterior_informs_what_the_study_tells_of(fitted):
     found = fitted
     known = dict(zip(found.names, found.contraction, strict=True))
@@ -280,7 +273,6 @@ def test_the_posterior_informs_what_the_study_tells_of(fitted):
     assert middle.max() < 0.12  # draws are of the weighed points
 
 
-@pytest.mark.slow
 def test_a_second_round_leaves_the_posterior_as_it_is(bank, true_effects, monkeypatch):
     monkeypatch.setattr(posterior, "ENOUGH", 0.0)
     once = posterior.sample_posterior(toy.Exact(), PAPER, true_effects, prior=bank)
@@ -335,7 +327,6 @@ def test_proposals_reach_beyond_the_posterior(fitted):
 # ------------------------------------------------------------------------------------------------------ does it hold?
 
 
-@pytest.mark.slow
 def test_intervals_hold_what_they_promise(studied):
     where, found = studied
     rows = np.arange(200)
@@ -348,7 +339,6 @@ def test_intervals_hold_what_they_promise(studied):
     assert max(right.histogram(toy.V)) < 40
 
 
-@pytest.mark.slow
 def test_overconfidence_is_seen(studied, monkeypatch):
     where, found = studied
     rows = np.arange(60)
@@ -362,7 +352,6 @@ def test_overconfidence_is_seen(studied, monkeypatch):
     assert wrong.covered[toy.V] < 0.8
 
 
-@pytest.mark.slow
 def test_abc_agrees_and_sees_a_shift(studied, fitted):
     where, found = studied
     means = coverage.check_coverage(toy.Exact(), where, found, proposals=1 << 11).means

@@ -49,7 +49,6 @@ def _same(first, second):
     return all(np.array_equal(getattr(first, name), getattr(second, name)) for name in ("points", *trial_table.COLUMNS))
 
 
-@pytest.mark.slow
 def test_a_session_is_one_persons_trials_in_each_condition_in_turn(trained):
     _, made = trained
     assert made.condition.tolist() == [0, 0, 1, 1, 2, 2]
@@ -67,7 +66,6 @@ def test_a_session_is_one_persons_trials_in_each_condition_in_turn(trained):
     assert (made.shown[made.adopted] <= made.accepted[made.adopted]).all()
 
 
-@pytest.mark.slow
 def test_more_workers_and_an_interruption_give_the_same_table(trained, tmp_path):
     folder, made = trained
     lines = (folder / session_store.FILE).read_bytes().splitlines(keepends=True)
@@ -78,7 +76,6 @@ def test_more_workers_and_an_interruption_give_the_same_table(trained, tmp_path)
     assert _same(_train(tmp_path, 3, jobs=2), made)
 
 
-@pytest.mark.slow
 def test_a_larger_table_goes_on_from_a_smaller_and_nothing_is_played_twice(trained, monkeypatch):
     folder, made = trained
     monkeypatch.setattr(simulate, "run_all_sessions", lambda *_, **__: pytest.fail("it was all played before"))
@@ -87,7 +84,6 @@ def test_a_larger_table_goes_on_from_a_smaller_and_nothing_is_played_twice(train
     assert _train(folder, 2).ticks.tolist() == made.ticks[:4].tolist()
 
 
-@pytest.mark.slow
 def test_a_changed_world_is_refused(trained, monkeypatch):
     folder, _ = trained
     known = session_store.trials_identity(TINY)
@@ -97,7 +93,6 @@ def test_a_changed_world_is_refused(trained, monkeypatch):
         _train(folder, 3)
 
 
-@pytest.mark.slow
 def test_a_session_is_what_an_evaluation_would_have_played():
     """The same person out of the same population meets the same trials, whoever asks."""
     from hthor.episode import play
@@ -167,7 +162,6 @@ def _bytes(folder):
     return {name: hashlib.sha256((folder / name).read_bytes()).hexdigest() for name in names}
 
 
-@pytest.mark.slow
 def test_the_same_seed_gives_the_same_bytes_and_another_others(made_up, calibrated, tmp_path):
     folder, found = calibrated
     assert run.run_calibration(_options(tmp_path / "again"), terminal.SilentProgress()) == found
@@ -181,7 +175,6 @@ def test_the_same_seed_gives_the_same_bytes_and_another_others(made_up, calibrat
     assert not np.array_equal(other.training.met, trial_table.load_table(folder / "training.npz").met)
 
 
-@pytest.mark.slow
 def test_products_are_kept_and_what_was_learned_is_told(made_up, calibrated, monkeypatch):
     folder, found = calibrated
     before = _bytes(folder)
@@ -207,7 +200,6 @@ def test_products_are_kept_and_what_was_learned_is_told(made_up, calibrated, mon
     assert sum(nearer) >= 6
 
 
-@pytest.mark.slow
 def test_the_command_ends_with_1_when_a_gate_is_not_passed(made_up, calibrated, monkeypatch):
     folder, _ = calibrated
     words = ["calibrate", "--quick", "--quiet", "--sessions", "90", "--out", str(folder)]
@@ -259,7 +251,6 @@ def test_wrong_input_is_told_before_anything_is_done(tmp_path, monkeypatch):
         run.run_calibration(_options(tmp_path), terminal.SilentProgress())
 
 
-@pytest.mark.slow
 def test_a_folder_that_is_called_like_a_target_is_not_taken_for_logs(tmp_path, monkeypatch):
     from hthor.commands import calibrate
 

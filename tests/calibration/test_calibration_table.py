@@ -167,7 +167,6 @@ def test_a_simulated_study_loses_as_many_trials_as_the_published_one():
 # -------------------------------------------------------------------------------------------------- identity and ledger
 
 
-@pytest.mark.slow
 def test_what_decides_only_t_star_is_no_part_of_a_trials_identity():
     slower = tuple(msgspec.structs.replace(task, t_star=task.t_star + 7.0, difficulty="hard") for task in SUITE.tasks)
     elsewhere = (msgspec.structs.replace(SUITE.tasks[0], time_limit=80.0), *SUITE.tasks[1:])
@@ -178,7 +177,6 @@ def test_what_decides_only_t_star_is_no_part_of_a_trials_identity():
     ]
 
 
-@pytest.mark.slow
 def test_identity_has_the_code_the_rules_and_the_priors():
     parts = session_store.trials_identity(SUITE).parts
     assert {"code", "rules", "parameters and their priors", "version of mujoco", "suite paper"} <= set(parts)

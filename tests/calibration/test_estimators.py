@@ -95,7 +95,6 @@ def some_choices(rng: np.random.Generator, beta: float, kappa: float, w: float, 
         yield Choice(options=table.tolist(), chosen=int(rng.choice(n, p=share)), pace=0.6)
 
 
-@pytest.mark.slow
 def test_choices_tell_rationality_and_the_weight_of_time(rng: np.random.Generator) -> None:
     made = list(some_choices(rng, beta=2.0, kappa=0.8, w=0.7, count=600))
     found = search_models.fit_choices(made, np.arange(600) % PEOPLE, BELIEFS)
@@ -104,7 +103,6 @@ def test_choices_tell_rationality_and_the_weight_of_time(rng: np.random.Generato
     assert near(found, "w_prior", float(to_scale(0.7, "logit")))
 
 
-@pytest.mark.slow
 def test_exposures_tell_the_rate_of_noticing(rng: np.random.Generator) -> None:
     traits, found, person = Parameters(lam0=1.2, a50=0.04), [], []
     own = rng.normal(0.0, 0.25, PEOPLE)
@@ -138,7 +136,6 @@ def test_reading_time_is_found_though_some_never_answer(rng: np.random.Generator
     assert total == pytest.approx(1.4 + 3.5, rel=0.1)
 
 
-@pytest.mark.slow
 def test_answers_tell_willingness_and_what_sways_it(rng: np.random.Generator) -> None:
     person, trust = np.repeat(np.arange(PEOPLE), 20), rng.uniform(0.2, 0.9, 20 * PEOPLE)
     own, offers = rng.normal(0.0, 0.5, PEOPLE), []
@@ -170,7 +167,6 @@ def a_session(rng: np.random.Generator, traits: Parameters) -> list[Experience]:
     return seen
 
 
-@pytest.mark.slow
 def test_ratings_tell_first_trust_and_what_moves_it(rng: np.random.Generator) -> None:
     people = []
     for _ in range(24):
@@ -271,7 +267,6 @@ def played() -> tuple[Parameters, list[TrialRecord]]:
     return population, recovery.simulate_logs(population, few, trial_runner.TrialRunner(), seed=5, people=6)
 
 
-@pytest.mark.slow
 def test_real_logs_tell_what_people_were_made_of(played: tuple[Parameters, list[TrialRecord]]) -> None:
     population, records = played
     found = {one.name: one for one in estimate_all.estimate_parameters(trial_features.sessions_of(records), BELIEFS)}
@@ -286,7 +281,6 @@ def test_real_logs_tell_what_people_were_made_of(played: tuple[Parameters, list[
     assert again == found, "the order of the records must not matter"
 
 
-@pytest.mark.slow
 def test_logs_are_read_from_folders_and_files_each_trial_once(
     played: tuple[Parameters, list[TrialRecord]], tmp_path: Path
 ) -> None:
@@ -300,7 +294,6 @@ def test_logs_are_read_from_folders_and_files_each_trial_once(
     assert trial_features.read_sessions([tmp_path / "some.jsonl", tmp_path / "run"]) == whole
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("damage", "words"),
     [
@@ -345,7 +338,6 @@ def test_recovery_counts_what_was_found_and_what_was_covered() -> None:
     assert not recovery.summarize_recovery(scrambled)[0].passed
 
 
-@pytest.mark.slow
 def test_logs_become_a_population_the_same_every_time(
     played: tuple[Parameters, list[TrialRecord]], tmp_path: Path
 ) -> None:
@@ -368,7 +360,6 @@ def test_logs_become_a_population_the_same_every_time(
     assert told.count("walking") == 2
 
 
-@pytest.mark.slow
 def test_a_log_without_a_journal_is_refused(played: tuple[Parameters, list[TrialRecord]], tmp_path: Path) -> None:
     bare = [msgspec.structs.replace(one, journal=()) for one in played[1]]
     (tmp_path / "trials.jsonl").write_bytes(b"".join(trial_record.encode(one) for one in bare))

@@ -357,7 +357,6 @@ def rendered(known: bool) -> str:
     return page.render(whole(known=known))
 
 
-@pytest.mark.slow
 def test_the_page_is_whole_and_needs_nothing_else() -> None:
     for known in (True, False):
         text = rendered(known)
@@ -372,14 +371,12 @@ def test_the_page_is_whole_and_needs_nothing_else() -> None:
     assert rendered(True).count("<svg") > rendered(False).count("<svg")
 
 
-@pytest.mark.slow
 def test_the_same_findings_make_the_same_page() -> None:
     assert page.render(whole(known=False)) == rendered(False)
     drawings = [matplotlib_svg.to_svg(diagnostics.contraction(whole().evidence.parameters), "a", "b") for _ in range(2)]  # type: ignore[union-attr]
     assert drawings[0] == drawings[1]
 
 
-@pytest.mark.slow
 def test_drawings_are_well_formed_and_in_the_colours_of_the_page() -> None:
     body = rendered(True).partition("</style>")[2]
     drawings = re.findall(r"<svg.*?</svg>", body, flags=re.DOTALL)
@@ -390,7 +387,6 @@ def test_drawings_are_well_formed_and_in_the_colours_of_the_page() -> None:
     assert matplotlib_svg.DARK.keys() == matplotlib_svg.VARIABLES.keys()
 
 
-@pytest.mark.slow
 def test_the_page_shows_the_numbers_of_its_findings() -> None:
     text = rendered(True)
     for row in whole().table:
@@ -401,7 +397,6 @@ def test_the_page_shows_the_numbers_of_its_findings() -> None:
     assert tuple(whole(seed=5).table) != whole().table
 
 
-@pytest.mark.slow
 def test_without_a_calibration_the_page_says_so_in_each_section() -> None:
     text = rendered(False)
     for name in ("predictive", "held-out", "parameters", "coverage", "emulator", "ranking"):
@@ -410,7 +405,6 @@ def test_without_a_calibration_the_page_says_so_in_each_section() -> None:
     assert "Log score of the published counts" in text
 
 
-@pytest.mark.slow
 def test_names_cannot_break_the_page() -> None:
     found = msgspec.structs.replace(whole(known=False), subject=subject(name="<b>&", purpose='"</title>'))
     text = page.render(found)
@@ -481,7 +475,6 @@ def stage(monkeypatch: pytest.MonkeyPatch) -> list[tuple[str, str, int]]:
     return asked
 
 
-@pytest.mark.slow
 def test_the_command_writes_the_report_and_fails_with_its_bars(
     stage: list[tuple[str, str, int]], tmp_path: Path
 ) -> None:
@@ -497,7 +490,6 @@ def test_the_command_writes_the_report_and_fails_with_its_bars(
     assert [(word, many) for word, _, many in stage] == [("literature", 60), ("greedy", 30), ("random", 30)]
 
 
-@pytest.mark.slow
 def test_a_quick_run_is_small_and_judges_nothing_played(stage: list[tuple[str, str, int]], tmp_path: Path) -> None:
     done = CliRunner().invoke(cli, ["humans", "validate", "greedy", "--quick", "--out", str(tmp_path)])
     assert done.exit_code == 0, done.stderr
@@ -505,7 +497,6 @@ def test_a_quick_run_is_small_and_judges_nothing_played(stage: list[tuple[str, s
     assert "SR no robot" in done.stdout
 
 
-@pytest.mark.slow
 def test_a_dry_run_says_what_would_be_played_and_writes_nothing(tmp_path: Path) -> None:
     out = tmp_path / "report"
     words = ["humans", "validate", "greedy", "--participants", "6", "--suite", "smoke", "--dry-run", "--out", str(out)]
@@ -522,7 +513,6 @@ def test_a_dry_run_says_what_would_be_played_and_writes_nothing(tmp_path: Path) 
     assert not out.exists()
 
 
-@pytest.mark.slow
 def test_kinds_and_suites_are_played_when_asked_for(stage: list[tuple[str, str, int]], tmp_path: Path) -> None:
     options = run.ValidationOptions(name="literature", quick=True, kinds=True, suites=("smoke",), out=tmp_path)
     with pytest.MonkeyPatch.context() as patch:
@@ -547,7 +537,6 @@ def test_too_few_participants_are_refused_before_anything_is_played(stage: list[
     assert not stage
 
 
-@pytest.mark.slow
 def test_few_people_are_not_judged(stage: list[tuple[str, str, int]], tmp_path: Path) -> None:
     options = run.ValidationOptions(name="greedy", participants=12, out=tmp_path)
     done = run.run_validation(options, lambda _: pytest.fail("nobody plays"))

@@ -67,7 +67,6 @@ def test_a_kind_keeps_its_form_at_other_sizes(kind: Kind, factors: Vec3) -> None
     check_form(kind, (width, depth, height))
 
 
-@pytest.mark.slow
 @given(kinds, st.tuples(scale, scale, scale))
 def test_nothing_solid_stands_in_the_free_height_over_a_surface(kind: Kind, factors: Vec3) -> None:
     width, depth, height = (extent * factor for extent, factor in zip(kind.size, factors, strict=True))

@@ -57,7 +57,6 @@ def test_565_navigation_and_1583_manipulation_tasks() -> None:
     assert (navigation, manipulation) == (565, 1583)
 
 
-@pytest.mark.slow
 def test_what_is_optional_is_what_some_house_lacks() -> None:
     everywhere = set.intersection(*(present(house) for house in houses.names()))
     for row in priors.triplets():
@@ -101,7 +100,6 @@ def test_the_two_parts_give_the_shipped_weights(target: str) -> None:
 part = st.floats(0.0, 1.0)
 
 
-@pytest.mark.slow
 @given(st.lists(st.tuples(part, part), min_size=1, max_size=12))
 def test_weights_add_up_and_nothing_is_impossible(parts: list[tuple[float, float]]) -> None:
     weights = priors.weigh_triplets([often for often, _ in parts], [alike for _, alike in parts])
@@ -136,7 +134,6 @@ def test_the_chi_square_test_knows_the_tables(freedom: int, x: float) -> None:
     assert p_value(counts, [1.0 / cells] * cells) == pytest.approx(0.01, abs=1e-5)  # type: ignore[arg-type]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("house", ["alder", "birch"])
 @pytest.mark.parametrize("target", catalog.TARGETS)
 def test_relations_are_drawn_as_they_weigh(target: str, house: str) -> None:
@@ -151,7 +148,6 @@ def test_relations_are_drawn_as_they_weigh(target: str, house: str) -> None:
     assert p_value(counts, [1.0 / len(rows)] * len(rows)) < 1e-9, "the test would not notice wrong weights"
 
 
-@pytest.mark.slow
 def test_the_two_houses_differ_in_every_target() -> None:
     for target in catalog.TARGETS:
         assert applicable(target, present("alder")) != applicable(target, present("birch")), target
@@ -167,7 +163,6 @@ def ranks(values: Sequence[float]) -> list[float]:
     ]
 
 
-@pytest.mark.slow
 def test_the_docs_state_what_the_data_say(root: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COLUMNS", "120")
     text = (root / "docs/priors.md").read_text(encoding="utf-8")

@@ -126,7 +126,6 @@ def encoder(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(making, "origin", lambda: ORIGIN)
 
 
-@pytest.mark.slow
 def test_show(hthor) -> None:
     said = hthor("show", "mug").stdout
     assert sum(line.split()[:1] in (["on"], ["in"], ["near"]) for line in said.splitlines()) == 14
@@ -140,7 +139,6 @@ def test_show(hthor) -> None:
     assert isinstance(hthor("show", "sofa").exception, UnknownName)
 
 
-@pytest.mark.slow
 def test_build_and_check(hthor, encoder: None, wheel: Path, tmp_path: Path) -> None:
     file = tmp_path / "table.json"
     assert hthor("build", "--wheel", str(wheel), "--out", str(file)).exit_code == 0
@@ -166,7 +164,6 @@ def test_without_the_extra_one_sentence_names_it(hthor, monkeypatch: pytest.Monk
     assert "pip install 'hthor[priors]'" in str(said)
 
 
-@pytest.mark.slow
 def test_what_is_no_such_wheel_is_refused(hthor, encoder: None, tmp_path: Path) -> None:
     bare, text = tmp_path / "procthor-1-py3-none-any.whl", tmp_path / "text.whl"
     with zipfile.ZipFile(bare, "w") as archive:
@@ -179,7 +176,6 @@ def test_what_is_no_such_wheel_is_refused(hthor, encoder: None, tmp_path: Path) 
         assert "pip download" in str(said)
 
 
-@pytest.mark.slow
 def test_showing_loads_no_encoder() -> None:
     code = (
         "import sys; sys.argv = ['hthor', 'priors', 'show', '--json']\n"

@@ -42,7 +42,6 @@ def test_version(hthor):
     assert hthor("--version").out == f"hthor {__version__}\n"
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("words", "hints"),
     [
@@ -80,7 +79,6 @@ def test_wrong_usage_says_what_is_right(hthor, words, hints):
     assert "Traceback" not in said.err
 
 
-@pytest.mark.slow
 def test_an_agent_file_that_is_missing_or_broken(hthor, tmp_path: Path):
     missing = hthor("eval", "--agent", str(tmp_path / "mine.py"), "--suite", "fake")
     assert missing.code == 4
@@ -91,7 +89,6 @@ def test_an_agent_file_that_is_missing_or_broken(hthor, tmp_path: Path):
     assert "bad.py" in broken.err
 
 
-@pytest.mark.slow
 def test_eval_writes_what_json_shows(hthor, tmp_path: Path):
     said = hthor("eval", "--agent", "none", "--suite", "fake", "--out", str(tmp_path / "run"), "--json", "--jobs", "1")
     assert said.code == 0
@@ -101,7 +98,6 @@ def test_eval_writes_what_json_shows(hthor, tmp_path: Path):
     assert one["result"]["counts"]["trials"] == 20
 
 
-@pytest.mark.slow
 def test_the_document_of_eval_has_one_shape_however_many_agents_there_are(hthor, tmp_path: Path, monkeypatch):
     monkeypatch.setattr(robot_team, "load_agent_info", fakes.character)
     shapes = []
@@ -117,7 +113,6 @@ def test_the_document_of_eval_has_one_shape_however_many_agents_there_are(hthor,
     assert "success rate" in said.err
 
 
-@pytest.mark.slow
 def test_eval_again_only_scores(hthor, done: Path):
     before = (done / "result.json").read_bytes()
     said = hthor("eval", "--agent", "none", "--suite", "fake", "--out", str(done))
@@ -128,14 +123,12 @@ def test_eval_again_only_scores(hthor, done: Path):
     assert (done / "result.json").read_bytes() == before
 
 
-@pytest.mark.slow
 def test_eval_of_something_else_in_the_same_folder_is_refused(hthor, done: Path):
     said = hthor("eval", "--agent", "none", "--suite", "fake", "--out", str(done), "--seed", "5")
     assert said.code == 2
     assert "seed is 0 there and 5 here" in said.err
 
 
-@pytest.mark.slow
 def test_several_agents_are_compared(hthor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     real = robot_team.load_agent_info
     monkeypatch.setattr(
@@ -149,7 +142,6 @@ def test_several_agents_are_compared(hthor, tmp_path: Path, monkeypatch: pytest.
     assert {path.name for path in tmp_path.iterdir()} == {"none", "clumsy"}
 
 
-@pytest.mark.slow
 def test_the_control_is_played_too_once_and_the_uplift_is_reported(hthor, tmp_path: Path, monkeypatch):
     real = robot_team.load_agent_info
     monkeypatch.setattr(
@@ -168,7 +160,6 @@ def test_the_control_is_played_too_once_and_the_uplift_is_reported(hthor, tmp_pa
     assert "uplift" not in other.out, "there is no such run for other people"
 
 
-@pytest.mark.slow
 def test_runs_are_compared_and_a_worse_one_fails(hthor, tmp_path: Path, monkeypatch):
     monkeypatch.setattr(trial_runner, "make_runner", fakes.leaning_player)
     real = robot_team.load_agent_info
@@ -192,7 +183,6 @@ def test_runs_are_compared_and_a_worse_one_fails(hthor, tmp_path: Path, monkeypa
     assert hthor("compare", silent).code == 2
 
 
-@pytest.mark.slow
 def test_a_run_of_other_people_is_not_sent_to_the_board(hthor, tmp_path: Path, monkeypatch):
     monkeypatch.setattr(robot_team, "load_agent_info", fakes.character)
     where, board = str(tmp_path / "run"), str(tmp_path / "board")
@@ -208,7 +198,6 @@ def test_a_run_of_other_people_is_not_sent_to_the_board(hthor, tmp_path: Path, m
     assert "hthor leaderboard add" in alike.out
 
 
-@pytest.mark.slow
 def test_a_between_subjects_study_is_played_continued_and_compared(hthor, tmp_path: Path, monkeypatch):
     real = robot_team.load_agent_info
     monkeypatch.setattr(
@@ -235,7 +224,6 @@ def test_a_between_subjects_study_is_played_continued_and_compared(hthor, tmp_pa
     assert "name them with --agent, not --robots" in team.err
 
 
-@pytest.mark.slow
 def test_an_agents_faults_are_shown_with_a_way_to_look(hthor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(robot_team, "load_agent_info", fakes.character)
     said = hthor("eval", "--agent", "clumsy", "--suite", "fake", "--out", str(tmp_path / "run"))
@@ -256,7 +244,6 @@ def _printed(text: str) -> list[str]:
     ]
 
 
-@pytest.mark.slow
 def test_every_command_that_a_report_and_an_evaluation_print_can_be_typed(hthor, tmp_path: Path, monkeypatch):
     monkeypatch.chdir(tmp_path)
 
@@ -294,7 +281,6 @@ def test_every_command_that_a_report_and_an_evaluation_print_can_be_typed(hthor,
     )
 
 
-@pytest.mark.slow
 def test_a_report_without_a_control_names_the_command_that_plays_it(hthor, tmp_path: Path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(robot_team, "load_agent_info", lambda name, _: fakes.character(name, absent=name == "none"))
@@ -309,7 +295,6 @@ def test_a_report_without_a_control_names_the_command_that_plays_it(hthor, tmp_p
     assert "uplift: success" in hthor("score", str(run)).out
 
 
-@pytest.mark.slow
 def test_what_the_people_were_not_calibrated_for_is_said_once_and_last(hthor, tmp_path: Path, monkeypatch):
     monkeypatch.setattr(robot_team, "load_agent_info", lambda name, _: fakes.character(name, absent=name == "none"))
     agents = ("--agent", "none", "--agent", "helper", "--agent", "twin")
@@ -323,7 +308,6 @@ def test_what_the_people_were_not_calibrated_for_is_said_once_and_last(hthor, tm
     assert (scored.out + scored.err).count("was calibrated") == 1
 
 
-@pytest.mark.slow
 def test_each_thing_has_one_word_and_the_words_of_before_are_read(hthor, tmp_path: Path):
     for words, name, before in ((("agents", "list"), "none", "silent"), (("humans", "list"), "study", "paper")):
         listed = [row["name"] for row in json.loads(hthor(*words, "--json").out)]
@@ -338,7 +322,6 @@ def test_each_thing_has_one_word_and_the_words_of_before_are_read(hthor, tmp_pat
     assert runs[0] == runs[1]
 
 
-@pytest.mark.slow
 def test_another_clock_is_another_run_and_says_so(hthor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(robot_team, "load_agent_info", fakes.character)
     monkeypatch.chdir(tmp_path)
@@ -358,7 +341,6 @@ def test_another_clock_is_another_run_and_says_so(hthor, tmp_path: Path, monkeyp
     assert "spec.clock is not the one in run.json" in hthor("score", str(soon)).err
 
 
-@pytest.mark.slow
 def test_faults_of_several_robots_are_told_apart(hthor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(robot_team, "load_agent_info", fakes.character)
     folder = str(tmp_path / "run")
@@ -374,7 +356,6 @@ def test_faults_of_several_robots_are_told_apart(hthor, tmp_path: Path, monkeypa
     assert "by kind of task" in full
 
 
-@pytest.mark.slow
 def test_score_says_whether_it_agrees(hthor, done: Path):
     assert "equal to" in hthor("score", str(done)).err
     document = json.loads((done / "result.json").read_bytes())
@@ -387,7 +368,6 @@ def test_score_says_whether_it_agrees(hthor, done: Path):
     assert "equal to" in hthor("score", str(done)).err
 
 
-@pytest.mark.slow
 def test_score_of_a_part_is_shown_but_not_stored(hthor, done: Path):
     (done / "result.json").unlink()
     path = done / "trials.jsonl"
@@ -398,7 +378,6 @@ def test_score_of_a_part_is_shown_but_not_stored(hthor, done: Path):
     assert not (done / "result.json").exists()
 
 
-@pytest.mark.slow
 def test_a_run_that_is_spelt_wrong_is_guessed(hthor, done: Path):
     said = hthor("score", str(done.parent / "ran"))
     assert said.code == 2
@@ -413,7 +392,6 @@ def test_a_calibration_is_foretold_and_nothing_written(hthor, tmp_path: Path):
     assert not (tmp_path / "new").exists()
 
 
-@pytest.mark.slow
 def test_replay_names_what_it_cannot_find(hthor, done: Path):
     said = hthor("replay", str(done), "t00")
     assert said.code == 2
@@ -424,7 +402,6 @@ def test_replay_names_what_it_cannot_find(hthor, done: Path):
     assert ".png" in wrong.err
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("words", [("houses",), ("tasks",), ("agents",), ("humans",), ("robots",)])
 def test_lists_agree_with_their_json(hthor, words):
     rows = json.loads(hthor(*words, "list", "--json").out)
@@ -440,7 +417,6 @@ def test_tasks_of_a_suite(hthor):
     assert rows[0]["instruction"] == "Find the apple."
 
 
-@pytest.mark.slow
 def test_a_broken_house_and_a_sound_one(hthor, tmp_path: Path):
     (tmp_path / "broken.json").write_text("{}")
     broken = hthor("houses", "check", str(tmp_path / "broken.json"))
@@ -453,7 +429,6 @@ def test_a_broken_house_and_a_sound_one(hthor, tmp_path: Path):
     assert hthor("houses", "check", name, "--radius", "1.5").code == 1
 
 
-@pytest.mark.slow
 def test_a_new_agent_is_not_written_over(hthor, tmp_path: Path):
     path = tmp_path / "mine.py"
     assert hthor("agent", "new", str(path)).code == 0
@@ -470,7 +445,6 @@ def test_what_looks_like_a_picture_is_a_name(capsys: pytest.CaptureFixture[str])
     assert capsys.readouterr().out == "two.py:B: sound\n"
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("words", [("--version",), ("agents", "list"), ("agents", "list", "--json")])
 def test_whoever_stops_reading_is_no_failure(words: tuple[str, ...]):
     process = subprocess.Popen([sys.executable, "-m", "hthor", *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE)
@@ -492,7 +466,6 @@ def _process(*words: str, **environment: str) -> subprocess.CompletedProcess[str
     )
 
 
-@pytest.mark.slow
 def test_colours_survive_a_pipe_only_when_forced():
     assert "\x1b[" not in _process("tasks", "--help").stdout
     assert "\x1b[" not in _process("tasks", "--help", GITHUB_ACTIONS="true").stdout
@@ -500,7 +473,6 @@ def test_colours_survive_a_pipe_only_when_forced():
     assert "\x1b[3" not in _process("tasks", "--help", FORCE_COLOR="1", NO_COLOR="1").stdout
 
 
-@pytest.mark.slow
 def test_help_imports_nothing_heavy():
     code = (
         "import sys; sys.argv = ['hthor', '--help']\n"

@@ -1,25 +1,33 @@
-"""What programs rely on: exit codes of real processes, one document under --json, dry runs, completion, the page."""
+"""What programs rely on: exit codes, one document under --json, dry runs, completion, the page.
+
+The codes of success, of an error of our own and of an interruption are those of real processes; the others are those
+that the same function returns in this one.
+"""
 
 from __future__ import annotations
 
 import fcntl
+import functools
 import json
 import os
 import signal
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
+from unittest import mock
 
+import eval_fakes as fakes
 import pytest
-from command_line import run, start
+from command_line import Said, run, start
 from typer.testing import CliRunner
 
 from hthor import code_identity, houses, plugins, tasks
 from hthor.cli import app
 from hthor.console import completion, exit_status
 from hthor.eval.config import human_populations, robot_team
-from hthor.eval.runner import engines
+from hthor.eval.runner import engines, trial_runner
 from hthor.guest.confinement import LEVELS
 from hthor.humans.population import kinds, population_file
 from scripts import cli_reference
@@ -40,6 +48,28 @@ def both(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+Hthor = Callable[..., Said]
+
+
+def played(hthor: Hthor, player: Callable[[], object], *words: str) -> tuple[int, object, str]:
+    """Like `run`, in this process: exit code, the one document on standard output, and what is said to people."""
+    with mock.patch.object(trial_runner, "make_runner", player):
+        said = hthor(*words, "--json")
+    return said.code, json.loads(said.out), said.err
+
+
+@pytest.fixture
+def here(hthor: Hthor, monkeypatch: pytest.MonkeyPatch) -> Hthor:
+    """A command in this process that knows the fake agents too."""
+    real = robot_team.load_agent_info
+
+    def introduce(word: str, *rest: object) -> robot_team.AgentInfo:
+        return fakes.character(word) if word in ("helper", "clumsy") else real(word, *rest)
+
+    monkeypatch.setattr(robot_team, "load_agent_info", introduce)
+    return functools.partial(played, hthor, fakes.player)
+
+
 def failed(said: tuple[int, object, str], code: int) -> str:
     """The words of an error, which are the same for people and programs."""
     found, document, err = said
@@ -50,57 +80,49 @@ def failed(said: tuple[int, object, str], code: int) -> str:
     return document["error"]
 
 
-@pytest.mark.slow
 def test_1_is_a_fault_of_our_own(tmp_path: Path) -> None:
     said = run("eval", "--agent", "none", "--suite", "fake", "--out", str(tmp_path / "a"), play="failing_player:own")
     assert "ZeroDivisionError" in failed(said, 1)
 
 
-@pytest.mark.slow
-def test_2_is_a_wrong_word() -> None:
-    assert "--agent" in failed(run("eval", "--agnet", "none"), 2)
+def test_2_is_a_wrong_word(here: Hthor) -> None:
+    assert "--agent" in failed(here("eval", "--agnet", "none"), 2)
 
 
-@pytest.mark.slow
-def test_3_is_an_agent_that_failed(tmp_path: Path) -> None:
+def test_3_is_an_agent_that_failed(here: Hthor, tmp_path: Path) -> None:
     words = ("--agent", "clumsy", "--suite", "fake", "--out", str(tmp_path / "a"), "--no-control")
-    code, document, _ = run("eval", *words)
+    code, document, _ = here("eval", *words)
     assert code == 3
     assert document["runs"][0]["result"]["counts"]["faults"] == 2
 
 
-@pytest.mark.slow
-def test_4_is_an_agent_that_does_not_load(tmp_path: Path) -> None:
-    failed(run("eval", "--agent", str(tmp_path / "none.py"), "--suite", "fake"), 4)
+def test_4_is_an_agent_that_does_not_load(here: Hthor, tmp_path: Path) -> None:
+    failed(here("eval", "--agent", str(tmp_path / "none.py"), "--suite", "fake"), 4)
 
 
-@pytest.mark.slow
-def test_5_is_too_little_isolation(tmp_path: Path) -> None:
+def test_5_is_too_little_isolation(here: Hthor, tmp_path: Path) -> None:
     agent = tmp_path / "mine.py"
     agent.write_text(plugins.Path(plugins.__file__).with_name("agents").joinpath("_template.py.txt").read_text())
     words = ("--agent", str(agent), "--suite", "fake", "--isolation", "L1", "--require-isolation", "L2")
-    assert "L2 is required" in failed(run("eval", *words), 5)
+    assert "L2 is required" in failed(here("eval", *words), 5)
 
 
-@pytest.mark.slow
-def test_6_is_a_run_that_is_worse(both: Path) -> None:
-    code, document, _ = run("compare", str(both / "helper"), str(both / "none"), "--fail-if-worse")
+def test_6_is_a_run_that_is_worse(both: Path, here: Hthor) -> None:
+    code, document, _ = here("compare", str(both / "helper"), str(both / "none"), "--fail-if-worse")
     assert code == 6
     assert document["pairs"][0]["better"] == "helper"
 
 
-@pytest.mark.slow
-def test_75_is_a_run_that_another_process_writes(both: Path) -> None:
+def test_75_is_a_run_that_another_process_writes(both: Path, here: Hthor) -> None:
     with (both / "none" / ".lock").open("rb") as file:
         fcntl.flock(file, fcntl.LOCK_EX)
         words = ("--agent", "none", "--suite", "fake", "--participants", "16", "--out", str(both / "none"))
-        assert "is being written" in failed(run("eval", *words), 75)
+        assert "is being written" in failed(here("eval", *words), 75)
 
 
-@pytest.mark.slow
-def test_130_is_an_interruption_and_the_same_command_resumes(tmp_path: Path) -> None:
+def test_130_is_an_interruption_and_the_same_command_resumes(here: Hthor, tmp_path: Path) -> None:
     words = ("eval", "--agent", "none", "--suite", "fake", "--out", str(tmp_path / "a"), "--jobs", "1")
-    process = start(*words, "--json", play="slow_player:0.4")
+    process = start(*words, "--json", play="slow_player:0.2")
     until = time.monotonic() + 60.0
     while not (log := tmp_path / "a" / "trials.jsonl").exists() or not log.stat().st_size:
         assert time.monotonic() < until
@@ -109,7 +131,7 @@ def test_130_is_an_interruption_and_the_same_command_resumes(tmp_path: Path) -> 
     out, _ = process.communicate(timeout=60)
     assert process.returncode == 130
     assert json.loads(out)["exit_code"] == 130
-    assert run(*words)[0] == 0
+    assert here(*words)[0] == 0
 
 
 def test_the_exit_codes_are_listed_where_people_look(root: Path) -> None:
@@ -133,15 +155,16 @@ def test_the_page_has_every_command(root: Path) -> None:
     assert text == cli_reference.page(text), "write it anew: python scripts/cli_reference.py docs/cli.md"
 
 
-@pytest.mark.slow
-def test_a_dry_run_tells_all_and_writes_nothing(both: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_dry_run_tells_all_and_writes_nothing(
+    both: Path, here: Hthor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.chdir(tmp_path)  # the pace may also be that of a finished run in the usual folder
 
     def files(folder: Path) -> dict[str, int]:
         return {str(path): path.stat().st_mtime_ns for path in folder.rglob("*")}
 
     words = ("eval", "--agent", "helper", "--suite", "fake", "--seed", "3", "--dry-run")
-    code, document, _ = run(*words, "--out", str(tmp_path / "new"))
+    code, document, _ = here(*words, "--out", str(tmp_path / "new"))
     assert code == 0
     assert files(tmp_path) == {}
     assert {one["name"]: (one["played"], one["trials"]) for one in document["runs"]} == {
@@ -158,7 +181,7 @@ def test_a_dry_run_tells_all_and_writes_nothing(both: Path, tmp_path: Path, monk
     half = both / "helper" / "trials.jsonl"
     data = half.read_bytes()
     words = ("eval", "--agent", "helper", "--suite", "fake", "--participants", "16", "--dry-run")
-    code, document, _ = run(*words, "--out", str(both / "helper"))
+    code, document, _ = here(*words, "--out", str(both / "helper"))
     (one,) = document["runs"]
     assert (one["played"], one["trials"], one["seconds"]) == (160, 160, 0.0)
     assert data == half.read_bytes()
@@ -188,7 +211,6 @@ def complete(words: str, folder: Path, shell: str = "bash") -> list[str]:
     return done.stdout.split()
 
 
-@pytest.mark.slow
 def test_the_shell_completes_values(both: Path) -> None:
     assert complete("hthor eval --agent fr", both) == ["frontier"]
     assert complete("hthor compare n", both) == ["none"]
@@ -217,7 +239,6 @@ def test_what_is_offered_is_what_there_is(tmp_path: Path, monkeypatch: pytest.Mo
     assert completion.runs("nowhere/") == []
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "words", [["robots", "list"], ["agent", "check", "nowhere.py"], ["replay", "nowhere", "0", "--mind"]]
 )
@@ -228,7 +249,6 @@ def test_every_command_keeps_compiled_code_in_one_place(words: list[str], monkey
     assert os.environ["NUMBA_CACHE_DIR"] == str(code_identity.compiled())
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("within", [False, True])
 def test_names_that_are_no_text_are_refused_at_once(tmp_path: Path, within: bool) -> None:
     folder = Path(os.fsdecode(os.fsencode(tmp_path) + b"/d\xff"))

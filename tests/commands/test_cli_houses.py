@@ -23,7 +23,6 @@ def name() -> str:
     return houses.names()[0]
 
 
-@pytest.mark.slow
 def test_the_list_counts_rooms_floor_and_things(hthor):
     rows = _data(hthor("houses", "list", "--json"))
     assert [row["name"] for row in rows] == list(houses.names())
@@ -34,7 +33,6 @@ def test_the_list_counts_rooms_floor_and_things(hthor):
         assert str(row["things"]) in table
 
 
-@pytest.mark.slow
 def test_a_lenient_check_and_a_strict_one(hthor, samples):
     file = str(samples[0])
     assert hthor("houses", "check", file).code == 0
@@ -44,7 +42,6 @@ def test_a_lenient_check_and_a_strict_one(hthor, samples):
     assert "(thing-floats)" in strict.out
 
 
-@pytest.mark.slow
 def test_a_full_check_asks_the_engine(hthor, samples):
     document = json.loads(hthor("houses", "check", str(samples[0]), "--full", "--json").out)
     assert not document["sound"]
@@ -65,7 +62,6 @@ def test_many_warnings_are_cut_short_and_counted(hthor, tmp_path: Path, name: st
     assert "3 more (thing-in-wall)" in said.out
 
 
-@pytest.mark.slow
 def test_a_house_from_above(hthor, tmp_path: Path, name: str):
     path = tmp_path / "from above.png"
     assert hthor("houses", "show", name, "--out", str(path), "--scale", "10").out.strip() == str(path)
@@ -75,7 +71,6 @@ def test_a_house_from_above(hthor, tmp_path: Path, name: str):
     assert ".png" in wrong.err
 
 
-@pytest.mark.slow
 def test_a_census_side_by_side(hthor, samples):
     columns = _data(hthor("houses", "census", str(samples[0]), "--json"))
     assert [column["houses"] for column in columns] == [len(houses.names()), 1]
@@ -85,7 +80,6 @@ def test_a_census_side_by_side(hthor, samples):
     assert "start to receptacle, m" in said.out
 
 
-@pytest.mark.slow
 def test_a_house_is_made_proved_and_made_again(hthor, tmp_path: Path):
     path = tmp_path / "deep" / "mine.json"
     said = hthor("houses", "generate", "--seed", "3", "--rooms", "4", "--out", str(path))
@@ -98,7 +92,6 @@ def test_a_house_is_made_proved_and_made_again(hthor, tmp_path: Path):
     assert "standard output: 4 rooms" in again.err
 
 
-@pytest.mark.slow
 def test_several_houses_go_into_a_folder(hthor, tmp_path: Path):
     rows = _data(hthor("houses", "generate", "--seed", "4", "--count", "2", "--out", str(tmp_path), "--json"))
     assert [(row["seed"], len(row["rooms"])) for row in rows] == [(4, 4), (5, 5)]
@@ -108,7 +101,6 @@ def test_several_houses_go_into_a_folder(hthor, tmp_path: Path):
         assert row["sound"]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("words", "hints"),
     [
@@ -129,7 +121,6 @@ def test_mistakes_are_told(hthor, words: tuple[str, ...], hints: tuple[str, ...]
         assert hint in said.err
 
 
-@pytest.mark.slow
 def test_the_commands_wake_nothing_heavy():
     code = "import sys, hthor.cli\nassert not {'numpy', 'numba', 'mujoco', 'cv2', 'rich.table'} & set(sys.modules)"
     subprocess.run([sys.executable, "-c", code], check=True, timeout=120)

@@ -18,12 +18,12 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-import eval_fakes as fakes
 import msgspec
 import pytest
+from command_line import Said
 
 from benchmarks import forging
-from hthor import cli, guest, houses, jsonio, rules, tasks
+from hthor import guest, houses, jsonio, rules, tasks
 from hthor.errors import AgentError
 from hthor.eval.config import robot_team
 from hthor.eval.config.sessions import Session, make_sessions
@@ -31,7 +31,7 @@ from hthor.eval.records import find, run_isolation
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_log import TrialLog
 from hthor.eval.records.trial_record import TrialRecord
-from hthor.eval.runner import engines, trial_runner
+from hthor.eval.runner import trial_runner
 from hthor.eval.runner.trial_runner import Sources
 from hthor.leaderboard import enter
 from hthor.leaderboard.entries import entry_metrics, files, trial_outcomes
@@ -46,6 +46,9 @@ SUITE = FOLDER / "brief.json"
 EVAL = ("eval", "--agent", "frontier", "--humans", "proxy", "--suite", str(SUITE), "--participants", "2", "--quiet")
 EVAL += ("--no-control",)
 TRIALS = 12
+
+
+pytestmark = pytest.mark.usefixtures("shared_worlds")
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -64,34 +67,6 @@ def command(*words: str) -> list[str]:
 
 def hthor(*words: str, cwd: Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command(*words), cwd=cwd, capture_output=True, text=True, timeout=120)
-
-
-class Said(msgspec.Struct):
-    """What a command left: exit code, standard output, standard error."""
-
-    code: int
-    out: str
-    err: str
-
-
-@pytest.fixture
-def say(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Callable[..., Said]:
-    """Run a command that plays nothing in this process, which saves starting one."""
-    monkeypatch.setenv("COLUMNS", "200")
-    monkeypatch.setenv("_TYPER_FORCE_DISABLE_TERMINAL", "1")
-
-    def run(*words: object) -> Said:
-        monkeypatch.setattr(sys, "argv", ["hthor", *map(str, words)])
-        code: object = 0
-        try:
-            cli.main()
-        except SystemExit as end:
-            code = end.code or 0
-        out, err = capsys.readouterr()
-        assert isinstance(code, int)
-        return Said(code, out, err)
-
-    return run
 
 
 def lines(folder: Path) -> list[bytes]:
@@ -125,14 +100,13 @@ def copied(reference: Path, tmp_path: Path) -> Path:
 # ----------------------------------------------------------------------------------------------- the same bytes, always
 
 
-@pytest.mark.slow
-def test_one_worker_writes_the_same_records_as_two(reference: Path, tmp_path: Path):
-    done = hthor(*EVAL, "--jobs", "1", "--out", "run", "--json", cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
+def test_one_process_writes_the_same_records_as_two_workers(reference: Path, tmp_path: Path, say: Callable[..., Said]):
+    done = say(*EVAL, "--out", tmp_path / "run", "--json")
+    assert done.code == 0, done.err
     assert by_key(tmp_path / "run") == by_key(reference)
     assert len(lines(reference)) == TRIALS
     (one,), two = (
-        (run["result"] for run in json.loads(done.stdout)["runs"]),
+        (run["result"] for run in json.loads(done.out)["runs"]),
         json.loads((reference / "result.json").read_bytes()),
     )
     del one["effort"], two["effort"]  # what it cost is all that may differ
@@ -182,12 +156,20 @@ def processes(tmpdir: Path) -> list[str]:
 linux = pytest.mark.skipif(sys.platform != "linux", reason="looks for processes in /proc")
 
 
-@pytest.mark.slow
 @linux
-def test_killed_three_times_and_resumed_by_the_same_command(reference: Path, tmp_path: Path):
-    words = (*EVAL, "--jobs", "2", "--out", "run")
+@pytest.mark.parametrize(
+    "kills",
+    [
+        pytest.param(((3, os.killpg),), id="once"),
+        pytest.param(((1, os.kill), (3, os.killpg), (2, os.kill)), id="three times", marks=pytest.mark.nightly),
+    ],
+)
+def test_killed_and_resumed_by_the_same_command(
+    kills: tuple[tuple[int, Callable[[int, int], None]], ...], reference: Path, tmp_path: Path, say: Callable[..., Said]
+):
+    words = (*EVAL, "--jobs", "2", "--out", str(tmp_path / "run"))
     folder = tmp_path / "run"
-    for more, kill in ((1, os.kill), (3, os.killpg), (2, os.kill)):
+    for more, kill in kills:
         aim = len(lines(folder)) + more
         with started(*words, cwd=tmp_path) as process:
             ended = process.poll
@@ -196,9 +178,8 @@ def test_killed_three_times_and_resumed_by_the_same_command(reference: Path, tmp
             kill(process.pid, signal.SIGKILL)
             process.wait()
         until(lambda: not processes(tmp_path), "processes outlived their run")
-    assert 6 <= len(lines(folder)) < TRIALS
-    done = hthor(*words, cwd=tmp_path)
-    assert done.returncode == 0, done.stderr
+    assert sum(more for more, _ in kills) <= len(lines(folder)) < TRIALS
+    assert say(*words).code == 0
     assert by_key(folder) == by_key(reference)
 
 
@@ -214,7 +195,6 @@ class Agent:
 """
 
 
-@pytest.mark.slow
 @linux
 def test_not_even_what_an_agent_started_outlives_the_run(tmp_path: Path):
     (tmp_path / "parent.py").write_text(PARENT)
@@ -241,7 +221,6 @@ def test_not_even_what_an_agent_started_outlives_the_run(tmp_path: Path):
     until(lambda: not processes(tmp_path), "processes outlived their run")
 
 
-@pytest.mark.slow
 def test_what_an_early_death_leaves_is_cleared_away(copied: Path, say: Callable[..., Said]):
     (copied / ".run.json.k1ll3d").write_text("{")
     said = say(*EVAL, "--out", copied)
@@ -257,27 +236,28 @@ def test_what_an_early_death_leaves_is_cleared_away(copied: Path, say: Callable[
 # --------------------------------------------------------------------------------------------------------- agents
 
 
-@pytest.mark.slow
-def test_a_new_agent_works_unedited_from_anywhere_beside_one_that_fails(tmp_path: Path):
+def test_a_new_agent_works_unedited_from_anywhere_beside_one_that_fails(
+    tmp_path: Path, say: Callable[..., Said], monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.chdir(tmp_path)
     (tmp_path / "far").mkdir()
-    assert hthor("agent", "new", "far/mine.py", cwd=tmp_path).returncode == 0
+    assert say("agent", "new", "far/mine.py").code == 0
     written(tmp_path, act="assert observation.tick < 100, 'tired'")
     agents = ("--agent", "far/mine.py", "--agent", "agent.py")
-    words = ("eval", *agents, "--suite", str(SUITE), "--participants", "1", "--json")
-    done = hthor(*words, cwd=tmp_path)
-    assert done.returncode == 3, done.stderr
-    mine, tired = (one["result"] for one in json.loads(done.stdout)["runs"])
+    done = say("eval", *agents, "--suite", SUITE, "--participants", "1", "--json")
+    assert done.code == 3, done.err
+    mine, tired = (one["result"] for one in json.loads(done.out)["runs"])
     assert (mine["counts"]["trials"], mine["counts"]["faults"]) == (TRIALS // 2, 0)
     assert (tired["counts"]["trials"], tired["counts"]["faults"] > 2) == (TRIALS // 2, True)
     assert mine["isolation"]["level"] == tired["isolation"]["level"] == guest.in_force().level
-    assert f"failed in {tired['counts']['faults']} of {TRIALS // 2} trials" in done.stderr
-    assert "after 10.0 s: raised: AssertionError: tired" in done.stderr
-    assert 'File "agent.py", line' in done.stderr, "the agent's own frames, and none of ours"
-    assert "hthor/" not in done.stderr.partition("Traceback")[2].partition("see:")[0]
-    see = next(line for line in done.stderr.splitlines() if line.startswith("see:"))
-    again = hthor(*shlex.split(see.removeprefix("see:"))[1:], "--json", cwd=tmp_path)
-    assert again.returncode == 3, again.stderr
-    rerun = json.loads(again.stdout)
+    assert f"failed in {tired['counts']['faults']} of {TRIALS // 2} trials" in done.err
+    assert "after 10.0 s: raised: AssertionError: tired" in done.err
+    assert 'File "agent.py", line' in done.err, "the agent's own frames, and none of ours"
+    assert "hthor/" not in done.err.partition("Traceback")[2].partition("see:")[0]
+    see = next(line for line in done.err.splitlines() if line.startswith("see:"))
+    again = say(*shlex.split(see.removeprefix("see:"))[1:], "--json")
+    assert again.code == 3, again.err
+    rerun = json.loads(again.out)
     assert (rerun["same"], rerun["changed"]) == (True, False)
     assert rerun["left"]["failures"][0]["detail"].endswith("AssertionError: tired\n")
     assert rerun["left"]["failures"][0]["looks"][-1]["action"] is None
@@ -299,7 +279,6 @@ def played(agent: str, count: int = 2) -> list[TrialRecord]:
     return [done.record for done in trial_runner.make_runner(sources)(session)]
 
 
-@pytest.mark.slow
 def test_the_example_works(root: Path):
     records = played(str(root / "examples" / "sweeper.py"))
     assert not any(record.faults for record in records)
@@ -355,7 +334,6 @@ def idle_robot(tmp_path_factory: pytest.TempPathFactory) -> list[TrialRecord]:
     return played(written(tmp_path_factory.mktemp("idle"), act="pass"))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", HARMLESS)
 def test_harmless_agents_have_no_faults(name: str, tmp_path: Path, idle_robot: list[TrialRecord]):
     records = played(written(tmp_path, **HARMLESS[name]))
@@ -363,7 +341,6 @@ def test_harmless_agents_have_no_faults(name: str, tmp_path: Path, idle_robot: l
     assert [record.paths[HUMAN] for record in records] == [record.paths[HUMAN] for record in idle_robot]
 
 
-@pytest.mark.slow
 def test_a_robot_that_does_nothing_is_as_no_robot_until_its_body_is_in_the_way(idle_robot: list[TrialRecord]):
     _, session = dealt("silent")
     alone = [done.record for done in trial_runner.make_runner()(session)]
@@ -377,7 +354,6 @@ def test_a_robot_that_does_nothing_is_as_no_robot_until_its_body_is_in_the_way(i
         assert not any(event.kind in ("sent", "fault") for event in idle.events)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", FAULTY)
 def test_a_failing_agent_leaves_the_person_alone(
     name: str, tmp_path: Path, idle_robot: list[TrialRecord], monkeypatch: pytest.MonkeyPatch
@@ -393,7 +369,6 @@ def test_a_failing_agent_leaves_the_person_alone(
         assert record.metrics == idle.metrics
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("text", "told"),
     [
@@ -414,7 +389,6 @@ def test_an_agent_that_does_not_load(text: str, told: str, tmp_path: Path, say: 
     assert not (tmp_path / "run").exists()
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("words", "code", "told"),
     [
@@ -445,7 +419,6 @@ def test_a_run_has_the_weakest_isolation_of_its_commands(tmp_path: Path):
         run_isolation.weakest_isolation(tmp_path, held["L3"], "L2")
 
 
-@pytest.mark.slow
 def test_a_file_that_changes_during_its_run_ends_it(tmp_path: Path):
     sources, session = dealt(written(tmp_path))
     written(tmp_path, act="return None")
@@ -456,7 +429,6 @@ def test_a_file_that_changes_during_its_run_ends_it(tmp_path: Path):
 # ----------------------------------------------------------------------------------------------------- what a run holds
 
 
-@pytest.mark.slow
 def test_scoring_again_gives_the_same_result(copied: Path, say: Callable[..., Said]):
     before = (copied / "result.json").read_bytes()
     assert say("score", copied, "--json").out.encode() == before
@@ -467,7 +439,6 @@ def test_scoring_again_gives_the_same_result(copied: Path, say: Callable[..., Sa
     assert now == then
 
 
-@pytest.mark.slow
 def test_a_log_that_was_changed(copied: Path, say: Callable[..., Said]):
     whole, path = lines(copied), copied / "trials.jsonl"
     alien = json.loads(whole[7])
@@ -488,7 +459,6 @@ def test_a_log_that_was_changed(copied: Path, say: Callable[..., Said]):
             assert "Traceback" not in said.err
 
 
-@pytest.mark.slow
 def test_a_torn_last_line_is_one_trial_less(copied: Path, say: Callable[..., Said], tmp_path: Path):
     whole = lines(copied)
     (copied / "trials.jsonl").write_bytes(b"".join(whole)[:-9])
@@ -500,7 +470,6 @@ def test_a_torn_last_line_is_one_trial_less(copied: Path, say: Callable[..., Sai
     assert not (tmp_path / "board").exists()
 
 
-@pytest.mark.slow
 def test_folders_that_cannot_be_used(copied: Path, say: Callable[..., Said], tmp_path: Path):
     with TrialLog(copied):
         busy = say(*EVAL, "--out", copied)
@@ -515,34 +484,24 @@ def test_folders_that_cannot_be_used(copied: Path, say: Callable[..., Said], tmp
     assert "Traceback" not in nowhere.err
 
 
-@pytest.fixture(scope="module")
-def board(reference: Path, brief: tasks.Suite) -> Path:
+@pytest.fixture
+def board(reference: Path, brief: tasks.Suite, say: Callable[..., Said], tmp_path: Path) -> Path:
     """A leaderboard that knows the brief suite as an official one, with the run on it and its control."""
-    both = FOLDER / "both"
+    both, path = tmp_path / "both", tmp_path / "commitment.json"
     shutil.copytree(reference, both / "run")
-    done = hthor(*EVAL[:2], "silent", *EVAL[3:], "--out", str(both / "alone"), cwd=FOLDER)
-    assert done.returncode == 0, done.stderr
+    assert say(*EVAL[:2], "silent", *EVAL[3:], "--out", both / "alone").code == 0
     made = Commitment(
         name="brief", salt="0" * 64, houses=2, tasks=TRIALS, suite_sha256=brief.sha256, files={}, made_with={}
     )
-    jsonio.write(FOLDER / "commitment.json", jsonio.pretty(made))
-    opened = hthor("leaderboard", "open", str(FOLDER / "commitment.json"), "--board", str(FOLDER / "board"), cwd=FOLDER)
-    assert opened.returncode == 0, opened.stderr
-    enter.add_runs(both / "run", FOLDER / "board")
-    return FOLDER / "board"
+    jsonio.write(path, jsonio.pretty(made))
+    assert say("leaderboard", "open", path, "--board", tmp_path / "board").code == 0
+    enter.add_runs(both / "run", tmp_path / "board")
+    return tmp_path / "board"
 
 
-@pytest.mark.slow
-def test_leaderboard(
-    board: Path,
-    reference: Path,
-    brief: tasks.Suite,
-    say: Callable[..., Said],
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-):
+def test_leaderboard(board: Path, reference: Path, brief: tasks.Suite, say: Callable[..., Said]):
     """Put on the board, verified by real physics on this platform and as on another; a forged copy is caught."""
-    here = shutil.copytree(board, tmp_path / "board")
+    here = board
     on = ("--board", here)
     assert say("leaderboard", "validate", *on).code == 0
     assert say("leaderboard", "build", "--check", *on).code == 1
@@ -568,7 +527,6 @@ def test_leaderboard(
     control, true = files.read_entry(alone), files.read_entry(entry)
     lie = forging.forged(true, 1.0, control, brief)
     elsewhere = ({**lie.platforms[0], "libc": "another"},)
-    monkeypatch.setattr(engines, "find_engine", lambda *_, **__: fakes.Here())
     for platforms, tier in ((lie.platforms, "V1"), (elsewhere, "V2")):
         files.write_document(entry, msgspec.structs.replace(lie, platforms=platforms))
         assert say("leaderboard", "validate", *on).code == 0  # all of it follows from its trials, which never were
@@ -596,7 +554,6 @@ def test_leaderboard(
     assert f"{entry}: hashes.run" in said.err
 
 
-@pytest.mark.slow
 def test_a_trial_is_found_by_any_of_its_names(reference: Path, say: Callable[..., Said]):
     record = find.find_trial(RunFolder(reference), "3")
     for name in (record.key[:8], record.spec.task.id):
@@ -610,7 +567,6 @@ def test_a_trial_is_found_by_any_of_its_names(reference: Path, say: Callable[...
     )  # so long that no key begins with it
 
 
-@pytest.mark.slow
 def test_a_process_without_standard_streams(reference: Path):
     line = f"{sys.executable} -m hthor score {reference} --json >&- 2>&- <&-"
     assert subprocess.run(["sh", "-c", line], timeout=60).returncode == 0
@@ -663,14 +619,14 @@ def _refused(file: Path, told: str, say: Callable[..., Said]) -> None:
     assert "Traceback" not in said.err
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("name", houses.names())
+@pytest.mark.parametrize(
+    "name", [name if name == "cedar" else pytest.param(name, marks=pytest.mark.nightly) for name in houses.names()]
+)
 def test_damaged_copies_of_our_own_houses(name: str, root: Path, tmp_path: Path, say: Callable[..., Said]):
     assert say("houses", "check", name).code == 0
     _spoiled(root / "hthor" / "houses" / "data" / f"{name}.json", tmp_path, say)
 
 
-@pytest.mark.slow
 def test_damaged_copies_of_a_sample_house(samples: list[Path], tmp_path: Path, say: Callable[..., Said]):
     assert say("houses", "check", samples[-1]).code == 0
     _spoiled(samples[-1], tmp_path, say)

@@ -63,7 +63,6 @@ def test_it_says_what_it_did(hthor, runs):
     assert [one["converted"] for one in again["done"]] == [0, 0]
 
 
-@pytest.mark.slow
 def test_migrated_runs_are_scored_drawn_and_calibrated_with(hthor, runs, tmp_path):
     migrate.migrate([runs])
     assert "equal to" in hthor("score", str(runs / "collect")).err

@@ -167,7 +167,6 @@ acts = st.one_of(
 )
 
 
-@pytest.mark.slow
 @given(st.lists(acts, max_size=30))
 def test_laws_of_every_history(history):
     box, before, ends = Mailbox(ROBOTS), {}, []
@@ -271,7 +270,6 @@ def test_addresses_and_answers_that_fit_nothing_are_refused(seat, send):
     assert len(box.messages) == 2
 
 
-@pytest.mark.slow
 @given(st.lists(acts, max_size=20), st.lists(acts, max_size=10))
 def test_a_copy_has_the_same_future(past, future):
     box, copy = Mailbox(ROBOTS), Mailbox(ROBOTS)

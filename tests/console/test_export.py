@@ -29,7 +29,6 @@ TABLES = st.integers(1, 4).flatmap(
 )
 
 
-@pytest.mark.slow
 @given(TABLES)
 def test_csv_is_read_back_as_it_was(table: tuple[list[str], list[list[str]]]) -> None:
     headings, rows = table
@@ -41,7 +40,6 @@ def test_csv_is_read_back_as_it_was(table: tuple[list[str], list[list[str]]]) ->
     assert not any(cell[:1] in ("=", "@") for row in back for cell in row), "no spreadsheet takes it for a formula"
 
 
-@pytest.mark.slow
 @given(TABLES)
 def test_latex_has_a_cell_for_each_cell_and_nothing_unescaped(table: tuple[list[str], list[list[str]]]) -> None:
     headings, rows = table
@@ -54,7 +52,6 @@ def test_latex_has_a_cell_for_each_cell_and_nothing_unescaped(table: tuple[list[
         assert not set("%#_") & set(plain)
 
 
-@pytest.mark.slow
 @given(TABLES)
 def test_markdown_has_a_cell_for_each_cell(table: tuple[list[str], list[list[str]]]) -> None:
     headings, rows = table
@@ -77,7 +74,6 @@ def test_numbers_are_on_the_right() -> None:
     assert "|---|---:|---:|---|" in formats.render(["name", "n", "rate", "how"], rows, Format.MARKDOWN)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "words", [["humans", "list"], ["tasks", "list"], ["tasks", "list", "smoke"], ["robots", "list"]]
 )
@@ -94,7 +90,6 @@ def test_lists_have_every_format(words: list[str]) -> None:
     assert said("--format", "latex").endswith("\\bottomrule\n\\end{tabular}\n")
 
 
-@pytest.mark.slow
 def test_two_formats_at_once_are_a_mistake() -> None:
     found = CliRunner().invoke(app, ["humans", "list", "--json", "--format", "csv"])
     assert found.exit_code == 2
@@ -111,7 +106,6 @@ def test_the_page_names_every_format(root: Path) -> None:
     assert all(f"`--format {shape}`" in text for shape in Format if shape is not Format.TABLE)
 
 
-@pytest.mark.slow
 def test_the_board_is_listed_from_what_was_built(root: Path, tmp_path: Path) -> None:
     def said(*more: str) -> str:
         found = CliRunner().invoke(app, ["leaderboard", "list", "--board", str(root / "leaderboard"), *more])

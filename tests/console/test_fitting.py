@@ -69,7 +69,6 @@ def test_what_stands_below_a_table_stays():
     assert text.rstrip().endswith("and a last word")
 
 
-@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(
     st.integers(20, 100),

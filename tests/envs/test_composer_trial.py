@@ -255,7 +255,6 @@ def test_composers_hooks_and_delays_work_in_ticks(world: World) -> None:
     assert ticks == [0, 0, 1, 2, 3]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("suite", "agent"), [("smoke", "frontier"), ("smoke", "oracle")])
 def test_a_trial_in_steps_is_the_trial_of_the_batch(suite: str, agent: str) -> None:
     session = make_sessions(tasks.load_suite(suite), agent=agent)[0]
@@ -263,7 +262,6 @@ def test_a_trial_in_steps_is_the_trial_of_the_batch(suite: str, agent: str) -> N
     assert [alike for _, alike, _, _ in composer_trials.compare(short, TrialRunner())] == [True] * 3
 
 
-@pytest.mark.slow
 def test_a_tour_and_the_task_after_it_are_one_episode() -> None:
     session = make_sessions(tasks.load_suite("rearrange"), agent="oracle", robot="tender")[0]
     task = session.trials[0].task
@@ -274,7 +272,6 @@ def test_a_tour_and_the_task_after_it_are_one_episode() -> None:
     assert alike
 
 
-@pytest.mark.slow
 def test_rewards_add_up_to_the_progress_that_was_made() -> None:
     session, runner = make_sessions(tasks.load_suite("tidy"), agent="oracle", robot="tender")[0], TrialRunner()
     spec = session.trials[0]

@@ -27,7 +27,6 @@ def test_the_limit_is_nine_hundred_ticks_exactly() -> None:
     assert len(log.paths[HUMAN]) == len(log.paths["robot"]) == 451
 
 
-@pytest.mark.slow
 def test_it_ends_at_the_first_tick_at_which_the_goal_is_met() -> None:
     log = run(Stage(seen=37), Mind(), Mind())
     assert (log.ticks, log.met, log.ratings, kinds(log)[-1]) == (37, True, {"human": 5}, "success")

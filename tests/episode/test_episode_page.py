@@ -6,10 +6,8 @@ import doctest
 from pathlib import Path
 
 import pages
-import pytest
 
 
-@pytest.mark.slow
 def test_the_examples_of_the_page_do_what_it_shows(root: Path) -> None:
     text = (root / "docs" / "episode.md").read_text(encoding="utf-8")
     test = doctest.DocTestParser().get_doctest(pages.only_code(text), {}, "episode.md", "docs/episode.md", 0)

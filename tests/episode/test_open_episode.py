@@ -66,7 +66,6 @@ def actors(root: int) -> dict[str, Any]:
     return {**people, **robots}
 
 
-@pytest.mark.slow
 @settings(max_examples=25)
 @given(roots, st.randoms(use_true_random=False))
 def test_the_order_of_calls_within_a_tick_never_matters(root: int, order: random.Random) -> None:
@@ -75,7 +74,6 @@ def test_the_order_of_calls_within_a_tick_never_matters(root: int, order: random
     assert ended(episode) == played(root)
 
 
-@pytest.mark.slow
 @settings(max_examples=25)
 @given(roots, st.integers(0, 119))
 def test_a_copy_has_the_same_future(root: int, ticks: int) -> None:
@@ -91,7 +89,6 @@ def test_a_copy_has_the_same_future(root: int, ticks: int) -> None:
     assert ended(copy) == ended(episode) == played(root)
 
 
-@pytest.mark.slow
 @settings(max_examples=25)
 @given(roots, st.sets(st.integers(0, 100), max_size=5))
 def test_pausing_changes_nothing(root: int, pauses: set[int]) -> None:
@@ -109,7 +106,6 @@ def test_pausing_changes_nothing(root: int, pauses: set[int]) -> None:
     assert len(log.events) - len(quiet) == 2 * len([tick for tick in pauses if tick < log.ticks])
 
 
-@pytest.mark.slow
 @settings(max_examples=25)
 @given(roots)
 def test_decisions_that_cost_nothing_are_those_of_lock_step(root: int) -> None:
@@ -252,7 +248,6 @@ def batched(inputs: list[int]) -> Iterator[tuple[int, ...]]:
     return (tuple(inputs[k : k + 6]) for k in range(0, len(inputs), 6))
 
 
-@pytest.mark.slow
 @settings(max_examples=10)
 @given(st.data())
 def test_a_trial_is_repeated_from_the_inputs_in_its_log(house: World, data: st.DataObject) -> None:

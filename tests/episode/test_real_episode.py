@@ -33,7 +33,6 @@ def logs(runner: TrialRunner, session: Session) -> list[EpisodeLog]:
         return [play(one, runner.world(one), people.humans, people.ready_agents()) for one in session.trials[:TRIALS]]
 
 
-@pytest.mark.slow
 def test_driven_from_outside_it_is_the_same_trial(
     runner: TrialRunner, session: Session, logs: list[EpisodeLog]
 ) -> None:
@@ -42,7 +41,6 @@ def test_driven_from_outside_it_is_the_same_trial(
         assert [drive(one, runner.world(one), people.humans, people.ready_agents()) for one in trials] == logs
 
 
-@pytest.mark.slow
 def test_decisions_that_cost_nothing_change_nothing(
     runner: TrialRunner, session: Session, logs: list[EpisodeLog]
 ) -> None:
@@ -55,7 +53,6 @@ def test_decisions_that_cost_nothing_change_nothing(
     assert free == threads == logs[0]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("at", [0, 57, 161])
 def test_a_copy_goes_on_as_the_trial_does(
     runner: TrialRunner, session: Session, logs: list[EpisodeLog], at: int

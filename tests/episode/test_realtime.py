@@ -69,7 +69,6 @@ def test_lock_step_waits_for_every_mind() -> None:
     assert not any(event.kind == "thought" for event in log.events)
 
 
-@pytest.mark.slow
 @given(seconds=st.floats(0.0, 0.35), busy=st.integers(1, 4))
 def test_no_thinking_is_rounded_away(seconds: float, busy: int) -> None:
     clock, stage = Clock(), Stage(seen=200, busy=busy)

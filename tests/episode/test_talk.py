@@ -22,8 +22,6 @@ from hthor.types import HUMAN, AgentRef, Goal, HumanSeat, Pose, RobotSeat, TaskS
 from hthor.types.events import Accepted, Answered, Asked, Event, Offer, Replied, Sent, Shown
 from hthor.world import World
 
-pytestmark = pytest.mark.slow
-
 BLIND = msgspec.structs.replace(Parameters(), lam0=1e-9, p_slip=0.0)
 """Somebody who never notices the apple, so that the robot finds it first."""
 STUBBORN = msgspec.structs.replace(BLIND, a0=-20.0, p_ignore=1.0)

@@ -15,6 +15,8 @@ from hthor.eval.agent_check import checks
 from hthor.eval.runner import trial_runner
 from hthor.eval.runner.trial_runner import Sources
 
+pytestmark = pytest.mark.usefixtures("shared_worlds", "no_workers")
+
 HEAD = "import random, time\nfrom hthor.types import *\n"
 AGENTS = {
     "raises": (
@@ -92,7 +94,6 @@ def check(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -
     return run
 
 
-@pytest.mark.slow
 def test_what_agent_new_writes_is_sound(check: Any, tmp_path: Path) -> None:
     assert check("new", tmp_path / "mine.py")[0] == 0
     code, out = check("check", tmp_path / "mine.py")
@@ -102,7 +103,6 @@ def test_what_agent_new_writes_is_sound(check: Any, tmp_path: Path) -> None:
     assert "warning" not in out
 
 
-@pytest.mark.slow
 def test_the_agent_of_the_readme_is_sound_and_warned_of_nothing(check: Any, root: Path) -> None:
     """The one that the README shows is the one in examples/."""
     file = root / "examples" / "wanderer.py"
@@ -114,7 +114,6 @@ def test_the_agent_of_the_readme_is_sound_and_warned_of_nothing(check: Any, root
     assert "warning" not in out
 
 
-@pytest.mark.slow
 def test_a_program_is_checked_like_a_file(check: Any) -> None:
     words = f"cmd:{sys.executable} {Path(__file__).parents[2] / 'examples' / 'wire_agent.py'}"
     code, out = check("check", words)
@@ -127,7 +126,6 @@ def test_what_ships_needs_no_check() -> None:
         checks.check_agent("oracle")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", AGENTS)
 def test_each_check_finds_what_it_is_there_for(name: str, check: Any, tmp_path: Path) -> None:
     body, expected = AGENTS[name]

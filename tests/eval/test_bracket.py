@@ -116,7 +116,6 @@ def test_a_tie_of_the_population_is_no_conclusion():
 RATE = st.integers(0, 20).map(lambda n: n / 20)
 
 
-@pytest.mark.slow
 @given(
     st.lists(RATE, min_size=3, max_size=3),
     st.lists(RATE, min_size=3, max_size=3),

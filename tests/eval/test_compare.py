@@ -29,6 +29,8 @@ from hthor.eval.runner import progress, run
 from hthor.eval.statistics import power
 from hthor.report.terminal import result_tables
 
+pytestmark = pytest.mark.usefixtures("shared_worlds", "no_workers")
+
 
 def _run(folder: Path, name: str, *, absent: bool = False, seed: int = 0, make=fakes.player, count: int = 60) -> Path:
     plan, dealt = fakes.run_of(count, name=name, absent=absent, seed=seed)
@@ -48,7 +50,6 @@ def runs(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.mark.slow
 def test_an_agent_cannot_be_told_from_itself_under_another_name(runs: Path):
     pair = compare.compare_runs([runs / "helper", runs / "twin"]).pairs[0]
     assert pair.n == 60
@@ -60,7 +61,6 @@ def test_an_agent_cannot_be_told_from_itself_under_another_name(runs: Path):
     assert pair.sentence.endswith("success was the same in every trial.")
 
 
-@pytest.mark.slow
 def test_what_is_better_is_said_to_be_and_by_how_much(runs: Path):
     found = compare.compare_runs([runs / "leaning" / "alone", runs / "leaning" / "better"])
     pair = found.pairs[0]
@@ -75,7 +75,6 @@ def test_what_is_better_is_said_to_be_and_by_how_much(runs: Path):
     assert compare.compare_runs([runs / "leaning" / "better", runs / "leaning" / "alone"]).worse
 
 
-@pytest.mark.slow
 def test_a_comparison_is_the_mirror_of_its_mirror(runs: Path):
     one, other = (runs / "leaning" / name for name in ("alone", "better"))
     here, there = compare.compare_runs([one, other]).pairs[0], compare.compare_runs([other, one]).pairs[0]
@@ -89,14 +88,12 @@ def test_a_comparison_is_the_mirror_of_its_mirror(runs: Path):
     assert (here.tally.wins, here.tally.losses) == (there.tally.losses, there.tally.wins)
 
 
-@pytest.mark.slow
 @given(st.integers(0, 60), st.integers(0, 60))
 def test_mcnemar_is_the_binomial_test(one: int, other: int):
     expected = scipy_stats.binomtest(one, one + other).pvalue if one + other else 1.0
     assert paired_difference.exact_p_value(one, other) == pytest.approx(expected, rel=1e-4)
 
 
-@pytest.mark.slow
 @given(st.lists(st.floats(0, 1), min_size=1, max_size=8))
 def test_holm_is_never_bolder_than_one_test_nor_shyer_than_bonferroni(p: list[float]):
     adjusted = paired_difference.holm_adjusted(p)
@@ -117,7 +114,6 @@ def test_the_interval_and_p_say_the_same(outcomes: list[tuple[bool, bool]]):
     assert found.separated == (low > 0.0 or high < 0.0)
 
 
-@pytest.mark.slow
 def test_several_runs_are_compared_pair_by_pair(runs: Path):
     found = compare.compare_runs([runs / "helper", runs / "twin", runs / "helper"])
     assert [party.name for party in found.runs] == ["helper (helper) #1", "twin", "helper (helper) #3"]
@@ -125,7 +121,6 @@ def test_several_runs_are_compared_pair_by_pair(runs: Path):
     assert all(pair.p_holm == 1.0 for pair in found.pairs)
 
 
-@pytest.mark.slow
 @settings(max_examples=100, deadline=None)
 @given(st.lists(st.tuples(st.floats(-1, 1), st.floats(0, 1)), min_size=1, max_size=8))
 def test_a_verdict_and_the_level_of_its_interval_say_the_same(differences: list[tuple[float, float]]):
@@ -158,7 +153,6 @@ def four() -> tuple[compare.LoadedRun, ...]:
     return tuple(run(name, rate) for name, rate in zip(names, (0.5, 0.6, 0.52, 0.51), strict=True))
 
 
-@pytest.mark.slow
 def test_where_the_verdict_is_adjusted_its_interval_is_too_and_both_say_so(four: tuple[compare.LoadedRun, ...]):
     (alone,), among = compare.compare_pairs(four[:2]), compare.compare_pairs(four)
     assert alone.better == "one"
@@ -203,7 +197,6 @@ def test_a_plan_for_another_difference_scales_what_was_measured(runs: Path):
     assert near.unpaired.trials > near.paired.trials
 
 
-@pytest.mark.slow
 def test_other_conditions_are_refused_by_name(runs: Path, tmp_path: Path):
     other = _run(tmp_path, "helper", seed=1, count=10)
     with pytest.raises(RunError, match=r"suite\.sha256 is .* other tasks"):
@@ -228,7 +221,6 @@ def test_an_occasion_is_the_trial_without_a_robot():
 # ------------------------------------------------------------------------------------------------------------- uplift
 
 
-@pytest.mark.slow
 def test_uplift_is_the_comparison_with_the_run_without_a_robot_that_lies_beside(runs: Path):
     folder = runs / "leaning"
     result = result_file.load_result(folder / "better")
@@ -246,7 +238,6 @@ def _better(folder: Path) -> Path:
     return _run(folder, "better", make=fakes.leaning_player, count=20)
 
 
-@pytest.mark.slow
 def test_a_copied_run_keeps_its_uplift_with_a_note_and_loses_the_note_where_its_control_is(tmp_path: Path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     whole = _better(tmp_path / "runs" / "here")
@@ -263,7 +254,6 @@ def test_a_copied_run_keeps_its_uplift_with_a_note_and_loses_the_note_where_its_
     assert aggregate.rescore(moved)[1].uplift == before.uplift, "found below ./runs, by what it is"
 
 
-@pytest.mark.slow
 def test_an_older_result_does_not_lose_its_uplift_either(tmp_path: Path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     whole = _better(tmp_path / "runs")
@@ -273,7 +263,6 @@ def test_an_older_result_does_not_lose_its_uplift_either(tmp_path: Path, monkeyp
     assert aggregate.rescore(whole)[1].uplift.note == baseline.RECORDED
 
 
-@pytest.mark.slow
 def test_a_finished_run_that_is_evaluated_again_without_its_control_keeps_its_uplift(tmp_path: Path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     whole = _better(tmp_path / "runs")
@@ -283,7 +272,6 @@ def test_a_finished_run_that_is_evaluated_again_without_its_control_keeps_its_up
     assert result_file.load_result(whole).uplift.sr == before.sr
 
 
-@pytest.mark.slow
 def test_of_several_controls_it_is_the_one_that_the_result_names(tmp_path: Path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     whole = _better(tmp_path / "runs")
@@ -297,7 +285,6 @@ def test_of_several_controls_it_is_the_one_that_the_result_names(tmp_path: Path,
     assert baseline.baseline_folder(whole, RunFolder(whole).config).name == "alone"
 
 
-@pytest.mark.slow
 def test_a_result_of_another_run_lends_no_uplift(tmp_path: Path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     whole = _better(tmp_path / "runs")
@@ -307,7 +294,6 @@ def test_a_result_of_another_run_lends_no_uplift(tmp_path: Path, monkeypatch):
     assert result_file.stored_uplift(whole, run=RunFolder(whole).config.sha256) is None
 
 
-@pytest.mark.slow
 def test_half_a_control_is_none(tmp_path: Path):
     folder = _run(tmp_path, "helper", count=20)
     alone = _run(tmp_path, "alone", absent=True, count=20)
@@ -317,7 +303,6 @@ def test_half_a_control_is_none(tmp_path: Path):
     assert baseline.find_baseline(folder, RunFolder(folder).config) is None
 
 
-@pytest.mark.slow
 def test_a_folder_of_another_program_that_vanishes_during_the_search_is_no_error(tmp_path: Path, monkeypatch):
     def scan(path: str | Path | int = ".") -> Iterator[os.DirEntry[str]]:
         if Path(str(path)).name == "vanishing":

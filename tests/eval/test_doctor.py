@@ -32,7 +32,6 @@ def found(health: DoctorReport, name: str) -> CheckResult:
     return next(one for one in health.findings if one.name == name)
 
 
-@pytest.mark.slow
 def test_the_command_leaves_nothing_and_its_code_says_whether_all_is_well(examined) -> None:
     health, done, folder = examined
     assert list(folder.iterdir()) == []
@@ -42,7 +41,6 @@ def test_the_command_leaves_nothing_and_its_code_says_whether_all_is_well(examin
     assert len({one.name for one in health.findings}) == len(health.findings)
 
 
-@pytest.mark.slow
 def test_the_first_level_starts_and_the_robot_sees(examined) -> None:
     health, _, _ = examined
     assert found(health, "isolation L1").status == "ok"
@@ -50,7 +48,6 @@ def test_the_first_level_starts_and_the_robot_sees(examined) -> None:
     assert found(health, "mujoco").status == "ok"
 
 
-@pytest.mark.slow
 def test_the_reference_is_that_of_this_code(examined) -> None:
     one = found(examined[0], "determinism")
     assert one.status == "ok", f"{one.says}: {STALE}"

@@ -21,6 +21,8 @@ from hthor.eval.records import trial_record
 from hthor.eval.results.result_file import RunResult, Scores
 from scripts import metrics_reference
 
+pytestmark = pytest.mark.usefixtures("shared_worlds", "no_workers")
+
 DOCS = Path(__file__).parents[2] / "docs" / "metrics.md"
 ADDED = '''
 """How often the human spoke with its hands."""
@@ -73,7 +75,6 @@ def _run(folder: Path, name: str, *, absent: bool = False) -> Path:
     return folder
 
 
-@pytest.mark.slow
 def test_a_metric_is_added_by_one_file(tmp_path: Path) -> None:
     ignored = shutil.ignore_patterns("__pycache__", "data", "unseen", "suites.json")
     shutil.copytree(code_identity.PACKAGE, tmp_path / "hthor", ignore=ignored)

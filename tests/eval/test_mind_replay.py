@@ -31,6 +31,8 @@ from hthor.tasks.suite import encode_suite, make_suite
 from hthor.types import HUMAN
 from hthor.types.events import Attempt
 
+pytestmark = pytest.mark.usefixtures("shared_worlds", "no_workers")
+
 PNG = b"\x89PNG\r\n"
 
 
@@ -54,14 +56,12 @@ def heard(run: Path) -> list[tuple[TrialRecord, HumanTrace]]:
     return [(one, human_trace.trace_human(RunFolder(run), one, RunFiles())) for one in records]
 
 
-@pytest.mark.slow
 def test_a_trial_is_the_same_while_somebody_listens(heard: list[tuple[TrialRecord, HumanTrace]]) -> None:
     assert [stream.same for _, stream in heard] == [True] * 3
     assert all(stream.key == record.key for record, stream in heard)
     assert all([e.tick for e in s.events] == sorted(e.tick for e in s.events) for _, s in heard)
 
 
-@pytest.mark.slow
 def test_a_trial_is_the_same_while_it_is_filmed_and_another_one_is_not_shown(run: Path) -> None:
     one = find.find_trial(RunFolder(run), "1")
     views = camera_frames.render_frames(run, one, [0, one.ticks]).views
@@ -73,7 +73,6 @@ def test_a_trial_is_the_same_while_it_is_filmed_and_another_one_is_not_shown(run
         camera_frames.render_frames(run, msgspec.structs.replace(one, ticks=one.ticks - 1), [0])
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("seat", "end"), [("human", "png"), ("robot", "webm")])
 def test_the_command_draws_what_a_seat_saw(
     run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, seat: str, end: str
@@ -89,7 +88,6 @@ def test_the_command_draws_what_a_seat_saw(
         assert cv2.imread(str(out)).shape[1] == 1440
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("more", "words"),
     [
@@ -106,7 +104,6 @@ def test_a_wrong_name_is_refused_before_anything_is_played(run: Path, more: list
     assert words in str(done.exception) + done.output
 
 
-@pytest.mark.slow
 def test_the_stream_tells_what_the_log_has_and_more(heard: list[tuple[TrialRecord, HumanTrace]]) -> None:
     for record, stream in heard:
         logged = [event.tick for event in record.journal if event.kind == "choice" and event.aim == "target"]
@@ -121,7 +118,6 @@ def test_the_stream_tells_what_the_log_has_and_more(heard: list[tuple[TrialRecor
     assert {"beliefs", "choice", "noticed", "aim", "trust", "weighed", "offer", "shown"} <= kinds
 
 
-@pytest.mark.slow
 def test_beliefs_and_chances_add_up(heard: list[tuple[TrialRecord, HumanTrace]]) -> None:
     seen = 0
     for _, stream in heard:
@@ -137,7 +133,6 @@ def test_beliefs_and_chances_add_up(heard: list[tuple[TrialRecord, HumanTrace]])
     assert seen
 
 
-@pytest.mark.slow
 def test_the_terms_of_an_answer_are_its_chance(heard: list[tuple[TrialRecord, HumanTrace]]) -> None:
     weighed = [event for _, stream in heard for event in stream.events if event.kind == "weighed"]
     assert weighed
@@ -153,7 +148,6 @@ def test_trust_at_the_end_is_what_the_next_trial_begins_with(heard: list[tuple[T
         assert before[-1] == after[0]
 
 
-@pytest.mark.slow
 def test_it_is_drawn(heard: list[tuple[TrialRecord, HumanTrace]], tmp_path: Path) -> None:
     record, stream = max(heard, key=lambda pair: len(pair[1].events))
     house = render_trial.load_house(tmp_path, record)
@@ -165,7 +159,6 @@ def test_it_is_drawn(heard: list[tuple[TrialRecord, HumanTrace]], tmp_path: Path
     assert human_trace_timeline.row_names(quiet) == ["is about"]
 
 
-@pytest.mark.slow
 def test_the_command_prints_thoughts_or_draws_them(run: Path, heard: list[tuple[TrialRecord, HumanTrace]]) -> None:
     found = CliRunner().invoke(app, ["replay", str(run), "1", "--mind", "--json"])
     assert found.exit_code == 0, found.output
@@ -197,7 +190,6 @@ def test_whose_agent_is_a_file_needs_the_file(run: Path) -> None:
         session_history.replay_team(RunFolder(run), spec, RunFiles(), GuestConfig())
 
 
-@pytest.mark.slow
 def test_a_trial_with_a_fault_repeats_itself_too(run: Path, tmp_path: Path) -> None:
     """What the agent raised names its file; the log has it without the folder, and so must the second time."""
     agent = tmp_path / "clumsy.py"

@@ -19,6 +19,8 @@ from hthor.eval.runner.messages import TrialDone, TrialOutcome
 from hthor.eval.runner.worker import SessionPlayer
 from hthor.types import Action, Observation, Pose
 
+TRIAL = fakes.run_of()[1][0].trials[0]
+
 
 def look(tick: int) -> Observation:
     return Observation(tick=tick, pose=Pose(x=1.0, y=2.0), idle=True, senses=None)
@@ -43,9 +45,8 @@ def left(key: str, kind: str = "raised") -> fault_report.FaultReport:
         mind.act(look(tick))
     with pytest.raises(ValueError):
         mind.act(look(30))
-    trial = fakes.run_of()[1][0].trials[0]
     fault = Fault(seat="robot", kind=kind, tick=30, detail="ValueError: tired")
-    return fault_report.describe_faults(key, trial, [fault], {"robot": mind})
+    return fault_report.describe_faults(key, TRIAL, [fault], {"robot": mind})
 
 
 def test_the_last_looks_and_the_last_words_are_kept_and_read_again(tmp_path: Path):
@@ -62,7 +63,6 @@ def test_the_last_looks_and_the_last_words_are_kept_and_read_again(tmp_path: Pat
         fault_report.load_fault_report(tmp_path / "faults" / "ab.json")
 
 
-@pytest.mark.slow
 def test_a_thousand_faults_fill_no_disk(tmp_path: Path):
     for command in range(2):  # the second one resumes
         keeper = fault_report.FaultArchive(tmp_path)
@@ -74,7 +74,6 @@ def test_a_thousand_faults_fill_no_disk(tmp_path: Path):
     assert sum(path.stat().st_size for path in (tmp_path / "faults").iterdir()) < 8 << 20
 
 
-@pytest.mark.slow
 def test_a_report_travels_with_the_message_of_its_trial():
     """Two workers in one process, turn by turn: each report comes with its own trial, and is kept nowhere else."""
     _, dealt = fakes.run_of(20, name="clumsy")

@@ -33,10 +33,11 @@ from hthor.guest import GuestFault
 from hthor.leaderboard.entries import overrides
 from hthor.types import Action
 
+pytestmark = pytest.mark.usefixtures("shared_worlds", "no_workers")
+
 SMOKE = tasks.load_suite("smoke").tasks
 
 
-@pytest.mark.slow
 @settings(deadline=None)
 @given(st.integers(1, len(SMOKE) - 1))
 def test_a_larger_choice_contains_a_smaller_one(count: int) -> None:
@@ -46,7 +47,6 @@ def test_a_larger_choice_contains_a_smaller_one(count: int) -> None:
     assert list(some) == [task for task in SMOKE if task in some], "in the suite's order"
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("count", [10, 20, 30])
 def test_a_choice_is_spread_over_houses_and_kinds(count: int) -> None:
     whole, some = (
@@ -126,7 +126,6 @@ class Agent:
 """
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("seconds", [0.1, None])
 def test_an_agent_that_takes_longer_than_the_limit_fails(tmp_path: Path, seconds: float | None) -> None:
     (tmp_path / "slow.py").write_text(SLOW)
@@ -213,7 +212,6 @@ def told(*words: str) -> dict[str, Any]:
     return json.loads(found.stdout)
 
 
-@pytest.mark.slow
 def test_runs_are_listed_even_beside_broken_ones(shelf: Path) -> None:
     document = told("runs", "list", str(shelf))
     found = {one["folder"]: one for one in document["runs"]}
@@ -239,7 +237,6 @@ def test_a_folder_without_runs_says_so(tmp_path: Path) -> None:
         CliRunner().invoke(app, ["runs", "list", str(tmp_path / "none")], catch_exceptions=False)
 
 
-@pytest.mark.slow
 def test_a_run_is_viewed_with_what_to_do_next(shelf: Path) -> None:
     document = told("runs", "view", str(shelf / "deep" / "half"))
     assert document["result"] is None, "trials are missing"
@@ -250,7 +247,6 @@ def test_a_run_is_viewed_with_what_to_do_next(shelf: Path) -> None:
     assert whole["next"] == [f"hthor replay {shelf}/whole 0", f"hthor report {shelf}/whole"]
 
 
-@pytest.mark.slow
 def test_trials_are_chosen_by_what_they_are(shelf: Path) -> None:
     def numbers(*words: str) -> list[int]:
         return [one["number"] for one in told("runs", "view", str(shelf / "whole"), *words)["trials"]]
@@ -267,7 +263,6 @@ def test_trials_are_chosen_by_what_they_are(shelf: Path) -> None:
     assert f"{len(numbers('--house', 'barn'))} of 20 trials" in shown
 
 
-@pytest.mark.slow
 def test_a_first_dry_run_plays_a_few_trials_and_keeps_none(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     words = ("eval", "--agent", "helper", "--suite", "fake", "--dry-run", "--out", str(tmp_path / "new"))
     code, document, said = run(*words, play="slow_player:0.02")

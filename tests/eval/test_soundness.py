@@ -134,7 +134,6 @@ def test_a_home_that_the_proof_refuses_is_followed_by_the_next_attempt(monkeypat
         house_soundness.generate_valid_home(7, 5)
 
 
-@pytest.mark.slow
 def test_a_home_is_sound_and_the_same_every_time():
     home = house_soundness.generate_valid_home(11, 4)
     assert check_soundness(home.house, house_soundness.RADIUS_M) == home.findings

@@ -41,7 +41,6 @@ def faults(task):
     return [(fault.field, fault.reason) for fault in solvability.check_task(task).faults]
 
 
-@pytest.mark.slow
 def test_a_sound_task_passes_and_tells_what_it_takes(task):
     verdict = solvability.check_task(task)
     assert verdict.faults == ()
@@ -51,7 +50,6 @@ def test_a_sound_task_passes_and_tells_what_it_takes(task):
     assert walking <= verdict.seconds <= walking + 15.0
 
 
-@pytest.mark.slow
 def test_an_object_that_would_fall_is_found(task):
     """Thirty centimetres above the table, and nothing else moves."""
     mug = next(one for one in task.objects if one.id == "mug")
@@ -63,7 +61,6 @@ def test_an_object_that_would_fall_is_found(task):
     assert all(way <= solvability.DRIFT_M for id, way in drift.items() if id != "mug")
 
 
-@pytest.mark.slow
 def test_what_the_record_says_of_places_is_measured(task):
     other = next(one for one in task.objects if one.id == "book")
     assert faults(with_object(task, "mug", near=other.support))[0][0] == "objects[5].near"
@@ -71,7 +68,6 @@ def test_what_the_record_says_of_places_is_measured(task):
     assert any(field == "objects[3].position" for field, _ in faults(with_object(task, "book", support=wrong)))
 
 
-@pytest.mark.slow
 def test_a_goal_that_is_met_at_the_start_or_cannot_be_is_found(task):
     start = next(one.position for one in task.objects if one.id == "mug")
     find = changed(
@@ -103,7 +99,6 @@ def test_houses_and_records_that_are_wrong_are_told_first(task):
     assert faults(changed(task, human_start=Pose(x=-50.0, y=0.0)))[0][0] == "human_start"
 
 
-@pytest.mark.slow
 def test_workers_check_what_one_process_checks(task):
     some = [task, changed(task, id="late", time_limit=2.0)]
     found = {verdict.task: verdict for verdict in solvability.check_tasks(some, jobs=2)}
@@ -115,7 +110,6 @@ def test_workers_check_what_one_process_checks(task):
 # --------------------------------------------------------------------------------------------------------- the person
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("number", range(0, 12, 3))
 def test_nobody_is_quicker_than_the_least_time_nor_than_their_pace(number):
     task = SMOKE.tasks[number]
@@ -127,7 +121,6 @@ def test_nobody_is_quicker_than_the_least_time_nor_than_their_pace(number):
     assert math.dist(feat.way[0], (task.human_start.x, task.human_start.y)) < 1e-9
 
 
-@pytest.mark.slow
 def test_several_jobs_are_done_one_after_the_other_and_what_takes_two_is_left(task):
     world = World("juniper")
     jobs = (Job(target="mug", relation="on", destinations=("dining_table",)), Job(target="book", relation="find"))

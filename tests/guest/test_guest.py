@@ -96,7 +96,6 @@ return Action(say=Send(text="Here.", object="apple", position=(1.0, 2.0, 0.8)))
     assert "neither is this" in guest.log
 
 
-@pytest.mark.slow
 def test_an_exception_is_reported_with_the_agents_own_frames(started: Callable[..., Guest]) -> None:
     caught = fault(started(agent("return self.helper()\n") + "    def helper(self):\n        return 1 / 0\n"))
     assert caught.kind == "raised"
@@ -106,7 +105,6 @@ def test_an_exception_is_reported_with_the_agents_own_frames(started: Callable[.
     assert "hthor/guest" not in caught.traceback
 
 
-@pytest.mark.slow
 def test_an_exception_in_begin_is_a_fault_too(write: Write) -> None:
     with Guest(write(agent("return Action()", begin="raise KeyError('lost')"))) as guest:
         with pytest.raises(GuestFault, match="KeyError: 'lost'") as caught:
@@ -114,7 +112,6 @@ def test_an_exception_in_begin_is_a_fault_too(write: Write) -> None:
         assert caught.value.kind == "raised"
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("act", "kind", "told"),
     [
@@ -141,7 +138,6 @@ def test_every_misdeed_is_a_fault(started: Callable[..., Guest], act: str, kind:
     assert (caught.kind, told in str(caught)) == (kind, True), str(caught)
 
 
-@pytest.mark.slow
 def test_a_hanging_agent_is_ended_at_its_deadline(started: Callable[..., Guest]) -> None:
     guest = started(agent("print('thinking')\nwhile True: pass"), step_s=0.3, bank_s=0)
     pid = guest._process.pid if guest._process else 0
@@ -152,7 +148,6 @@ def test_a_hanging_agent_is_ended_at_its_deadline(started: Callable[..., Guest])
     assert not living(pid)
 
 
-@pytest.mark.slow
 def test_an_agent_that_only_talks_is_ended_too(started: Callable[..., Guest]) -> None:
     guest = started(agent("while True: print('la' * 1000)"), step_s=0.3, bank_s=0)
     caught = fault(guest)
@@ -160,7 +155,6 @@ def test_an_agent_that_only_talks_is_ended_too(started: Callable[..., Guest]) ->
     assert len(caught.log) <= 16 << 10
 
 
-@pytest.mark.slow
 def test_the_hosts_own_time_is_not_charged(started: Callable[..., Guest]) -> None:
     class Slow(Sensors):
         def rgb(self) -> Any:
@@ -171,7 +165,6 @@ def test_the_hosts_own_time_is_not_charged(started: Callable[..., Guest]) -> Non
     assert guest.act(look(senses=Slow())) == Action()
 
 
-@pytest.mark.slow
 def test_a_fault_does_not_tell_what_a_clock_said(started: Callable[..., Guest]) -> None:
     guest = started(agent("time.sleep(60.0 if observation.tick else 0.3)\nreturn Action()"), step_s=0.2, bank_s=0.4)
     guest.act(look())
@@ -180,7 +173,6 @@ def test_a_fault_does_not_tell_what_a_clock_said(started: Callable[..., Guest]) 
     assert fault.value.detail == "the agent gave no answer within 0.2 s and what was left of 0.4 s more"
 
 
-@pytest.mark.slow
 def test_a_slow_step_is_paid_for_from_the_bank(started: Callable[..., Guest]) -> None:
     guest = started(agent("time.sleep(2.0 if observation.tick else 0)\nreturn Action()"), step_s=0.5, bank_s=2.5)
     assert [guest.act(look(tick)) for tick in (0, 1, 0)] == [Action()] * 3
@@ -188,7 +180,6 @@ def test_a_slow_step_is_paid_for_from_the_bank(started: Callable[..., Guest]) ->
         guest.act(look(1))
 
 
-@pytest.mark.slow
 def test_a_failing_sensor_is_not_the_agents_fault(started: Callable[..., Guest]) -> None:
     guest = started(agent("observation.depth\nreturn Action()"))
     with pytest.raises(ValueError, match="no picture today"):
@@ -205,7 +196,6 @@ def test_an_old_observation_cannot_be_read(started: Callable[..., Guest]) -> Non
 KEEP = "self.old.scan if self.old else None; self.old = observation"
 
 
-@pytest.mark.slow
 def test_after_a_fault_the_next_trial_starts_afresh(started: Callable[..., Guest]) -> None:
     guest = started(agent("if observation.tick: return 1 / 0\nreturn Action()"))
     assert guest.act(look(0)) == Action()
@@ -220,7 +210,6 @@ def test_after_a_fault_the_next_trial_starts_afresh(started: Callable[..., Guest
 COUNTER = "SEEN = []\n" + agent("SEEN.append(1)\nreturn Action(motion=Wait(seconds=float(len(SEEN))))")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("persistent", [False, True])
 def test_nothing_leaks_from_one_trial_to_the_next(started: Callable[..., Guest], persistent: bool) -> None:
     body = COUNTER.replace("class Agent:", "class Agent:\n    persistent = True" if persistent else "class Agent:")
@@ -232,7 +221,6 @@ def test_nothing_leaks_from_one_trial_to_the_next(started: Callable[..., Guest],
     assert guest.act(look()).motion.seconds == expected  # type: ignore[union-attr]
 
 
-@pytest.mark.slow
 def test_what_is_asked_for_is_told_without_importing_the_file(write: Write) -> None:
     path = write(
         '"""Doc."""\n'
@@ -250,7 +238,6 @@ def test_what_is_asked_for_is_told_without_importing_the_file(write: Write) -> N
     assert len(info.sha256) == 64
 
 
-@pytest.mark.slow
 def test_the_environment_is_small(write: Write, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SECRET_SALT", "pepper")
     with Guest(write(agent("print(sorted(os.environ)); return Action()"))) as guest:
@@ -260,7 +247,6 @@ def test_the_environment_is_small(write: Write, monkeypatch: pytest.MonkeyPatch)
         assert "SECRET_SALT" not in guest.log
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("body", "told"),
     [
@@ -279,7 +265,6 @@ def test_a_file_that_does_not_follow_the_contract_is_refused(write: Write, body:
         load_info(write(body))
 
 
-@pytest.mark.slow
 def test_a_missing_file_and_a_missing_class_are_refused(write: Write, tmp_path: Path) -> None:
     with pytest.raises(AgentError, match="cannot read the agent's file"):
         load_info(tmp_path / "nobody.py")
@@ -289,13 +274,11 @@ def test_a_missing_file_and_a_missing_class_are_refused(write: Write, tmp_path: 
         load_info(f"{path}:C")
 
 
-@pytest.mark.slow
 def test_an_endless_import_is_refused(write: Write) -> None:
     with pytest.raises(AgentError, match="timeout"):
         load_info(write("while True: pass\n"), start_s=0.5)
 
 
-@pytest.mark.slow
 def test_an_idle_guest_is_reused_for_the_very_same_agent_and_settings(write: Write) -> None:
     path, pool = write(COUNTER), GuestPool()
 

@@ -64,7 +64,6 @@ def _soon(guest: Guest, wanted: set[int]) -> bool:
     return False
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("level", "source"),
     [("L2", SAYS_WHERE), ("L3", SAYS_WHERE), ("L2", KEEPS_ITS_PROCESS)],
@@ -85,7 +84,6 @@ def test_they_take_turns_on_one_cpu_and_part_after_each_trial(tmp_path: Path, le
             assert os.sched_getaffinity(0) == everywhere
 
 
-@pytest.mark.slow
 def test_a_guest_with_threads_runs_everywhere(tmp_path: Path) -> None:
     agent = tmp_path / "agent.py"
     agent.write_text(SEVERAL_THREADS)
@@ -95,7 +93,6 @@ def test_a_guest_with_threads_runs_everywhere(tmp_path: Path) -> None:
         assert _soon(guest, everywhere)
 
 
-@pytest.mark.slow
 def test_an_agent_that_may_start_processes_is_left_alone(tmp_path: Path) -> None:
     agent = tmp_path / "agent.py"
     agent.write_text(SAYS_WHERE)
@@ -106,7 +103,6 @@ def test_an_agent_that_may_start_processes_is_left_alone(tmp_path: Path) -> None
         assert _where(guest.act(LOOK)) == everywhere
 
 
-@pytest.mark.slow
 def test_two_guests_share_the_place_and_what_starts_meanwhile_is_free(tmp_path: Path) -> None:
     agent = tmp_path / "agent.py"
     agent.write_text(SAYS_WHERE)

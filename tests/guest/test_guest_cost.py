@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+import levels
 import pytest
 
 from hthor import guest
@@ -31,8 +32,7 @@ def spent() -> float:
     return times.children_user + times.children_system + resource_usage.uncollected_cpu_s()
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("level", ["L1", "L2", "L3"])
+@pytest.mark.parametrize("level", levels.EVERY)
 def test_the_processor_time_of_guests_is_counted_once(level: str, tmp_path: Path) -> None:
     try:
         guest.in_force(level)
@@ -50,7 +50,6 @@ def test_the_processor_time_of_guests_is_counted_once(level: str, tmp_path: Path
     assert 0.55 <= spent() - before <= taken + 0.3
 
 
-@pytest.mark.slow
 def test_the_processor_time_of_an_idle_guest_is_counted_once(tmp_path: Path) -> None:
     path = tmp_path / "burns.py"
     path.write_text(BURNS)

@@ -23,6 +23,14 @@ from hthor.world import World
 
 LEVELS = ["L1", "L2", "L3"]
 CLOCKS = ["lockstep", "concurrent", "instant"]
+EVERY_COMMIT = {("L1", "lockstep"), ("L2", "lockstep"), ("L3", "concurrent"), ("L3", "instant")}
+"""Each level and each clock with some other; the rest is for the night."""
+
+
+def pairs(chosen: set[tuple[str, str]], clocks: list[str], levels: list[str]) -> list[Any]:
+    """Every level with every clock, as parameters."""
+    every = [(level, clock) for level in levels for clock in clocks]
+    return [pytest.param(*one, marks=[] if one in chosen else pytest.mark.nightly) for one in every]
 
 
 class Stage(WalkingStage):
@@ -138,9 +146,7 @@ def second_person(now: Observation) -> Action:
     return Action()
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("clock", CLOCKS)
-@pytest.mark.parametrize("level", LEVELS)
+@pytest.mark.parametrize(("level", "clock"), pairs(EVERY_COMMIT, CLOCKS, LEVELS))
 def test_a_guest_observes_what_a_local_agent_observes(level: str, clock: str, robots: Any) -> None:
     both = robots(level)
     log = run(clock_of(clock), both)
@@ -160,9 +166,7 @@ def test_a_guest_observes_what_a_local_agent_observes(level: str, clock: str, ro
     assert len({one.receipt.status for one in seen if one.receipt}) > 1
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("clock", CLOCKS[:2])
-@pytest.mark.parametrize("level", LEVELS[1:])
+@pytest.mark.parametrize(("level", "clock"), pairs(EVERY_COMMIT, CLOCKS[:2], LEVELS[1:]))
 def test_it_does_so_in_a_real_world(level: str, clock: str, robots: Any) -> None:
     """With pictures, which another thread draws while bodies drive."""
     objects = tuple((placed.id, placed.kind) for placed in TASK.objects)
@@ -176,7 +180,6 @@ def test_it_does_so_in_a_real_world(level: str, clock: str, robots: Any) -> None
         assert any(observation.inbox for observation, _, _ in one.decided)
 
 
-@pytest.mark.slow
 def test_a_clock_that_waits_gives_the_trial_of_lock_step(robots: Any) -> None:
     both = robots("L2")
     assert run(clock_of("lockstep"), both) == run(clock_of("instant"), both)

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import levels
 import numpy as np
 import pytest
 from msgspec import structs
@@ -46,7 +47,6 @@ from tests.support.guest_agents import BRIEFING, HEAD, Sensors, agent, living, l
 
 PACKAGE = Path(guest.__file__).parents[1]
 EXAMPLES = Path(__file__).resolve().parents[2] / "examples"
-LEVELS = ("L1", "L2", "L3")
 
 
 RECORDS = (Briefing, BodySpec, Job, Observation, Outcome, Receipt, Message, ThingState, Detection, Scan, Camera, Pose)
@@ -133,7 +133,6 @@ def package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-@pytest.mark.slow
 def test_a_module_is_imported_by_its_name(package: Path) -> None:
     with Guest("minds.careful:Agent") as mind:
         info = mind.load()
@@ -147,7 +146,6 @@ def test_a_module_is_imported_by_its_name(package: Path) -> None:
         load_info("minds.careful:Brave")
 
 
-@pytest.mark.slow
 def test_a_module_that_hides_behind_another_is_refused(package: Path) -> None:
     (package / "minds" / "__init__.py").write_text(
         "import sys\nimport minds.speed\nsys.modules['minds.careful'] = minds.speed\n"
@@ -156,8 +154,7 @@ def test_a_module_that_hides_behind_another_is_refused(package: Path) -> None:
         load_info("minds.careful:Agent")
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("level", LEVELS)
+@pytest.mark.parametrize("level", levels.EVERY)
 @pytest.mark.parametrize("words", [f"{sys.executable} wire_agent.py", "perl wire_agent.pl"], ids=["python", "perl"])
 def test_the_examples_of_the_wire_play(level: str, words: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(EXAMPLES)
@@ -170,7 +167,6 @@ def test_the_examples_of_the_wire_play(level: str, words: str, monkeypatch: pyte
             assert mind.act(look(1, Walled())).motion == Rotate(yaw=0.7)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("words", [f"{sys.executable} wire_agent.py", "perl wire_agent.pl"], ids=["python", "perl"])
 def test_the_examples_of_the_wire_answer_what_they_know(words: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(EXAMPLES)
@@ -220,8 +216,7 @@ def perl(tmp_path: Path) -> Callable[[str, str], str]:
     return write
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("level", ["L2", "L3"])
+@pytest.mark.parametrize("level", levels.CONFINED)
 def test_a_hostile_program_comes_to_nothing(level: str, perl: Callable[..., str], tmp_path: Path) -> None:
     (tmp_path / "salt.txt").write_text("pepper")
     attacks = {
@@ -242,7 +237,6 @@ def test_a_hostile_program_comes_to_nothing(level: str, perl: Callable[..., str]
         assert mind.act(look()) == Action(motion=Wait(seconds=1.0)), mind.log
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("act", "kind", "told"),
     [
@@ -269,7 +263,6 @@ def test_every_misdeed_of_a_program_is_a_fault(perl: Callable[..., str], act: st
         mind.begin(BRIEFING)
 
 
-@pytest.mark.slow
 def test_a_program_leaves_nothing_behind_where_it_may_fork(perl: Callable[..., str]) -> None:
     with Guest(perl("if (!fork) { setpgrp; sleep 600 }"), config=GuestConfig(isolation="L1")) as mind:
         mind.begin(BRIEFING)
@@ -280,7 +273,6 @@ def test_a_program_leaves_nothing_behind_where_it_may_fork(perl: Callable[..., s
     assert not living(group)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("persistent", [False, True])
 def test_a_program_has_a_process_a_trial_unless_it_says_otherwise(perl: Callable[..., str], persistent: bool) -> None:
     ended = "if ($message->{type} eq 'end') { next }"
@@ -303,7 +295,6 @@ def test_a_program_has_a_process_a_trial_unless_it_says_otherwise(perl: Callable
         assert last.seconds == (2.0 if persistent else 1.0)
 
 
-@pytest.mark.slow
 def test_an_agent_that_asks_for_gpus_gets_what_there_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(paths, "gpu_devices", lambda: ("/dev/null",))
     monkeypatch.setenv("CUDA_VISIBLE_DEVICES", "3")

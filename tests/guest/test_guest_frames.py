@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
@@ -23,8 +23,8 @@ SHAPES = arrays.array_shapes(min_dims=0, max_dims=4, max_side=9, min_side=0)
 TYPES = st.sampled_from(["u1", "<f4", "<i4", "<f8", "?"])
 
 
-@pytest.mark.slow
 @given(st.lists(TYPES.flatmap(lambda dtype: arrays.arrays(dtype, SHAPES)), max_size=4))
+@settings(max_examples=40)
 def test_what_is_put_in_comes_out_the_same(given_arrays: list[Any]) -> None:
     window = shared_frames.FrameWriter()
     view = shared_frames.FrameReader(window.handle)
@@ -84,7 +84,6 @@ class Coloured(Sensors):
         return np.arange(-4, 4, dtype=np.int32).reshape(2, 4)
 
 
-@pytest.mark.slow
 def test_a_guest_sees_what_its_robot_sees_and_nothing_of_the_trial_before(tmp_path: Path) -> None:
     path = tmp_path / "my_agent.py"
     path.write_text(HEAD + "import numpy as np\n" + agent(ACT.strip()))

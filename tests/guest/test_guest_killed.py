@@ -27,7 +27,6 @@ from tests.support.guest_agents import (
 )
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("level", "size"), PROCESS_CHAINS)
 def test_a_process_killed_from_outside_is_told_as_such(level: str, size: int, tmp_path: Path):
     for place in range(size):
@@ -42,7 +41,6 @@ def test_a_process_killed_from_outside_is_told_as_such(level: str, size: int, tm
             expect_gone(line)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("level", [level for level, _ in PROCESS_CHAINS[:2]] + [pytest.param("L3", marks=needs_bwrap)])
 def test_one_killed_while_it_starts_costs_no_level(level: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     real: Callable[..., GuestProcess] = startup.process.start_process
@@ -63,7 +61,6 @@ def test_one_killed_while_it_starts_costs_no_level(level: str, tmp_path: Path, m
         assert guest.load().isolation.level == level
 
 
-@pytest.mark.slow
 def test_one_killed_while_it_loads_its_file_is_told_as_such(tmp_path: Path):
     path = tmp_path / "agent.py"
     path.write_text("import os\nos.kill(os.getpid(), 9)\n")

@@ -57,7 +57,6 @@ def lying(talk: Callable[[Any], None]) -> Iterator[str]:
         yield url
 
 
-@pytest.mark.slow
 def test_a_served_agent_plays(tmp_path: Path) -> None:
     path = tmp_path / "my_agent.py"
     act = (
@@ -91,11 +90,10 @@ class Small(Sensors):
         return super().rgb()[:1, :1]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("talk", "kind", "told"),
     [
-        (lambda _: time.sleep(1.0), "timeout", "no answer within"),
+        (lambda _: time.sleep(0.6), "timeout", "no answer within"),
         (lambda connection: connection.close(), "died", "the server closed the connection"),
         (lambda connection: connection.socket.shutdown(2), "died", "the server closed the connection"),
         (lambda connection: connection.send("words"), "garbage", "not a message"),
@@ -120,7 +118,6 @@ def test_what_a_server_does_wrong_is_a_fault(talk: Callable[[Any], None], kind: 
         mind.begin(BRIEFING)
 
 
-@pytest.mark.slow
 def test_a_server_that_reads_nothing_is_given_up(tmp_path: Path) -> None:
     stop = threading.Event()
     picture = wire.encode(wire.Ask(what="rgb"))
@@ -151,7 +148,6 @@ def test_where_nobody_serves_the_run_does_not_begin_and_a_trial_has_a_fault() ->
         Guest(url).load()
 
 
-@pytest.mark.slow
 def test_a_server_that_never_listens_runs_out_of_time() -> None:
     """It answers looks that it has not read; what is sent to it piles up until nothing more fits."""
 
@@ -160,13 +156,12 @@ def test_a_server_that_never_listens_runs_out_of_time() -> None:
             connection.send(wire.encode(wire.Acted(action=Action())))
 
     words = look(room="r" * 8000)
-    with lying(deaf) as url, Guest(url, step_s=1.0, bank_s=0.0) as mind:
+    with lying(deaf) as url, Guest(url, step_s=0.5, bank_s=0.0) as mind:
         mind.begin(BRIEFING)
-        with pytest.raises(GuestFault, match="timeout: the agent read nothing for 1 s"):
+        with pytest.raises(GuestFault, match=r"timeout: the agent read nothing for 0\.5 s"):
             all(mind.act(words) for _ in range(20_000))
 
 
-@pytest.mark.slow
 def test_what_says_what_cannot_be_is_refused() -> None:
     for ready, told in (
         (wire.Ready(privileges=("x_ray",), wire=VERSION), "names? 'x_ray'. Valid: house_map"),
@@ -230,7 +225,6 @@ def _message(words: object) -> bytes:
     )
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("answers", [True, False])
 def test_a_flood_of_pings_comes_to_an_end(answers: bool) -> None:
     """Nobody reads what the library answers to them, so that its own thread waits while it holds all that it has."""
@@ -244,9 +238,8 @@ def test_a_flood_of_pings_comes_to_an_end(answers: bool) -> None:
         while True:
             one.sendall(bytes([0x89, 125]) + bytes(125))
 
-    began = time.monotonic()
     with raw(flood) as url:
-        mind = Guest(url, start_s=3.0, step_s=1.0, bank_s=0.0)
+        mind = Guest(url, start_s=1.0, step_s=0.5, bank_s=0.0)
 
         def play() -> None:
             mind.begin(BRIEFING)
@@ -256,7 +249,6 @@ def test_a_flood_of_pings_comes_to_an_end(answers: bool) -> None:
             play()
         mind.close()
     assert caught.value.kind in ("timeout", "died"), str(caught.value)
-    assert time.monotonic() - began < 30.0
 
 
 def test_a_server_is_where_its_address_says() -> None:

@@ -24,7 +24,6 @@ from tests.support.guest_agents import BRIEFING, HEAD, Sensors, agent, expect_go
 
 _T = TypeVar("_T")
 ROOT = Path(__file__).resolve().parents[2]
-LEVELS = ["L1", "L2", "L3"]
 SAYS_TICK = "return Action(motion=Wait(seconds=observation.tick + 1.0))"
 SLEEPS = "time.sleep(30.0 if observation.tick else 0.0)\n" + SAYS_TICK
 
@@ -50,8 +49,7 @@ def make(tmp_path: Path) -> Iterator[Callable[..., Guest]]:
         guest.close()
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("level", LEVELS)
+@pytest.mark.parametrize("level", levels.EVERY)
 def test_every_step_may_come_from_another_thread(level: str, make: Callable[..., Guest]) -> None:
     guest = make(SAYS_TICK, level)
     in_a_thread(guest.load)
@@ -66,8 +64,7 @@ def test_every_step_may_come_from_another_thread(level: str, make: Callable[...,
     assert not living(pid)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("level", LEVELS)
+@pytest.mark.parametrize("level", levels.EVERY)
 def test_it_sees_the_moment_that_was_shown_while_the_world_goes_on(level: str, make: Callable[..., Guest]) -> None:
     """Two agents in a thread each, while the main thread counts on; the readings come late, and in several steps."""
     act = """
@@ -136,8 +133,7 @@ if sys.argv[3] == "killed":
 """
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("level", LEVELS)
+@pytest.mark.parametrize("level", levels.EVERY)
 @pytest.mark.parametrize("how", ["killed", "done"])
 def test_it_ends_with_the_evaluation_though_a_thread_started_it(level: str, how: str, tmp_path: Path) -> None:
     levels.need(level)
@@ -150,7 +146,6 @@ def test_it_ends_with_the_evaluation_though_a_thread_started_it(level: str, how:
     expect_gone(pids)
 
 
-@pytest.mark.slow
 def test_deadlines_hold_in_a_thread_while_the_main_thread_computes(make: Callable[..., Guest]) -> None:
     guest = make(SLEEPS, step_s=0.3, bank_s=0.2)
     in_a_thread(lambda: guest.begin(BRIEFING))
@@ -171,8 +166,7 @@ def test_deadlines_hold_in_a_thread_while_the_main_thread_computes(make: Callabl
     assert guest.act(look()) == Action(motion=Wait(seconds=1.0))
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("level", LEVELS)
+@pytest.mark.parametrize("level", levels.EVERY)
 @pytest.mark.parametrize("ends", ["finish", "begin", "close"])
 def test_a_trial_ends_while_its_agent_still_decides(level: str, ends: str, make: Callable[..., Guest]) -> None:
     guest = make(SLEEPS, level, pool=GuestPool())
@@ -194,7 +188,6 @@ def test_a_trial_ends_while_its_agent_still_decides(level: str, ends: str, make:
     assert guest.pid == pid, "its supervisor had to be started again"
 
 
-@pytest.mark.slow
 def test_an_agent_that_keeps_its_process_completes_its_step(make: Callable[..., Guest]) -> None:
     guest = make("time.sleep(0.4)\n" + SAYS_TICK, head="persistent = True")
     guest.begin(BRIEFING)
@@ -209,7 +202,6 @@ def test_an_agent_that_keeps_its_process_completes_its_step(make: Callable[..., 
     assert guest.pid == pid
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux" or len(os.sched_getaffinity(0)) < 2, reason="needs a choice of CPUs")
 def test_threads_do_not_share_a_cpu_with_their_guests(make: Callable[..., Guest]) -> None:
     """Also if the main thread began the trial, and the other thread inherited its one CPU."""

@@ -18,6 +18,7 @@ from typing import Any
 import episode_fakes
 import eval_fakes
 import guest_fakes
+import levels
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -35,8 +36,6 @@ from hthor.guest.agent.agent_paths import AgentPaths
 from hthor.guest.agent.manifest import File
 from hthor.guest.client import file_recorder
 from tests.support.guest_agents import BRIEFING, HEAD, look
-
-LEVELS = ("L1", "L2", "L3")
 
 
 def write(
@@ -70,7 +69,6 @@ WEIGHTS = "name = 'net' + '-' + 'big.txt'\nassert open(HERE / 'weights' / name).
 """Opens a file whose name stands nowhere in the source."""
 
 
-@pytest.mark.slow
 def test_a_manifest_lists_what_is_imported_and_opened_while_it_comes_up_and_begins(tmp_path: Path) -> None:
     for name, text in {
         "helper.py": "import deep.inner\n",
@@ -104,7 +102,6 @@ def test_a_manifest_lists_what_is_imported_and_opened_while_it_comes_up_and_begi
     ]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("where", ["top", "init", "body"])
 @pytest.mark.parametrize(
     "opens", ["open(F, 'rb').read()", "os.close(os.open(F, 0))", "sqlite3.connect(F).execute('select 1')"]
@@ -122,7 +119,6 @@ def test_a_file_that_changes_makes_another_agent(tmp_path: Path, where: str, ope
     assert after.name == before.name == "agent"
 
 
-@pytest.mark.slow
 def test_an_agent_is_the_same_wherever_it_lies_and_whatever_holds_it(tmp_path: Path) -> None:
     (tmp_path / "a").mkdir()
     (tmp_path / "a" / "helper.py").write_text("")
@@ -137,7 +133,6 @@ def test_an_agent_is_the_same_wherever_it_lies_and_whatever_holds_it(tmp_path: P
     assert found[0] == found[1] == found[2]
 
 
-@pytest.mark.slow
 def test_libraries_and_this_package_are_no_part_of_an_agent_beside_them(tmp_path: Path) -> None:
     path = write(tmp_path / "a", top="import numpy, hthor.navigation")
     (tmp_path / "a" / "venv").mkdir()
@@ -150,7 +145,6 @@ def test_libraries_and_this_package_are_no_part_of_an_agent_beside_them(tmp_path
     assert names(path) == ["agent.py"]
 
 
-@pytest.mark.slow
 def test_compiled_files_beside_an_agent_are_never_run(tmp_path: Path) -> None:
     """A compiled file that says it is of the present source, though it is of another, would run unseen."""
     folder = tmp_path / "a"
@@ -200,7 +194,6 @@ def test_a_file_that_no_manifest_can_list_is_not_opened_unseen(tmp_path: Path, n
     assert recorder.take() == ()
 
 
-@pytest.mark.slow
 @given(st.lists(st.text(st.characters(codec="ascii", exclude_characters="/\0"), min_size=1, max_size=40), max_size=8))
 @settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_scanning_never_leaves_the_agents_folder(tmp_path: Path, words: list[str]) -> None:
@@ -260,8 +253,7 @@ def taking(tmp_path: Path) -> Path:
     return tmp_path / "own" / "agent.py"
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("level", LEVELS)
+@pytest.mark.parametrize("level", levels.EVERY)
 def test_arguments_reach_the_constructor_and_a_file_among_them_is_readable(taking: Path, level: str) -> None:
     at(level)
     out = taking.parents[1] / "out" / "net.txt"
@@ -274,7 +266,6 @@ def test_arguments_reach_the_constructor_and_a_file_among_them_is_readable(takin
     assert getattr(action.say, "text", None) == "learned True"
 
 
-@pytest.mark.slow
 def test_arguments_are_part_of_who_an_agent_is(taking: Path) -> None:
     out = taking.parents[1] / "out" / "net.txt"
     found = []
@@ -296,7 +287,6 @@ def test_arguments_are_part_of_who_an_agent_is(taking: Path) -> None:
     assert [file.path for file in made.files] == ["../net.txt", "agent.py"]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("words", "told"),
     [
@@ -315,13 +305,11 @@ def test_wrong_arguments_are_told_apart(taking: Path, words: list[str], told: st
     assert told in str(caught.value)
 
 
-@pytest.mark.slow
 def test_an_agent_without_arguments_says_so(tmp_path: Path) -> None:
     with pytest.raises(AgentError, match="Its constructor takes no arguments"):
         guest.load_info(write(tmp_path / "a"), config=GuestConfig(inputs=giving.parse_inputs(["speed=1"])))
 
 
-@pytest.mark.slow
 def test_a_command_gets_arguments_as_words(tmp_path: Path) -> None:
     (tmp_path / "mind.py").write_text("import sys\nprint(sys.argv[1:], file=sys.stderr)\nsys.exit(3)\n")
     with pytest.raises(AgentError, match=r"\['--speed=1', '--mode=fast'\]"):
@@ -331,8 +319,7 @@ def test_a_command_gets_arguments_as_words(tmp_path: Path) -> None:
         )
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("level", LEVELS)
+@pytest.mark.parametrize("level", levels.EVERY)
 def test_what_isolation_hides_is_named_and_readable_shows_it(tmp_path: Path, level: str) -> None:
     at(level)
     (tmp_path / "out" / "old").mkdir(parents=True)
@@ -355,7 +342,6 @@ def test_what_isolation_hides_is_named_and_readable_shows_it(tmp_path: Path, lev
     assert names(path, GuestConfig(isolation=level, inputs=given)) == ["../out/net.txt", "agent.py"]
 
 
-@pytest.mark.slow
 def test_a_missing_environment_variable_is_explained(tmp_path: Path) -> None:
     path = write(tmp_path / "a", "os.environ['MY_KEY']")
     with Guest(path) as mind, pytest.raises(GuestFault) as caught:
@@ -398,7 +384,6 @@ def test_a_served_agent_says_what_it_consists_of_and_that_is_marked(taking: Path
         server.shutdown()
 
 
-@pytest.mark.slow
 def test_compiled_files_beside_a_program_in_python_are_not_run(tmp_path: Path) -> None:
     (tmp_path / "helper.py").write_text("raise SystemExit('stale')\n")
     py_compile.compile(
@@ -410,7 +395,6 @@ def test_compiled_files_beside_a_program_in_python_are_not_run(tmp_path: Path) -
         guest.load_info(f"cmd:{sys.executable} {tmp_path / 'mind.py'}")
 
 
-@pytest.mark.slow
 def test_a_folder_with_too_many_files_is_not_made_readable(taking: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(agent_files, "_MOST_READABLE", 1)
     config = GuestConfig(inputs=giving.parse_inputs(readable=[taking.parents[1] / "out"]))
@@ -420,7 +404,6 @@ def test_a_folder_with_too_many_files_is_not_made_readable(taking: Path, monkeyp
         names(taking, config)
 
 
-@pytest.mark.slow
 def test_what_no_source_names_can_be_made_part_of_an_agent(tmp_path: Path) -> None:
     path = write(tmp_path / "a")
     (tmp_path / "a" / "w").mkdir()
@@ -485,7 +468,6 @@ def own(folder: Path, **parts: str) -> None:
     (folder / "weights" / "net-big.txt").write_text("1")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("how", CHANGES)
 def test_an_agent_that_was_changed_is_played_as_another(evaluate: Any, tmp_path: Path, how: str) -> None:
     parts, changed = CHANGES[how]
@@ -500,7 +482,6 @@ def test_an_agent_that_was_changed_is_played_as_another(evaluate: Any, tmp_path:
     assert after["hashes"]["run"] != before["hashes"]["run"]
 
 
-@pytest.mark.slow
 def test_a_folder_of_an_agent_that_was_changed_is_refused_by_the_files_name(evaluate: Any, tmp_path: Path) -> None:
     own(tmp_path / "a", top="import helper")
     first = evaluate("--out", "mine")
@@ -514,7 +495,6 @@ def test_a_folder_of_an_agent_that_was_changed_is_refused_by_the_files_name(eval
 OPENED = "name = 'net' + '-big.txt'\nopen(HERE / 'weights' / name).read()"
 
 
-@pytest.mark.slow
 def test_what_is_opened_only_in_play_is_checked_before_a_run_goes_on(evaluate: Any, tmp_path: Path) -> None:
     own(tmp_path / "a", act=OPENED)
     assert names(tmp_path / "a" / "agent.py") == ["agent.py"]
@@ -538,7 +518,6 @@ def test_what_is_opened_only_in_play_is_checked_before_a_run_goes_on(evaluate: A
     assert evaluate().exit_code == 2  # a finished run is not taken for that of the new weights
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("changed", ["helper.py", "weights/net-big.txt"])
 def test_a_file_that_changes_during_a_run_ends_it_and_is_named(
     evaluate: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, changed: str
@@ -560,7 +539,6 @@ def test_a_file_that_changes_during_a_run_ends_it_and_is_named(
     assert len(log.read_bytes().splitlines()) == 3
 
 
-@pytest.mark.slow
 def test_shards_have_one_manifest_between_them_or_are_not_merged(evaluate: Any, tmp_path: Path) -> None:
     own(tmp_path / "a", act=OPENED)
     whole = told(evaluate("--out", "whole"))
@@ -581,7 +559,6 @@ def test_shards_have_one_manifest_between_them_or_are_not_merged(evaluate: Any, 
     assert not Path("mixed").exists()
 
 
-@pytest.mark.slow
 def test_files_of_readable_folders_are_part_of_the_run(evaluate: Any, tmp_path: Path) -> None:
     own(tmp_path / "a")
     (tmp_path / "more").mkdir()

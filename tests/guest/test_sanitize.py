@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import pytest
 from hypothesis import given
 from hypothesis import strategies as some
 
 from hthor.guest.protocol.wire import is_printable_name, sanitize_text
 
 
-@pytest.mark.slow
 @given(some.text(some.characters(exclude_categories=())))
 def test_nothing_is_shown_but_what_can_be_seen_and_line_ends(text: str) -> None:
     told = sanitize_text(text)

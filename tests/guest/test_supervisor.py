@@ -48,7 +48,6 @@ print(json.dumps(done))
 """
 
 
-@pytest.mark.slow
 def test_what_imports_libraries_for_an_agent_can_do_little_else() -> None:
     try:
         guest.in_force("L2")
@@ -66,7 +65,6 @@ def test_what_imports_libraries_for_an_agent_can_do_little_else() -> None:
     assert [name for name, error in found.items() if not error] == list(allowed), found
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("level", ["L2", pytest.param("L3", marks=PROCESS_CHAINS[2].marks)])  # type: ignore[union-attr]
 def test_the_supervisor_of_a_guest_is_confined(level: str, tmp_path: Path) -> None:
     try:
@@ -90,7 +88,6 @@ print([name for name in NAMES if name in sys.modules], sys.argv)
 """
 
 
-@pytest.mark.slow
 def test_what_does_something_when_it_is_imported_is_not_preloaded(tmp_path: Path) -> None:
     quiet = ("venv", "json.tool", "colorsys")
     loud = ("venv.__main__", "this", "antigravity", "idlelib.idle", "turtledemo", "test.support", "unittest.__main__")

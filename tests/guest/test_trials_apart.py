@@ -7,6 +7,7 @@ import itertools
 from pathlib import Path
 from typing import NamedTuple
 
+import levels
 import pytest
 
 from hthor import guest
@@ -114,9 +115,8 @@ def source(case: Case) -> str:
     return HEAD.format(pipe=PIPE, **code)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", CASES)
-@pytest.mark.parametrize("level", ["L2", "L3"])
+@pytest.mark.parametrize("level", levels.CONFINED)
 def test_an_agent_finds_nothing_of_the_trial_before(level: str, name: str, tmp_path: Path) -> None:
     try:
         guest.in_force(level)

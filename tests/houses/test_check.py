@@ -81,7 +81,6 @@ def test_an_open_leaf_takes_some_of_the_doorway(width: float, bad: bool):
     assert ("door-clear" in broken(hung)) == bad
 
 
-@pytest.mark.slow
 @given(st.lists(st.tuples(st.floats(-1, 2), st.floats(1e-3, 1)), max_size=5))
 def test_the_widest_gap_is_free_and_the_widest(spans: list[tuple[float, float]]):
     covers = [(low, low + length) for low, length in spans]
@@ -174,7 +173,6 @@ def test_findings_come_with_errors_first_and_names_that_are_known():
 KINDS = [name for name in catalog.names() if catalog.kind(name).joints()]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", KINDS)
 @given(share=st.floats(0, 1), yaw=st.floats(-math.pi, math.pi))
 def test_an_opened_thing_keeps_its_parts_whole(name: str, share: float, yaw: float):
@@ -210,7 +208,6 @@ def test_the_upright_box_of_an_upright_part_is_the_part():
 # -------------------------------------------------------------------------------------------------------------- samples
 
 
-@pytest.mark.slow
 def test_lenient_judgement_of_the_samples_is_kind_and_strict_is_not(samples):
     spec = houses.load(samples[0])
     assert is_sound(check(spec, 0.20))

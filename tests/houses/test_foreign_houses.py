@@ -58,7 +58,6 @@ def test_the_newer_form_is_the_same_house():
     assert without_hash(built(newer)) == without_hash(built(lambda document: None))
 
 
-@pytest.mark.slow
 def test_the_newer_form_of_the_samples_is_the_same_house(samples: list[Path], tmp_path: Path):
     for path in samples[:3]:
         document = json.loads(path.read_bytes())
@@ -154,7 +153,6 @@ def test_an_asset_without_a_known_size_is_named_with_its_field():
         built(objaverse)
 
 
-@pytest.mark.slow
 def test_nearly_every_room_of_the_samples_can_be_reached_by_broader_bodies_too(samples: list[Path]):
     specs = [spec for spec in map(houses.load, samples) if len(spec.rooms) >= 3]
     for radius, share in ((0.20, 1.0), (0.25, 0.97)):
@@ -162,7 +160,6 @@ def test_nearly_every_room_of_the_samples_can_be_reached_by_broader_bodies_too(s
         assert sum(reached) >= share * len(specs)
 
 
-@pytest.mark.slow
 def test_what_the_generator_writes_is_read_back():
     document = generate(1, 4)
     house = loader.house_from_document(document, "made")

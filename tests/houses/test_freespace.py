@@ -102,7 +102,6 @@ laws = settings(max_examples=30, deadline=None)
 # ------------------------------------------------------------------------------------------------------------ the grid
 
 
-@pytest.mark.slow
 @laws
 @given(cluttered(), st.sampled_from([0.0, 0.12, 0.2, 0.35]))
 def test_a_cell_is_free_exactly_when_the_disc_about_its_middle_touches_nothing(spec, radius):
@@ -279,7 +278,6 @@ def test_a_path_is_free_and_as_long_as_the_distance(spec, p, q):
     assert sum(itertools.starmap(math.dist, itertools.pairwise(way))) == pytest.approx(paths.distance(a, b), abs=1e-9)
 
 
-@pytest.mark.slow
 @laws
 @given(cluttered(), shares)
 def test_no_path_is_longer_than_over_the_grid(spec, p):
@@ -292,7 +290,6 @@ def test_no_path_is_longer_than_over_the_grid(spec, p):
     assert all(length <= over[cell] + 1e-9 for length, cell in zip(exact, cells, strict=True))
 
 
-@pytest.mark.slow
 @settings(max_examples=12, deadline=None)
 @given(cluttered(), shares, shares)
 def test_pruning_loses_no_path(spec, p, q):
@@ -394,7 +391,6 @@ def test_a_wall_with_two_faces_is_one_wall_cut_at_its_doorway():
 # -------------------------------------------------------------------------------------------------------- real houses
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", houses.names())
 def test_our_own_houses_are_sound(name):
     spec = houses.load(name)
@@ -403,14 +399,12 @@ def test_our_own_houses_are_sound(name):
     assert is_sound(check(spec, 0.25))
 
 
-@pytest.mark.slow
 def test_every_room_of_the_sample_houses_can_be_reached(samples):
     for file in samples:
         findings = check(houses.load(file), 0.20)
         assert is_sound(findings), [str(finding) for finding in findings]
 
 
-@pytest.mark.slow
 def test_shortest_paths_of_the_sample_houses_are_no_longer_than_over_the_grid(samples):
     spec = houses.load(samples[-1])
     space = FreeSpace(spec, 0.20)

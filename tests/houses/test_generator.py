@@ -42,7 +42,6 @@ def made(seed: int, rooms: int, needs: frozenset[str] | None = None) -> HouseSpe
 # ----------------------------------------------------------------------------------------------------- whole houses
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("seed", "rooms"), HOUSES)
 def test_a_generated_house_is_sound(seed: int, rooms: int) -> None:
     house = made(seed, rooms)
@@ -57,7 +56,6 @@ def test_a_generated_house_is_sound(seed: int, rooms: int) -> None:
     assert growth.AREA_M2[0] - 1e-6 <= area <= growth.AREA_M2[1] + 1e-6
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("seed", "rooms"), HOUSES)
 def test_one_front_door_and_all_others_open(seed: int, rooms: int) -> None:
     house = made(seed, rooms)
@@ -69,7 +67,6 @@ def test_one_front_door_and_all_others_open(seed: int, rooms: int) -> None:
     assert all(math.dist(opening.a, opening.b) >= 0.9 for opening in inner)
 
 
-@pytest.mark.slow
 def test_the_same_seed_gives_the_same_bytes_in_another_process() -> None:
     here = hashlib.sha256(jsonio.canonical(generator.generate(11, 4))).hexdigest()
     code = (
@@ -86,7 +83,6 @@ def test_the_same_seed_gives_the_same_bytes_in_another_process() -> None:
     assert there.stdout.strip() == here
 
 
-@pytest.mark.slow
 def test_what_is_written_is_what_loads(tmp_path: Path) -> None:
     made_ = generator.generate(3, 4)
     generator.write(made_, tmp_path / "a.json")
@@ -98,7 +94,6 @@ def test_what_is_written_is_what_loads(tmp_path: Path) -> None:
 # ------------------------------------------------------------------------------------------------------------- requests
 
 
-@pytest.mark.slow
 @few
 @given(seeds, st.sets(st.sampled_from(generator.OPTIONAL)))
 def test_a_house_has_the_optional_kinds_asked_for_and_no_others(seed: int, needs: set[str]) -> None:
@@ -129,7 +124,6 @@ def test_when_all_attempts_fail_the_rules_are_named(monkeypatch: pytest.MonkeyPa
     assert info.value.reasons == (("room-area", "too small"),) * 2
 
 
-@pytest.mark.slow
 def test_a_failed_attempt_is_followed_by_another_one(monkeypatch: pytest.MonkeyPatch) -> None:
     true, calls = generator.build_document, []
 
@@ -146,7 +140,6 @@ def test_a_failed_attempt_is_followed_by_another_one(monkeypatch: pytest.MonkeyP
 # ------------------------------------------------------------------------------------------------------------- stages
 
 
-@pytest.mark.slow
 @given(seeds, counts)
 @settings(max_examples=40, deadline=None, derandomize=True)
 def test_rooms_tile_the_cells_of_the_outline(seed: int, rooms: int) -> None:
@@ -166,7 +159,6 @@ def test_rooms_tile_the_cells_of_the_outline(seed: int, rooms: int) -> None:
             assert signed_area(room.polygon) == pytest.approx(room.area)
 
 
-@pytest.mark.slow
 @given(seeds, counts)
 @settings(max_examples=40, deadline=None, derandomize=True)
 def test_doors_join_all_rooms_as_a_tree_and_bathrooms_are_dead_ends_of_their_level(seed: int, rooms: int) -> None:
@@ -186,7 +178,6 @@ def test_doors_join_all_rooms_as_a_tree_and_bathrooms_are_dead_ends_of_their_lev
     assert all(degree[room.number] == 1 for room in plan.rooms if room.kind == room_specs.BATHROOM)
 
 
-@pytest.mark.slow
 def test_the_beta_distribution_has_its_mean_and_variance() -> None:
     draws = np.array([Dice(3).beta(2.0, 6.0, k) for k in range(1500)])
     assert draws.mean() == pytest.approx(0.25, abs=0.015)
@@ -199,7 +190,6 @@ def test_a_surface_that_is_full_is_noticed() -> None:
     assert not all_fit(surface, [(-0.05, -0.05, 0.05, 0.05, 0.1)])
 
 
-@pytest.mark.slow
 def test_rules_name_what_is_wrong() -> None:
     made_ = generator.generate(3, 4)
     sofa = next(row for row in made_["objects"] if row["assetId"].startswith("hthor_sofa"))
@@ -235,7 +225,6 @@ PRESENCE = {
 }
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("scene", shipped.SCENES[:10:5], ids=lambda scene: scene.name)
 def test_the_committed_scenes_are_what_their_rows_make(scene: shipped.Recipe) -> None:
     path = Path(houses.__file__).parent / "data" / f"{scene.name}.json"

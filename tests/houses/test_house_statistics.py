@@ -67,7 +67,6 @@ def test_populations_pool_their_rooms():
         house_statistics.summarize_houses("none", [])
 
 
-@pytest.mark.slow
 def test_the_samples_look_as_the_published_figures_say(samples):
     """Means over 210 real houses: 3.6 doors at 4 rooms and 6.5 at 7, the one outside among them; 73 to 100 things."""
     figures = [measure_house(houses.load(path)) for path in samples]

@@ -45,7 +45,6 @@ def own_document() -> Any:
 # ------------------------------------------------------------------------------------------------------- our own houses
 
 
-@pytest.mark.slow
 def test_there_are_ten_houses_of_many_sizes() -> None:
     assert OWN == ("alder", "birch", "cedar", "elder", "hazel", "juniper", "linden", "maple", "rowan", "willow")
     specs = [houses.load(name) for name in OWN]
@@ -55,7 +54,6 @@ def test_there_are_ten_houses_of_many_sizes() -> None:
     assert max(areas) > 2 * min(areas)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", OWN)
 def test_a_house_of_our_own_is_proved_sound(name: str) -> None:
     """Every rule, the engine's among them: nothing floats, sticks in something or bars a door; all can be reached."""
@@ -199,7 +197,6 @@ def test_foreign_assets_need_a_database(tmp_path: Path, monkeypatch: pytest.Monk
         houses.load(path)
 
 
-@pytest.mark.slow
 def test_the_samples_load(samples: list[Path]) -> None:
     for path in samples:
         house = houses.load(path)
@@ -344,7 +341,6 @@ def test_a_damaged_copy_of_an_own_house(name: str, tmp_path: Path) -> None:
     assert_refused(path, field, problem)
 
 
-@pytest.mark.slow
 def test_damaged_copies_of_a_sample(samples: list[Path], tmp_path: Path) -> None:
     text = samples[0].read_text()
     path = tmp_path / "damaged.json"
@@ -390,7 +386,6 @@ def test_overlap_of_rectangles(x: float, y: float, width: float, depth: float) -
     assert overlap_area(other, SQUARE) == pytest.approx(across * along, abs=1e-9)
 
 
-@pytest.mark.slow
 @given(st.floats(-math.pi, math.pi), coordinate, coordinate)
 def test_overlap_with_itself_is_the_area(yaw: float, x: float, y: float) -> None:
     shape: list[Vec2] = [(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2)]
@@ -411,7 +406,6 @@ def test_simple_and_crossed_polygons() -> None:
 # --------------------------------------------------------------------------------------------------- the package's door
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     "first", ["import hthor.houses.checks.house_checks", "from hthor.houses.checks.house_checks import Finding", "pass"]
 )
@@ -421,7 +415,6 @@ def test_check_is_the_function_in_whatever_order_things_are_imported(first: str)
     subprocess.run([sys.executable, "-c", code], check=True, timeout=120)
 
 
-@pytest.mark.slow
 def test_loading_wakes_nothing_heavy() -> None:
     code = "import sys, hthor.houses\nassert not {'numpy', 'numba', 'mujoco'} & set(sys.modules)"
     subprocess.run([sys.executable, "-c", code], check=True, timeout=120)

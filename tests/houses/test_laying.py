@@ -61,7 +61,6 @@ def bottom(thing: Thing) -> float:
     return thing.centre[2] - thing.size[2] / 2
 
 
-@pytest.mark.slow
 @settings(max_examples=15, deadline=None)
 @given(st.lists(st.floats(-0.12, 0.12), min_size=1, max_size=SMALL))
 def test_a_house_is_laid_down_once_and_stays_as_it_is(lifts: list[float]):
@@ -82,7 +81,6 @@ def test_the_houses_that_come_with_hthor_lie_as_their_files_say(name: str):
     assert not any(thing.lift for thing in houses.load(name).things)
 
 
-@pytest.mark.slow
 def test_the_world_has_everything_where_the_house_says():
     house = lifted(0.06)
     moved = [thing for thing in house.things if thing.lift]
@@ -111,7 +109,6 @@ def test_what_cannot_lie_there_stays_where_the_file_has_it():
     assert kept <= {thing.id for thing in inventory.split_things(house, ()).statics}
 
 
-@pytest.mark.slow
 def test_the_height_of_the_file_is_still_judged():
     found = {finding.where for finding in house_rules.check_supported(lifted(0.06))}
     assert found >= {thing.id for thing in lifted(0.06).things if thing.lift}
@@ -127,7 +124,6 @@ def task(house: HouseSpec, seed: int) -> TaskSpec:
     return generate.make_task(house, kind, goal, seed, name=f"test/{seed}")
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
 def test_no_object_of_a_task_starts_in_another(seed: int):
     """Things on crowded surfaces, all 11 cm higher in the file than they lie: low objects would fit below them."""
@@ -158,7 +154,6 @@ def crowded() -> HouseSpec:
     return loader.house_from_document(changed, "crowded")
 
 
-@pytest.mark.slow
 def test_tasks_in_houses_of_others_start_with_everything_apart(samples: list[Path]):
     for path in samples[4:6]:
         house = houses.load(path)
@@ -171,7 +166,6 @@ def test_tasks_in_houses_of_others_start_with_everything_apart(samples: list[Pat
                 world.put_object(placed.id, (x, y, z + 0.002), yaw=placed.yaw)
 
 
-@pytest.mark.slow
 def test_an_object_in_a_thing_of_the_house_is_named_without_an_engine():
     house = houses.load("alder")
     made = task(house, 1)

@@ -46,7 +46,6 @@ def outline(thing: Thing) -> Slab:
     return Slab(thing.centre[:2], thing.size[:2], thing.yaw, low, low + thing.size[2])
 
 
-@pytest.mark.slow
 @given(
     st.sampled_from("LC"), st.floats(1.4, 4.0), st.floats(0.8, 4.0), st.sampled_from([0.0, 0.5, math.pi / 2, math.pi])
 )
@@ -141,7 +140,6 @@ def test_fronts_look_to_the_inside(tmp_path: Path):
         assert v > 0.0, (side, u, v)
 
 
-@pytest.mark.slow
 def test_the_world_puts_things_on_every_unit_and_draws_no_slab(tmp_path: Path):
     spec = house(tmp_path, "Countertop_L_10x10")
     world = World(spec)
@@ -156,7 +154,6 @@ def test_the_world_puts_things_on_every_unit_and_draws_no_slab(tmp_path: Path):
     assert not any(size[0] > 0.5 and size[1] > 0.5 and size[2] < 0.1 for size in sizes)
 
 
-@pytest.mark.slow
 def test_the_sample_houses_have_no_worktop_deeper_than_one(samples: list[Path]):
     found = [thing for path in samples for thing in houses.load(path).things if thing.kind == "counter_top"]
     assert found

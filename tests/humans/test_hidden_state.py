@@ -128,7 +128,6 @@ def stage() -> trial_runner.TrialRunner:
     return trial_runner.TrialRunner()
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("agent", ["silent", "oracle"])
 def test_a_person_plays_on_without_the_truth(agent: str, stage: trial_runner.TrialRunner) -> None:
     veiled, plain = trials(agent, stage, veiled=True), trials(agent, stage, veiled=False)
@@ -139,7 +138,6 @@ def test_a_person_plays_on_without_the_truth(agent: str, stage: trial_runner.Tri
     assert ("offer" in kinds) == (agent == "oracle")
 
 
-@pytest.mark.slow
 def test_the_veil_holds(stage: trial_runner.TrialRunner) -> None:
     """The guard itself: whoever looks at the truth is caught."""
 

@@ -147,7 +147,6 @@ def hthor(*words: str) -> str:
     return said.output
 
 
-@pytest.mark.slow
 def test_both_take_part(run: Path) -> None:
     for record in RunFolder(run).records():
         assert list(record.paths) == [HUMAN, SECOND, "robot"]
@@ -157,7 +156,6 @@ def test_both_take_part(run: Path) -> None:
         assert set(record.metrics.by_seat("trust_by")) == {HUMAN, SECOND}
 
 
-@pytest.mark.slow
 def test_a_run_of_two_is_the_same_again(run: Path, tmp_path: Path) -> None:
     hthor(
         *("eval", "--agent", "oracle", "--humans", "greedy,proxy", "--suite", str(run.parent / "few.json")),
@@ -166,7 +164,6 @@ def test_a_run_of_two_is_the_same_again(run: Path, tmp_path: Path) -> None:
     assert (tmp_path / "again" / "trials.jsonl").read_bytes() == (run / "trials.jsonl").read_bytes()
 
 
-@pytest.mark.slow
 def test_the_mind_of_either_can_be_shown(run: Path) -> None:
     record = RunFolder(run).records()[0]
     for seat in ("", SECOND):
@@ -178,7 +175,6 @@ def test_the_mind_of_either_can_be_shown(run: Path) -> None:
         human_trace.trace_human(RunFolder(run), record, RunFiles(), seat="human3")
 
 
-@pytest.mark.slow
 def test_both_can_be_replayed(run: Path, tmp_path: Path) -> None:
     hthor(
         *("eval", "--agent", "oracle", "--humans", f"replay:{run},replay:{run}"),
@@ -190,7 +186,6 @@ def test_both_can_be_replayed(run: Path, tmp_path: Path) -> None:
         assert abs(one.ticks - other.ticks) < 50
 
 
-@pytest.mark.slow
 def test_estimators_read_each_of_them(run: Path) -> None:
     found = trial_features.read_sessions([run])
     assert (len(found.trials), found.people, found.sessions) == (6, 2, 2)
@@ -202,7 +197,6 @@ def test_estimators_read_each_of_them(run: Path) -> None:
         assert sum(isinstance(event, Shown) for event in side.events) == len(shown)
 
 
-@pytest.mark.slow
 def test_commands_take_such_a_run(run: Path, tmp_path: Path) -> None:
     hthor("replay", str(run), "0", "--out", str(tmp_path / "trial.png"))
     hthor("report", str(run), "--out", str(tmp_path / "report"))

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import msgspec
-import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -111,7 +110,6 @@ def played(model: type, number: int = 0) -> tuple[object, object]:
     return person, play(trial(task, number), world, {HUMAN: person}, {})
 
 
-@pytest.mark.slow
 def test_people_walk_the_tour_and_say_when_they_are_ready() -> None:
     person, log = played(Model)
     ready = [event.tick for event in log.events if isinstance(event, SaidReady)]  # type: ignore[attr-defined]
@@ -140,7 +138,6 @@ class Oblivious(Model):
     eyes = Absent
 
 
-@pytest.mark.slow
 def test_people_who_remember_nothing_rest() -> None:
     person, log = played(Oblivious)
     assert person.about == "rest"  # type: ignore[attr-defined]
@@ -149,14 +146,12 @@ def test_people_who_remember_nothing_rest() -> None:
     assert not [event for event in log.events if event.tick > began and isinstance(event, Picked)]  # type: ignore[attr-defined]
 
 
-@pytest.mark.slow
 def test_the_same_person_has_the_same_tour() -> None:
     logs = [played(Model, 3)[1] for _ in range(2)]
     one, two = (trial_record.encode(trial_record.make_record(trial(TASK, 3), log)) for log in logs)  # type: ignore[arg-type]
     assert one == two
 
 
-@pytest.mark.slow
 def test_other_human_models_tour_as_well() -> None:
     _, log = played(Greedy)
     assert [event.name for event in log.events if isinstance(event, PhaseBegan)] == ["tour", ""]  # type: ignore[attr-defined]

@@ -41,7 +41,6 @@ def message(number=0, position=None, thing="apple"):
 # ---------------------------------------------------------------------------------------------------------- the person
 
 
-@pytest.mark.slow
 def test_the_same_person_does_the_same():
     assert trial(Flat(), 3)[1] == trial(Flat(), 3)[1]
 
@@ -50,14 +49,12 @@ def test_people_differ():
     assert trial(Flat(), 3, ticks=200)[1] != trial(Flat(), 4, ticks=200)[1]
 
 
-@pytest.mark.slow
 def test_silent_robots_change_nothing():
     alone, watched = Flat("Fridge|1"), Flat("Fridge|1")
     watched.extra = (ROBOT,)
     assert trial(alone)[1] == trial(watched, teammates=("robot", "robot2"))[1]
 
 
-@pytest.mark.slow
 def test_a_person_continues_from_their_state():
     first, _, _ = trial(Flat(), ticks=300, teammates=("robot",))
     first.rate(True, 300)
@@ -98,7 +95,6 @@ def test_every_model_follows_the_seam(name):
 # ----------------------------------------------------------------------------------------------------------- the tasks
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("support", FURNITURE)
 def test_finds_the_target(support):
     flat = Flat(support)
@@ -113,7 +109,6 @@ def test_keeps_looking_at_what_was_found():
     assert flat.found()
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("support", "destination", "place"), [("Bed|1", "fridge", "Fridge|1"), ("Fridge|1", "sofa", "Sofa|1")]
 )
@@ -180,7 +175,6 @@ def believed(position, support="Fridge|1", until=None, ticks=900):
     raise AssertionError("nobody accepted")
 
 
-@pytest.mark.slow
 def test_goes_where_a_accepted_message_says():
     model, flat, _ = believed(Flat("Bed|1").apple, "Bed|1", until=Flat.found)
     assert flat.found()
@@ -189,7 +183,6 @@ def test_goes_where_a_accepted_message_says():
     assert model.trust.mean > before
 
 
-@pytest.mark.slow
 def test_a_message_that_misleads_costs_trust_and_the_search_goes_on():
     model, flat, _ = believed((9.5, 1.6, 0.5), "Fridge|1", until=Flat.found)
     assert flat.found()
@@ -199,7 +192,6 @@ def test_a_message_that_misleads_costs_trust_and_the_search_goes_on():
     assert model.trust.mean < before
 
 
-@pytest.mark.slow
 def test_declines_what_they_hold():
     for person in range(6):
         flat = Flat("Table|1")
@@ -218,7 +210,6 @@ def test_trust_has_no_say_without_robots():
 # ---------------------------------------------------------------------------------------------------- trust and belief
 
 
-@pytest.mark.slow
 @given(
     st.lists(st.tuples(st.booleans(), st.none() | st.floats(0, 90), st.booleans(), st.booleans()), max_size=12),
     st.floats(-6, 6),

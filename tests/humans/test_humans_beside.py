@@ -87,7 +87,6 @@ def runner() -> TrialRunner:
     return TrialRunner()
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("agent", ["none", "frontier"])
 @pytest.mark.parametrize("house", ["alder", "juniper", "willow"])
 def test_a_still_stranger_far_away_changes_nothing_up_to_the_first_meeting(runner, house, agent):
@@ -147,7 +146,6 @@ def cross(starts: tuple[Pose, Pose], goals: tuple[Vec2, Vec2], root: int) -> tup
     return log, world
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("root", range(4))
 def test_two_people_pass_each_other_in_a_doorway_even_with_the_same_luck(root):
     west, east = (4.0, 2.0), (6.2, 2.3)

@@ -26,7 +26,6 @@ def test_people_keep_four_steps_of_an_instruction_the_end_included(count, luck):
     assert kept == remembered(human, steps)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("house", ["birch", "cedar", "juniper"])
 def test_a_person_follows_the_instruction_alone_and_stops(house):
     task, log = walk(f"vln/{house}/01")
@@ -36,7 +35,6 @@ def test_a_person_follows_the_instruction_alone_and_stops(house):
     assert len({tuple(pose) for pose in log.paths["human"][-8:]}) <= 2, "they stand at the end"
 
 
-@pytest.mark.slow
 def test_people_leave_the_walk_to_the_robot_that_has_to_walk():
     task, log = walk("vln/alder/02")
     assert not log.met

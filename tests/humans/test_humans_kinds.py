@@ -108,14 +108,12 @@ def events(log, kind, seat=HUMAN):
     return [event for event in log.events if (event.kind, event.seat) == (kind, seat)]
 
 
-@pytest.mark.slow
 def test_collects_one_apple_after_the_other(world):
     log, progress, _ = run(world, suite_task("collect", time_limit=600.0))
     assert progress >= 2 / 3
     assert len({event.object for event in events(log, "placed")}) >= 2
 
 
-@pytest.mark.slow
 def test_restores_what_was_shuffled(world):
     log, progress, _ = run(world, suite_task("rearrange", time_limit=240.0))
     assert progress > 0.0
@@ -124,7 +122,6 @@ def test_restores_what_was_shuffled(world):
         assert event.on in jobs[event.object].destinations
 
 
-@pytest.mark.slow
 def test_tidies_up(world):
     task = suite_task("tidy", time_limit=240.0)
     log, progress, _ = run(world, task)
@@ -135,7 +132,6 @@ def test_tidies_up(world):
         assert kinds[event.on] in homes[event.object]
 
 
-@pytest.mark.slow
 def test_lets_lie_what_lies_well(world):
     task = suite_task("tidy")
     kinds = {thing.id: thing.kind for thing in world.house.things}
@@ -147,7 +143,6 @@ def test_lets_lie_what_lies_well(world):
         assert not well & {event.object for event in events(log, "picked")}
 
 
-@pytest.mark.slow
 def test_looks_into_the_fridge_when_asked(world):
     """Whoever agrees goes there and opens it, and holds it against nobody when the fridge is empty."""
     fridge = next(thing for thing in world.house.things if thing.kind == "fridge")
@@ -162,7 +157,6 @@ def test_looks_into_the_fridge_when_asked(world):
     assert not model._dialogue.experience.misled
 
 
-@pytest.mark.slow
 def test_helps_to_carry(world):
     """A robot has one end already; the person takes the other, and when nobody goes first, they do."""
     task = suite_task("carry")
@@ -176,7 +170,6 @@ def test_helps_to_carry(world):
     assert math.dist(world.snapshot().things[task.goal.target].position[:2], (x, y)) > 0.5
 
 
-@pytest.mark.slow
 def test_lets_go_when_nobody_helps(world):
     log, _, _ = run(world, suite_task("carry"))
     held, released = events(log, "held"), events(log, "released")
@@ -185,14 +178,12 @@ def test_lets_go_when_nobody_helps(world):
     assert len(held) > 1
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", KINDS)
 def test_the_same_trial_takes_the_same_course(world, name):
     task = suite_task(name, time_limit=40.0)
     assert run(world, task, 2)[0] == run(world, task, 2)[0]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("kind", plugins.names("task kind"))
 def test_nothing_that_robots_say_makes_a_person_fall_over(world, kind):
     """In every kind of task, whatever they are told of, true or not."""

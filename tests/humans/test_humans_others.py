@@ -143,7 +143,6 @@ FREE = tuple(name for name in MODELS if name != "replay")
 # -------------------------------------------------------------------------------------------------- every human model
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", MODELS)
 def test_plays_whole_trials_in_the_real_world_the_same_twice(name, world, log):
     def session_(state=None):
@@ -165,7 +164,6 @@ def test_plays_whole_trials_in_the_real_world_the_same_twice(name, world, log):
     assert person.state()["trials"] == 2
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", MODELS)
 def test_goes_on_from_its_state_as_if_never_interrupted(name, world, log):
     def second(person):
@@ -182,7 +180,6 @@ def test_goes_on_from_its_state_as_if_never_interrupted(name, world, log):
     assert second(whole) == second(model(name, log, state))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", FREE)
 def test_perceives_and_nothing_else(name, log):
     person, flat = model(name, log), Known("Sofa|1")
@@ -211,7 +208,6 @@ def test_rates_no_robot_that_is_not_there(name, log):
 # --------------------------------------------------------------------------------------------------- greedy and random
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("suite", ["navigation", "manipulation", "tidy", "rearrange", "collect", "carry", "vln"])
 def test_both_ends_play_every_kind_of_task(suite):
     from hthor.eval.runner import trial_runner
@@ -258,7 +254,6 @@ def test_greedy_people_notice_within_three_metres_and_never_beyond():
     assert greedy.SIGHT_M - 0.5 < math.dist(eye, flat.apple) <= greedy.SIGHT_M + 0.2
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("made", "answers"), [(greedy.Model, {True}), (random.Model, {False})])
 def test_the_ends_always_and_never_accept(made, answers):
     for participant in range(2):

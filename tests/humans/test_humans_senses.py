@@ -93,7 +93,6 @@ def test_people_know_how_large_things_are():
 # --------------------------------------------------------------------------------------------- what the world's eye has
 
 
-@pytest.mark.slow
 @settings(max_examples=30, deadline=None)
 @given(st.integers(0, 10**6), st.floats(-3.1, 3.1), st.floats(-0.6, 0.4))
 def test_a_closer_look_finds_what_ray_after_ray_finds(seed, yaw, pitch):
@@ -233,7 +232,6 @@ class Looker:
         return self.objects.known["apple"].seen is not None
 
 
-@pytest.mark.slow
 def test_the_time_to_notice_is_exponential():
     """The law that the journal's readers fit: after a time t of equal glimpses exp(-rate t) have noticed nothing."""
     steady = detection_rate(TRAITS, 0.08 / 2.0, 0.0, 0.8, 2)
@@ -311,7 +309,6 @@ def after(seconds, count=400, jobs=JOBS, mind=lambda looker: None):
     return lookers
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("seconds", [9.0, 36.0])
 def test_what_is_out_of_view_is_still_known_with_the_chance_of_the_law(seconds):
     lookers = after(seconds)
@@ -341,7 +338,6 @@ def test_what_stays_in_view_is_not_forgotten_and_what_comes_back_must_be_noticed
         assert {("forgot", "apple"), ("forgot", "fridge|1")} <= set(kinds)
 
 
-@pytest.mark.slow
 def test_what_people_are_about_hold_or_head_for_is_not_forgotten():
     def about(looker):
         looker.eyes.current = looker.objects.known["apple"]
@@ -373,7 +369,6 @@ def test_furniture_that_nothing_is_brought_to_stays_where_it_is():
     assert all(one.memory.places["fridge|1"].recalled for one in after(300.0, 40, jobs=jobs))
 
 
-@pytest.mark.slow
 def test_a_destination_that_was_forgotten_is_found_again():
     traits, forgot = msgspec.structs.replace(TRAITS, tau_seen=1.5), 0
     for person in range(4):
@@ -447,7 +442,6 @@ def test_glimpses_that_are_alike_share_a_row_and_no_more_is_written_at_the_end()
     assert not entry.noticed
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("support", FURNITURE)
 def test_the_same_person_writes_the_same_journal(support):
     def written():

@@ -336,7 +336,6 @@ def test_what_one_sees_oneself_may_still_be_accepted():
     raise AssertionError("nobody was asked on the way")
 
 
-@pytest.mark.slow
 def test_words_that_name_neither_a_thing_nor_a_place_are_about_nothing():
     """Else "I am here." every five seconds is taken up like a find, and earns trust like one."""
     willing = msgspec.structs.replace(TRAITS, a0=9.0, p_slip=0.0)
@@ -365,7 +364,6 @@ def test_a_place_without_a_name_matters_only_while_something_is_missing():
     raise AssertionError("nobody was asked on the way")
 
 
-@pytest.mark.slow
 def test_who_never_accepts_walks_as_if_nobody_spoke_when_reading_costs_nothing():
     """A declined message leaves no trace but the time it takes."""
     deaf = msgspec.structs.replace(TRAITS, a0=-50.0, p_slip=0.0, k_read=1.0)

@@ -12,9 +12,6 @@ from hthor.eval.runner import trial_runner
 from hthor.tasks.suite import make_suite
 from hthor.types import HUMAN, Action, Briefing, Move, Observation, Rotate
 
-pytestmark = pytest.mark.slow
-
-
 PEOPLE = 2
 TRIALS = 5
 HOUSES = ("alder", "hazel", "maple")

@@ -35,7 +35,6 @@ def entries(made: BehaviourRecorder, *own: JournalEntry, events: tuple[Event, ..
     return {event.kind: event for event in made.journal(own, events)}
 
 
-@pytest.mark.slow
 @given(st.lists(st.floats(0.0, 1.0), min_size=1, max_size=60))
 def test_stick_unfolds_to_what_was_pushed(shares: list[float]) -> None:
     made = recorder()
@@ -98,7 +97,6 @@ def played() -> list[TrialRecord]:
     return [done.record for done in trial_runner.make_runner()(Session(number=whole.number, trials=whole.trials[:4]))]
 
 
-@pytest.mark.slow
 def test_nobody_goes_farther_than_the_stick_says(played: list[TrialRecord]) -> None:
     went = 0.0
     for one in played:
@@ -113,7 +111,6 @@ def test_nobody_goes_farther_than_the_stick_says(played: list[TrialRecord]) -> N
     assert went > 5.0, "nobody walked, so this test showed nothing"
 
 
-@pytest.mark.slow
 def test_every_deed_of_the_hands_was_an_attempt(played: list[TrialRecord]) -> None:
     done = {"picked", "placed", "opened"}
     deeds_done = [e for one in played for e in one.events if e.seat == HUMAN and e.kind in done]
@@ -123,7 +120,6 @@ def test_every_deed_of_the_hands_was_an_attempt(played: list[TrialRecord]) -> No
     assert all(a.seconds >= rules.HANDLING_S for a in worked)
 
 
-@pytest.mark.slow
 def test_a_trial_stays_small(played: list[TrialRecord]) -> None:
     """A journal is a few kB, beside paths and events that are more."""
     import msgspec

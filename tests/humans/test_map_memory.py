@@ -127,7 +127,6 @@ def way(traits: Parameters, person: int) -> tuple[float, float]:
     return (flat.tick - begun) * 0.1, walked
 
 
-@pytest.mark.slow
 def test_without_the_map_people_walk_farther_and_arrive_later() -> None:
     """In two rooms, the same people to the same place: who errs walks to the wrong spot first."""
     shown, hidden = [way(SHOWN, k) for k in range(12)], [way(HIDDEN, k) for k in range(12)]

@@ -86,7 +86,6 @@ def test_every_word_finds_people_of_its_own_hash():
         assert resolve.resolve_humans(word).sha256 == one.sha256
 
 
-@pytest.mark.slow
 def test_the_proxy_has_the_calibrated_population_once_it_ships(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(population_file, "FOLDER", tmp_path)
     monkeypatch.setattr(population_file, "_shipped", population_file._shipped.__wrapped__)
@@ -103,7 +102,6 @@ def test_the_proxy_has_the_calibrated_population_once_it_ships(tmp_path: Path, m
     assert resolve.resolve_humans("paper").name == resolve.resolve_humans("study").name == "study"
 
 
-@pytest.mark.slow
 def test_files_are_found_by_path_and_again_from_anywhere(files: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.chdir(files)
     words = ("pop.npz", "pop.json", "half.json", "still.py", "half.json@pop.npz", "still.py@pop.json", "slow@pop.npz")
@@ -134,7 +132,6 @@ def test_a_file_that_is_called_like_people_of_ours_is_not_taken_for_them(tmp_pat
     assert all(re.fullmatch(r"mine|(proxy|study|cautious)-[0-9a-f]{6}", name) for name in names)
 
 
-@pytest.mark.slow
 def test_the_hash_covers_model_population_and_kind(files: Path):
     still = resolve.resolve_humans(f"{files}/still.py@{files}/pop.npz").sha256
     (files / "still.py").write_text(MODEL + "# changed\n")
@@ -406,7 +403,6 @@ def fake(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(trial_runner, "make_runner", fakes.player)
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("fake")
 def test_each_people_is_a_run_of_its_own(files: Path):
     words = (f"{files}/pop.npz", f"slow@{files}/pop.npz")
@@ -440,7 +436,6 @@ def test_each_people_is_a_run_of_its_own(files: Path):
         assert worst.behind == rates["pop"] - worst.sr
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("fake")
 def test_the_bracket_says_what_becomes_of_each_conclusion(files: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(trial_runner, "make_runner", fakes.leaning_player)
@@ -467,7 +462,6 @@ def test_the_bracket_says_what_becomes_of_each_conclusion(files: Path, monkeypat
     assert all(set(worst.peoples) <= {"pop", "slow@pop"} for worst in whole.worst.values())
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("fake")
 def test_what_is_not_calibrated_is_told_once_and_kept(files: Path):
     population_file.save_population(small(suite="paper", suite_sha256="ab" * 32), files / "pop")
@@ -496,7 +490,6 @@ def test_what_is_not_calibrated_is_told_once_and_kept(files: Path):
     assert "calibrated" not in console.export_text(), "once is enough"
 
 
-@pytest.mark.slow
 def test_a_worker_finds_files_by_path(files: Path):
     """Real worker processes, started in another folder than the files lie in."""
     model = "from hthor.humans.models.proxy import Model as Proxy\nclass Model(Proxy): pass\n"
@@ -544,7 +537,6 @@ def hthor(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
     return run
 
 
-@pytest.mark.slow
 def test_list_names_everybody(hthor):
     code, out, _ = hthor("humans", "list", "--json")
     rows = {row["name"]: row for row in json.loads(out)}
@@ -558,7 +550,6 @@ def test_list_names_everybody(hthor):
         assert name in out
 
 
-@pytest.mark.slow
 def test_describe_tells_every_parameter(hthor, files: Path):
     code, out, _ = hthor("humans", "describe", "literature", "--json")
     told = json.loads(out)
@@ -586,7 +577,6 @@ def test_describe_tells_every_parameter(hthor, files: Path):
     assert "Did you mean 'slow'?" in err
 
 
-@pytest.mark.slow
 def test_sample_shows_whom_a_study_meets(hthor):
     code, out, _ = hthor("humans", "sample", "slow", "--n", "4", "--seed", "3", "--json")
     rows = json.loads(out)
@@ -600,7 +590,6 @@ def test_sample_shows_whom_a_study_meets(hthor):
     assert all(name in out for name in describe.varying_parameters(found))
 
 
-@pytest.mark.slow
 @pytest.mark.usefixtures("fake")
 def test_eval_with_several_peoples_compares_them(hthor, files: Path):
     words = ("eval", "--agent", "none", "--agent", "frontier", "--suite", "fake", "--jobs", "1")

@@ -99,7 +99,6 @@ def played(policy=None, support: str = "Fridge|1", ticks: int = 700, listener=No
 # ------------------------------------------------------------------------------------------------------ the interface
 
 
-@pytest.mark.slow
 def test_a_policy_is_told_what_the_person_knows_and_nothing_else():
     policy = Recording()
     played(policy)
@@ -118,7 +117,6 @@ def test_a_policy_is_told_what_the_person_knows_and_nothing_else():
         assert sum(choice.knowledge for choice in one.options) <= 1.0 + 1e-9
 
 
-@pytest.mark.slow
 def test_a_policy_decides_where_the_person_goes_and_what_they_answer():
     first, last = Recording(), Recording()
     first.choose = lambda situation: 0
@@ -138,7 +136,6 @@ def test_an_index_that_is_none_of_the_options_is_an_error(answer):
         option_description.checked_index(answer, situation())
 
 
-@pytest.mark.slow
 def test_listening_to_the_mind_changes_nothing_and_tells_every_choice():
     heard = []
     model, trace, _ = played(listener=heard.append)
@@ -155,7 +152,6 @@ def test_listening_to_the_mind_changes_nothing_and_tells_every_choice():
 # --------------------------------------------------------------------------------------------------------- the journal
 
 
-@pytest.mark.slow
 def test_the_journal_holds_what_the_law_made_of_each_option():
     """Worked out from the journal alone, with the person's numbers, the options rank as they did for the person."""
     heard = []
@@ -176,7 +172,6 @@ def test_the_journal_holds_what_the_law_made_of_each_option():
         )
 
 
-@pytest.mark.slow
 def test_choices_are_plain_json_and_small():
     model, _, _ = played()
     choices = [event for event in model.journal if event.kind == "choice"]
@@ -200,7 +195,6 @@ def crowded(root: int, chosen: int, count: int = 40) -> Choice:
     return entry
 
 
-@pytest.mark.slow
 def test_of_many_options_chance_keeps_some_all_as_likely():
     counts: Counter[int] = Counter()
     for root in range(1500):
@@ -271,7 +265,6 @@ def test_answers_are_read_strictly(reply, read):
     assert prompts.read_answer(reply) == read
 
 
-@pytest.mark.slow
 @given(st.text(max_size=300), st.integers(1, 30))
 def test_no_reply_breaks_the_reader(reply, count):
     found = prompts.read_choice(reply, situation(count))
@@ -474,7 +467,6 @@ def made(count: int, weights, root: int = 5):
     return found
 
 
-@pytest.mark.slow
 def test_a_clone_recovers_the_weights_that_made_the_choices():
     weights = np.array([1.5, 0.5, -2.0, -1.0, -0.7, 0.8])
     values, there, chosen = clone.table(made(4000, weights))
@@ -501,7 +493,6 @@ def test_a_clone_chooses_as_often_as_its_weights_say():
     assert said["ignore"] / (3000 - said["accept"]) == pytest.approx(0.25, abs=0.06)
 
 
-@pytest.mark.slow
 def test_what_the_journal_has_and_what_a_policy_is_told_are_the_same_numbers():
     policy = Recording()
     model, _, _ = played(policy, messages=True)

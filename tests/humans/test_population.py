@@ -303,7 +303,6 @@ def test_a_prior_that_is_no_distribution_is_refused(make: Any, words: str):
         make()
 
 
-@pytest.mark.slow
 def test_the_literature_is_the_priors():
     held = population_file.load_population("literature")
     assert held is population_file.load_population("literature")
@@ -318,7 +317,6 @@ def test_the_literature_is_the_priors():
     assert held.validity.suite_sha256 == ""
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", population_file.names())
 def test_every_population_that_ships_loads_and_draws(name: str):
     held = population_file.load_population(name)

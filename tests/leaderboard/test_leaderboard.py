@@ -60,7 +60,6 @@ def test_half_and_twice_the_people_of_a_shipped_suite_are_a_setting_of_its_own()
         assert overrides.overridden_settings(some) == found
 
 
-@pytest.mark.slow
 def test_twice_is_once_in_any_order_and_the_control_comes_too(whole: Path, runs: Path, tmp_path: Path):
     other = committed(tmp_path / "other")
     for name in ("clumsy", "helper", "clumsy"):
@@ -70,7 +69,6 @@ def test_twice_is_once_in_any_order_and_the_control_comes_too(whole: Path, runs:
     assert [path.name.partition("-")[0] for path in files.entry_paths(other)] == ["clumsy", "helper", "silent"]
 
 
-@pytest.mark.slow
 def test_every_file_is_as_the_schema_says(whole: Path):
     schema = json.loads((whole / "schema.json").read_bytes())
     jsonschema.Draft202012Validator.check_schema(schema)
@@ -83,7 +81,6 @@ def test_every_file_is_as_the_schema_says(whole: Path):
     assert publish.differences(whole) == []
 
 
-@pytest.mark.slow
 def test_the_boards_own_files_are_in_order(root: Path):
     assert [one.line for one in publish.differences(root / "leaderboard")] == []
 
@@ -112,14 +109,12 @@ def test_parts_and_departures_are_refused(runs: Path, tmp_path: Path):
     assert not (tmp_path / "board").exists()
 
 
-@pytest.mark.slow
 def test_what_is_refused_leaves_the_board_as_it_was(runs: Path, tmp_path: Path):
     with pytest.raises(files.BoardError, match=r"to no suite of hthor"):
         enter.add_runs(runs, tmp_path / "board")
     assert not (tmp_path / "board").exists()
 
 
-@pytest.mark.slow
 def test_a_board_that_is_not_there_is_not_in_order(whole: Path, tmp_path: Path):
     for look in (board_check.check_board, publish.build_board, publish.rescore):
         with pytest.raises(files.BoardError, match="not a folder"):
@@ -128,7 +123,6 @@ def test_a_board_that_is_not_there_is_not_in_order(whole: Path, tmp_path: Path):
         verify.verify_entry(whole, whole, replay.Request(word="chance"))
 
 
-@pytest.mark.slow
 def test_a_column_that_cannot_be_read_is_named_with_its_file(board: Path):
     path = files.entry_paths(board)[0]
     held = json.loads(path.read_bytes())
@@ -185,7 +179,6 @@ def _split(one: dict) -> dict:
     return one["splits"]["kind"]["mobile_manipulation"]["sr"]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("change", CHANGES)
 def test_what_was_changed_is_named(board: Path, change: str):
     field, spoil = CHANGES[change]
@@ -246,7 +239,6 @@ def test_numbers_of_older_statistics_are_worked_out_anew(board: Path, whole: Pat
     assert publish.rescore(board) == []
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("tier", ["V1", "V2"])
 def test_one_false_outcome_in_twenty_is_caught_by_two_hundred_trials(tier: Literal["V1", "V2"]):
     assert forging.caught(tier, 0.05, 30) == 30
@@ -299,7 +291,6 @@ def test_the_page_says_what_the_list_says_and_needs_nothing_else(whole: Path):
     assert "no ranked entry yet" in page.render(listing.make_board([]))
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("chromium") is None, reason="Chromium is not installed")
 def test_a_browser_shows_the_page_without_complaint(whole: Path, tmp_path: Path):
     options = ["--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--enable-logging=stderr"]
@@ -312,7 +303,6 @@ def test_a_browser_shows_the_page_without_complaint(whole: Path, tmp_path: Path)
 # ---------------------------------------------------------------------------------------------------- small parts
 
 
-@pytest.mark.slow
 @given(st.lists(st.integers(0, 2**24 - 1), min_size=1, max_size=40))
 def test_columns_come_back(values: list[int]):
     column = np.array(values)
@@ -326,7 +316,6 @@ def test_columns_come_back(values: list[int]):
     )
 
 
-@pytest.mark.slow
 @given(st.lists(st.binary(max_size=6), min_size=1, max_size=12), st.data())
 def test_no_row_can_be_changed_moved_or_left_out(rows: list[bytes], data: st.DataObject):
     root = trial_outcomes.merkle_root(rows)
@@ -401,7 +390,6 @@ def test_names_of_submissions(handed_in: Path):
     assert any("cannot be a submission's name" in one.problem for one in submission.submission_problems(other))
 
 
-@pytest.mark.slow
 def test_the_entry_is_of_the_file_that_was_handed_in(handed_in: Path, runs: Path, tmp_path: Path):
     played = submission.list_files(handed_in)
     mine = shutil.copytree(runs, tmp_path / "runs") / "helper"

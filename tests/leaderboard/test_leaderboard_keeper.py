@@ -42,7 +42,6 @@ def _records(found: Verification) -> KeeperRecords:
     return KeeperRecords(verifications={found.id: found}, refutations=())
 
 
-@pytest.mark.slow
 def test_only_verified_entries_on_secret_tasks_have_a_rank(whole: Path):
     entries, taken = entries_of(whole), admission.load_admission(whole)
     (helper,) = [one for one in entries if one.agent.name == "helper"]
@@ -66,7 +65,6 @@ def test_only_verified_entries_on_secret_tasks_have_a_rank(whole: Path):
     assert [one.standing for one in sections] == ["development"]
 
 
-@pytest.mark.slow
 def test_an_agent_that_fell_on_fresh_tasks_has_no_rank_and_the_board_shows_both_figures(whole: Path):
     entries, taken = entries_of(whole), admission.load_admission(whole)
     (helper,) = [one for one in entries if one.agent.name == "helper"]
@@ -85,7 +83,6 @@ def test_an_agent_that_fell_on_fresh_tasks_has_no_rank_and_the_board_shows_both_
         assert row.verification.fresh == found
 
 
-@pytest.mark.slow
 def test_clones_do_not_move_the_ranks_of_others(whole: Path):
     """Forty copies of an agent under other names, with a comment in their code, by other teams."""
     entries, taken = entries_of(whole), admission.load_admission(whole)
@@ -113,7 +110,6 @@ def best_named(entry: Entry, name: str, number: int) -> Entry:
     )
 
 
-@pytest.mark.slow
 def test_what_one_agent_is(whole: Path):
     helper, clumsy = (next(one for one in entries_of(whole) if one.agent.name == name) for name in ("helper", "clumsy"))
     held = {one.id: trial_outcomes.unpack(one.trials) for one in (helper, clumsy)}
@@ -133,7 +129,6 @@ def test_what_one_agent_is(whole: Path):
 # ------------------------------------------------------------------------------------------------- the keeper's files
 
 
-@pytest.mark.slow
 def test_a_refuted_entry_does_not_stand_and_nothing_brings_it_back(board: Path, runs: Path):
     path = entry_of(board, "helper")
     entry = files.read_entry(path)
@@ -188,7 +183,6 @@ def test_a_verification_is_of_one_entry_and_is_called_after_it(board: Path):
         publish.build_board(board)
 
 
-@pytest.mark.slow
 def test_no_genuine_entry_is_written_over(board: Path, runs: Path, tmp_path: Path):
     """Neither the agent's nor the control's, which others are measured against."""
     before = contents(board)
@@ -208,7 +202,6 @@ def test_no_genuine_entry_is_written_over(board: Path, runs: Path, tmp_path: Pat
         path.write_bytes(true)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("what", ["people", "seed", "suite"])
 def test_a_board_takes_only_what_its_keeper_listed(whole: Path, runs: Path, tmp_path: Path, what: str):
     lists = admission.load_admission(committed(tmp_path / "board"))
@@ -273,7 +266,6 @@ def again_of(held: trial_outcomes.Outcomes, places) -> verdict.ReplayedTrials:
     )
 
 
-@pytest.mark.slow
 def test_how_surely_three_false_outcomes_in_sixty_are_caught():
     """What a verification says of its own power is what the forger meets."""
     small, whose = forging.made_up(count=60), entry_metrics.trial_participants(60, 6)
@@ -293,7 +285,6 @@ def test_how_surely_three_false_outcomes_in_sixty_are_caught():
     assert detection_power.detection_probability("V2", large, again_of(large, drawn), drawn, owners) > 0.95
 
 
-@pytest.mark.slow
 def test_an_agent_that_does_not_repeat_itself_is_judged_by_all_its_trials():
     """One honest run in fifty is refused, and of a forged one hardly any stands where all trials are played."""
     assert forging.caught("V3", 0.05, 12, sample=2000, noise=0.2) == 12
@@ -375,7 +366,6 @@ def test_a_fall_is_seen_as_often_as_is_said_and_an_honest_agent_is_not_flagged()
     assert performance_drop.detectable_drop(np.zeros(60), entry_metrics.trial_participants(60, 6), 60) is None
 
 
-@pytest.mark.slow
 @settings(max_examples=25)
 @given(st.integers(0, 200), st.integers(0, 60))
 def test_the_better_it_went_the_less_of_a_fall(won: int, more: int):
@@ -390,7 +380,6 @@ def test_the_better_it_went_the_less_of_a_fall(won: int, more: int):
     assert p(won) <= p(won + more) + 1e-9
 
 
-@pytest.mark.slow
 def test_fresh_tasks_are_of_the_recipe_and_of_no_other_draw():
     from hthor import tasks
     from hthor.tasks.generation import fresh_tasks

@@ -66,7 +66,6 @@ def boards(whole: Path) -> Board:
     return msgspec.structs.replace(found, refuted=(Struck(id="i", name="n", why="w"),))
 
 
-@pytest.mark.slow
 def test_every_text_of_a_board_is_escaped(whole: Path):
     text = page.render(hostile(boards(whole)))
     assert "&lt;script&gt;document.title" in text
@@ -84,7 +83,6 @@ def test_every_text_of_a_board_is_escaped(whole: Path):
     }
 
 
-@pytest.mark.slow
 def test_drawings_are_whole_and_sections_counted(whole: Path):
     """An element of a drawing that is not closed has the next ones within it, and a browser shows none of them."""
     everything = boards(whole)
@@ -98,7 +96,6 @@ def test_drawings_are_whole_and_sections_counted(whole: Path):
         assert numbers == list(range(1, len(numbers) + 1))
 
 
-@pytest.mark.slow
 def test_labels_that_are_not_the_same_in_all_entries_do_not_stop_the_page(whole: Path):
     found = boards(whole)
     (section,) = found.sections
@@ -108,7 +105,6 @@ def test_labels_that_are_not_the_same_in_all_entries_do_not_stop_the_page(whole:
     assert "&lt;b&gt;x" in text
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("chromium") is None, reason="Chromium is not installed")
 def test_a_browser_runs_nothing_that_an_entry_brings(whole: Path, tmp_path: Path):
     for name, found in (("true", boards(whole)), ("hostile", hostile(boards(whole)))):
@@ -123,7 +119,6 @@ def test_a_browser_runs_nothing_that_an_entry_brings(whole: Path, tmp_path: Path
         assert 'id="owned"' not in done.stdout
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("chromium") is None, reason="Chromium is not installed")
 def test_the_policy_stops_what_would_slip_through(tmp_path: Path, whole: Path):
     text = page.render(boards(whole)).replace("</main>", "<script>document.title='owned'</script></main>")

@@ -104,7 +104,6 @@ def found_tops(surface: Surface, pieces: tuple[Piece, ...]) -> Any:
 # ------------------------------------------------------------------------------------------------------------- kinds
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_every_kind_keeps_the_contract(name: str) -> None:
     kind = catalog.kind(name)
@@ -117,7 +116,6 @@ def test_every_kind_keeps_the_contract(name: str) -> None:
     check_rests(name, kind.form(), looks.look(name))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("factors", [(0.7, 0.8, 0.85), (1.5, 1.2, 1.1)], ids=["small", "large"])
 def test_a_look_fits_other_sizes(name: str, factors: Vec3) -> None:
@@ -128,7 +126,6 @@ def test_a_look_fits_other_sizes(name: str, factors: Vec3) -> None:
     check_rests(name, catalog.kind(name).form(size), pieces)
 
 
-@pytest.mark.slow
 @given(st.sampled_from(NAMES), st.tuples(*[st.floats(0.4, 2.5)] * 3), st.integers(0, 9))
 @settings(max_examples=40, deadline=None)
 def test_a_look_fills_whatever_box_a_house_gives_it(name: str, factors: Vec3, variant: int) -> None:
@@ -138,21 +135,18 @@ def test_a_look_fills_whatever_box_a_house_gives_it(name: str, factors: Vec3, va
     assert all(np.isfinite(array).all() for piece in pieces for array in piece.mesh)
 
 
-@pytest.mark.slow
 def test_triangles_are_few() -> None:
     counts = {name: sum(len(piece.mesh.faces) for piece in looks.look(name)) for name in NAMES}
     assert max(counts.values()) <= LARGEST, max(counts, key=lambda name: counts[name])
     assert sum(counts.values()) / len(counts) <= TYPICAL
 
 
-@pytest.mark.slow
 def test_most_kinds_look_like_more_than_their_solids() -> None:
     unlike = [name for name in NAMES if len(looks.look(name)) == len(plain.plain_pieces(catalog.kind(name).parts()))]
     assert len(unlike) < len(NAMES) / 3
     assert len(looks.look("apple")) > 1
 
 
-@pytest.mark.slow
 def test_finishes_show() -> None:
     for name in NAMES:
         finishes = 1 + len(catalog.kind(name).finishes)
@@ -203,7 +197,6 @@ CLOSED = {
 }
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("shape", CLOSED)
 def test_solids_are_closed_and_face_outward(shape: str) -> None:
     mesh, expected = CLOSED[shape]

@@ -13,7 +13,6 @@ from hthor.looks.meshes import solids
 # ---------------------------------------------------------------------------------------------------------- textures
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", textures.names())
 def test_textures_are_small_pictures_that_are_made_anew_the_same(name: str) -> None:
     picture = textures.image(name)
@@ -27,7 +26,6 @@ def test_textures_are_small_pictures_that_are_made_anew_the_same(name: str) -> N
     assert zlib.crc32(textures.image(name).tobytes()) == zlib.crc32(picture.tobytes())
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", [name for name in textures.names() if textures.scale(name) > 0.0])
 def test_textures_repeat_without_a_seam(name: str) -> None:
     picture = textures.image(name).astype(float)

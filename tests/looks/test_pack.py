@@ -161,7 +161,6 @@ def test_the_same_library_gives_the_same_pack(built: making.ConvertedModel, tmp_
         assert (again.folder / name).read_bytes() == (built.pack.folder / name).read_bytes()
 
 
-@pytest.mark.slow
 def test_a_pack_is_written_over_and_nothing_is_left_lying_about(tmp_path: Path) -> None:
     make(tmp_path / "one", cc_by=True)
     make(tmp_path / "one")
@@ -172,7 +171,6 @@ def test_a_pack_is_written_over_and_nothing_is_left_lying_about(tmp_path: Path) 
 # -------------------------------------------------------------------------------------------------------------- drawing
 
 
-@pytest.mark.slow
 @given(
     kind=st.sampled_from(["dining_table", "sofa", "mug"]),
     scale=st.tuples(*[st.floats(0.85, 1.15) for _ in range(3)]),
@@ -328,7 +326,6 @@ def command(*words: str) -> Any:
     return CliRunner().invoke(app, ["assets", *words])
 
 
-@pytest.mark.slow
 def test_the_commands(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     monkeypatch.setattr(making, "PICKS", PICKS)

@@ -80,7 +80,6 @@ def undressed(world: World, pack: Any = None) -> Any:
 # ------------------------------------------------------------------------------------------------- without any OpenGL
 
 
-@pytest.mark.slow
 @given(st.floats(0.1, 9.0), st.floats(0.1, 9.0), st.floats(-3.0, 3.0))
 def test_a_facet_has_its_area_and_faces_one_way(width: float, height: float, yaw: float) -> None:
     along = (width * math.cos(yaw), width * math.sin(yaw), 0.0)
@@ -143,7 +142,6 @@ def test_every_room_has_lamps_of_its_own(name: str) -> None:
         assert len(set(places[room.id])) == len(places[room.id])
 
 
-@pytest.mark.slow
 def test_the_sky_is_bright_blue_above_and_the_same_every_time() -> None:
     sky = lights.sky()
     assert np.array_equal(sky, lights.sky())
@@ -154,7 +152,6 @@ def test_the_sky_is_bright_blue_above_and_the_same_every_time() -> None:
     assert right[200, 128, 1] > right[200, 128, 2]  # grass below the horizon
 
 
-@pytest.mark.slow
 def test_the_stage_touches_no_physics_and_everything_has_its_owner(world: World) -> None:
     dressed = undressed(world)
     assert not dressed.model.geom_contype.any()
@@ -164,7 +161,6 @@ def test_the_stage_touches_no_physics_and_everything_has_its_owner(world: World)
     assert things | {"apple", "mug", HUMAN, "robot", "window|1", "outdoors"} <= set(dressed.owner)
 
 
-@pytest.mark.slow
 def test_a_pack_comes_first_and_brings_its_own_textures(world: World) -> None:
     plain, packed = undressed(world).model, undressed(world, Pack()).model
     red = [bool((packed.tex_data[at : at + 3] == (255, 0, 0)).all()) for at in packed.tex_adr]
@@ -187,7 +183,6 @@ def test_puppets_follow_doors(world: World) -> None:
 # ------------------------------------------------------------------------------------------------------- with OpenGL
 
 
-@pytest.mark.slow
 def test_both_profiles_show_the_same_world(drawn: World) -> None:
     fast, nice = (drawn.picture(HUMAN, "segmentation", profile=profile) for profile in ("fast", "nice"))
     assert (fast == nice).mean() > 0.85
@@ -199,7 +194,6 @@ def test_both_profiles_show_the_same_world(drawn: World) -> None:
     assert np.median(np.abs(depths[0] - depths[1])) < 0.03
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("size", [(320, 240), (120, 200)])
 def test_both_profiles_have_square_pixels_at_every_shape(drawn: World, size: tuple[int, int]) -> None:
     """The law of square pixels is that of the camera's record; what is drawn has to keep it."""
@@ -211,7 +205,6 @@ def test_both_profiles_have_square_pixels_at_every_shape(drawn: World, size: tup
         assert seen.mean(axis=0) == pytest.approx((row / depth, column / depth), abs=1.5)
 
 
-@pytest.mark.slow
 def test_both_profiles_look_alike(drawn: World) -> None:
     """By structure, a picture is like the other profile's of the same place, and unlike that of another place."""
     fast, nice = (_grey(drawn.picture(HUMAN, size=(192, 192), profile=profile)) for profile in ("fast", "nice"))
@@ -229,7 +222,6 @@ def _grey(picture: np.ndarray) -> np.ndarray:
     return gaussian(rgb2gray(picture) * 255.0, sigma=2.0)
 
 
-@pytest.mark.slow
 def test_no_picture_is_dark_or_has_a_hole(drawn: World) -> None:
     for x, y in ((1.0, 1.0), (4.2, 3.3), (6.0, 3.0)):
         for turn in range(0, 4, 2) if x < 5.0 else range(1, 4, 2):
@@ -242,7 +234,6 @@ def test_no_picture_is_dark_or_has_a_hole(drawn: World) -> None:
             assert (ahead > 12.0).mean() < 0.25  # only through the window can one look far
 
 
-@pytest.mark.slow
 def test_drawing_leaves_the_world_alone_and_is_repeatable(drawn: World) -> None:
     before, qpos = drawn.snapshot(), drawn._env.data.qpos.copy()
     first = drawn.picture("robot", size=(96, 64)), drawn.top_view(20.0)
@@ -252,14 +243,12 @@ def test_drawing_leaves_the_world_alone_and_is_repeatable(drawn: World) -> None:
     assert np.array_equal(drawn._env.data.qpos, qpos)
 
 
-@pytest.mark.slow
 def test_bodies_are_seen_by_others_only(drawn: World) -> None:
     human = drawn.names.index(HUMAN)
     assert human not in drawn.picture(HUMAN, "segmentation")
     assert human in drawn.picture("robot", "segmentation")
 
 
-@pytest.mark.slow
 def test_what_opens_and_what_is_carried_is_drawn_so(drawn: World) -> None:
     drawn.teleport(HUMAN, AT_THE_FRIDGE)
     closed = drawn.picture(HUMAN, "depth")
@@ -274,7 +263,6 @@ def test_what_opens_and_what_is_carried_is_drawn_so(drawn: World) -> None:
     assert (drawn.picture(HUMAN, "segmentation") == drawn.names.index("apple")).sum() > 20
 
 
-@pytest.mark.slow
 def test_the_plan_is_to_scale(drawn: World) -> None:
     x0, y0, x1, y1 = drawn.top_view_bounds
     image = drawn.top_view(pixels_per_metre=40.0)
@@ -283,7 +271,6 @@ def test_the_plan_is_to_scale(drawn: World) -> None:
     assert lettuce[1] > max(lettuce[0], lettuce[2])
 
 
-@pytest.mark.slow
 def test_a_sheet_has_four_views_and_a_plan(drawn: World, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(contact_sheet, "_PLACES", 8)
     monkeypatch.setattr(contact_sheet, "_TURNS", 4)
@@ -301,7 +288,6 @@ def test_a_house_that_cannot_be_read_is_an_error(tmp_path: Any, capsys: pytest.C
     assert "none.json" in capsys.readouterr().err
 
 
-@pytest.mark.slow
 def test_an_observation_is_of_one_profile(drawn: World) -> None:
     drawn.teleport(HUMAN, AT_THE_FRIDGE)
     senses, view = drawn.senses(HUMAN), drawn.look(HUMAN)

@@ -431,7 +431,6 @@ def samples_of_houses(request: pytest.FixtureRequest) -> list:
     return list(request.getfixturevalue("samples"))
 
 
-@pytest.mark.slow
 def test_paths_are_at_most_eight_percent_longer_than_the_shortest(real: FreeSpace) -> None:
     """In a real house, on a map that knows the walls, against exact any-angle paths of the same clearance."""
     planner = Planner(drawn(real), RADIUS)

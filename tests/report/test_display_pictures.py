@@ -112,7 +112,6 @@ def test_the_timeline_has_a_bar_for_each_time() -> None:
     assert [one.get_label() for one in timeline_bars.legend_entries(log(*EVENTS))] == ["panel shown", "map shown"]
 
 
-@pytest.mark.slow
 def test_a_film_shows_the_display(tmp_path: Path) -> None:
     path = tmp_path / "trial.webm"
     trial_video.write_video(path, SPEC, log(*EVENTS), houses.load(TASK.house))

@@ -99,7 +99,6 @@ def test_a_seat_hears_what_is_for_it(record: trial_record.TrialRecord) -> None:
     assert captions.newest_message(log, 39) is captions.newest_message(log, 91) is None
 
 
-@pytest.mark.slow
 def test_a_film_shows_every_logged_pose_and_the_end(record: trial_record.TrialRecord, tmp_path: Path) -> None:
     ticks = film.film_ticks(record)
     assert ticks[:3] == [0, 2, 4]
@@ -111,7 +110,6 @@ def test_a_film_shows_every_logged_pose_and_the_end(record: trial_record.TrialRe
     assert video.get(cv2.CAP_PROP_FRAME_COUNT) >= len(ticks)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("suffix", figure_file.SUFFIXES)
 def test_a_strip_tells_what_happened_and_was_said(
     record: trial_record.TrialRecord, tmp_path: Path, suffix: str
@@ -132,7 +130,6 @@ def test_a_strip_tells_what_happened_and_was_said(
     assert drawn[0] == drawn[1]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("seat", ["human", "robot"])
 def test_views_of_a_strip_are_not_stretched(record: trial_record.TrialRecord, seat: str) -> None:
     made = strip.strip_figure(views(record, seat), strip.strip_moments(record, houses.load(TASK.house), seat))

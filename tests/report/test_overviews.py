@@ -55,7 +55,6 @@ def test_a_whole_house_is_in_the_picture_and_fills_it(name: str, azimuth: float,
     assert np.abs(middle - 0.5).max() < 0.05
 
 
-@pytest.mark.slow
 def test_angles_are_well_apart_and_show_more_than_others_do(elder: World) -> None:
     spec = task("rearrange/elder/01")
     points = [placed.position for placed in spec.objects]
@@ -71,7 +70,6 @@ def test_angles_are_well_apart_and_show_more_than_others_do(elder: World) -> Non
     assert sum(map(seen, chosen)) >= sum(map(seen, others))
 
 
-@pytest.mark.slow
 def test_what_is_below_a_floor_is_hidden(elder: World) -> None:
     viewpoint = framing.frame_house(elder.house, 1.0, SIZE)
     x, y, _ = task("rearrange/elder/01").objects[0].position
@@ -91,7 +89,6 @@ def test_places_before_and_after_are_those_of_the_task() -> None:
             rearrangement_figure.shuffled_targets(task(other))
 
 
-@pytest.mark.slow
 def test_a_rearrangement_is_drawn_from_three_angles_in_gold_and_red(elder: World) -> None:
     made = rearrangement_figure.rearrangement_figure(task("rearrange/elder/01"), elder)
     assert len(made.axes) == rearrangement_figure.ANGLES == 3
@@ -110,7 +107,6 @@ def test_a_rearrangement_is_drawn_from_three_angles_in_gold_and_red(elder: World
         assert figure_file.encode(made, suffix[1:]) == figure_file.encode(made, suffix[1:])
 
 
-@pytest.mark.slow
 def test_the_scene_graph_of_a_task_is_the_one_that_it_was_made_from() -> None:
     """Ids of searches name the triplet that was given; the placements record it."""
     checked, homes = 0, {name: houses.load(name) for name in houses.names()}
@@ -122,7 +118,6 @@ def test_the_scene_graph_of_a_task_is_the_one_that_it_was_made_from() -> None:
     assert checked == 565
 
 
-@pytest.mark.slow
 def test_the_pipeline_shows_priors_relations_and_scene() -> None:
     spec = task("paper/alder/manipulation-01")
     made = pipeline_figure.pipeline_figure(spec, world(spec))
@@ -144,7 +139,6 @@ def test_the_pipeline_shows_priors_relations_and_scene() -> None:
     assert len(scene.images) == 1
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("words", "told"),
     [

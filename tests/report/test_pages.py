@@ -59,7 +59,6 @@ def _bytes(folder: Path) -> dict[str, bytes]:
     return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
 
 
-@pytest.mark.slow
 def test_the_same_runs_give_the_same_bytes(written: tuple[Findings, Path], folders: list[Path], tmp_path: Path) -> None:
     write_report.write_report(folders, tmp_path / "again", PUBLISHED)
     first, again = _bytes(written[1]), _bytes(tmp_path / "again")
@@ -69,7 +68,6 @@ def test_the_same_runs_give_the_same_bytes(written: tuple[Findings, Path], folde
         assert str(folder).encode() not in b"".join(first.values())
 
 
-@pytest.mark.slow
 def test_the_page_needs_nothing_else(written: tuple[Findings, Path]) -> None:
     text = (written[1] / "report.html").read_text()
     for stranger in ("http", "<script", "src=", "@import", "url(h", "xlink"):
@@ -80,7 +78,6 @@ def test_the_page_needs_nothing_else(written: tuple[Findings, Path]) -> None:
     assert set(re.findall(r"url\(#([^)]+)\)", text)) | set(re.findall(r'href="#([^"]+)"', text)) <= set(ids)
 
 
-@pytest.mark.slow
 def test_every_figure_says_what_it_shows_and_stands_alone(written: tuple[Findings, Path]) -> None:
     text = (written[1] / "report.html").read_text()
     files = sorted((written[1] / "figures").glob("*.svg"))
@@ -94,7 +91,6 @@ def test_every_figure_says_what_it_shows_and_stands_alone(written: tuple[Finding
         assert re.findall(r'https?://[^"]*', path.read_text()) == ["http://www.w3.org/2000/svg"]
 
 
-@pytest.mark.slow
 def test_the_numbers_are_those_of_the_trials(written: tuple[Findings, Path], folders: list[Path]) -> None:
     found = written[0]
     alone, helper, clumsy = load_runs.load_runs(folders)
@@ -174,7 +170,6 @@ def test_what_is_left_of_an_agent_is_shown_with_the_command_that_plays_it_again(
     assert trial_selection.fault_summary(load_runs.load_runs([mine])[0])[0] == first
 
 
-@pytest.mark.slow
 def test_what_held_the_agents_and_where_they_were_played_is_told(folders: list[Path], tmp_path: Path) -> None:
     mine = shutil.copytree(folders[1], tmp_path / "mine")
     held = Isolation(level="L2", landlock_abi=7, seccomp=True, memory="4096 MB", reason_not_higher="no bubblewrap")
@@ -225,7 +220,6 @@ def test_a_damaged_run_is_refused_with_file_and_field(folders: list[Path], tmp_p
         write_report.write_report([other], tmp_path / "out")
 
 
-@pytest.mark.slow
 def test_a_report_of_one_run_takes_the_control_that_lies_beside(folders: list[Path], tmp_path: Path) -> None:
     mine = shutil.copytree(folders[1], tmp_path / "mine" / "helper")
     found = write_report.write_report([mine], tmp_path / "one")
@@ -240,7 +234,6 @@ def test_a_report_of_one_run_takes_the_control_that_lies_beside(folders: list[Pa
     assert (lone.shown, lone.trust, lone.comparisons) == ((), (), ())
 
 
-@pytest.mark.slow
 def test_several_peoples_have_a_section_of_their_own(folders: list[Path], tmp_path: Path) -> None:
     others = [run(tmp_path / "a", "clumsy", people="slow"), run(tmp_path / "b", "silent", absent=True, people="slow")]
     found, _ = _told(*folders[:2], *others)
@@ -257,7 +250,6 @@ def test_several_peoples_have_a_section_of_their_own(folders: list[Path], tmp_pa
     assert "people" in [one.name for one in figure_index.draw_figures(found, [])]
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("chromium") is None, reason="Chromium is not installed")
 def test_a_browser_finds_no_error_and_asks_nobody(written: tuple[Findings, Path], tmp_path: Path) -> None:
     bad = tmp_path / "bad.html"
@@ -295,7 +287,6 @@ def test_moments_are_in_order_and_end_at_the_end(folders: list[Path]) -> None:
             assert answered == ([60] if held.metrics.adoption else [])
 
 
-@pytest.mark.slow
 def test_a_case_is_drawn_the_same_twice_and_says_who_can_be_drawn(
     folders: list[Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -336,7 +327,6 @@ def test_the_words_above_a_case_are_whole() -> None:
         assert text_fit.text_width(line, 8.5, bold=True) < 9.3 - 0.3
 
 
-@pytest.mark.slow
 def test_the_commands(folders: list[Path], tmp_path: Path) -> None:
     out = tmp_path / "cli"
     done = CliRunner().invoke(cli, ["report", *map(str, folders[:1]), "--out", str(out), "--pdf"])

@@ -63,7 +63,6 @@ def log() -> EpisodeLog:
     return EpisodeLog(events=tuple(events), paths=paths, ticks=141, met=True, ratings={"human": 5}, faults=())
 
 
-@pytest.mark.slow
 def test_a_picture_names_rooms_target_times_and_messages(spec: TrialSpec, log: EpisodeLog) -> None:
     house = houses.load(TASK.house)
     sheet = trial_figure.trial_figure(spec, log, house)
@@ -77,7 +76,6 @@ def test_a_picture_names_rooms_target_times_and_messages(spec: TrialSpec, log: E
         assert words in told, words
 
 
-@pytest.mark.slow
 def test_a_t_star_beyond_the_time_limit_is_not_drawn(spec: TrialSpec, log: EpisodeLog, tmp_path: Path) -> None:
     """Its words would stand a page away and squeeze the picture."""
     short = msgspec.structs.replace(spec, task=msgspec.structs.replace(TASK, time_limit=15.0, t_star=300.0))
@@ -86,7 +84,6 @@ def test_a_t_star_beyond_the_time_limit_is_not_drawn(spec: TrialSpec, log: Episo
     sheet.savefig(tmp_path / "trial.png", dpi=40)
 
 
-@pytest.mark.slow
 def test_knowledge_of_beliefs_has_a_row_where_a_robot_predicted_them(spec: TrialSpec, log: EpisodeLog) -> None:
     house, places = houses.load(TASK.house), {"bed": 1.0}
     said = Predicted(tick=20, seat="robot", person="human", object="apple", places=places)
@@ -97,7 +94,6 @@ def test_knowledge_of_beliefs_has_a_row_where_a_robot_predicted_them(spec: Trial
         assert ("beliefs known" in [text.get_text() for text in sheet.findobj(Text)]) == drawn
 
 
-@pytest.mark.slow
 def test_a_film_lasts_as_long_as_the_trial(spec: TrialSpec, log: EpisodeLog, tmp_path: Path) -> None:
     path = tmp_path / "film.webm"
     trial_video.write_video(path, spec, log, houses.load(TASK.house))
@@ -117,7 +113,6 @@ def failed(log: EpisodeLog) -> EpisodeLog:
     return msgspec.structs.replace(log, events=(*sent, *log.events[-4:]), faults=(fault,))
 
 
-@pytest.mark.slow
 def test_words_of_agents_are_no_formulas(spec: TrialSpec, failed: EpisodeLog, tmp_path: Path) -> None:
     house = houses.load(TASK.house)
     for suffix in (".png", ".svg", ".pdf"):
@@ -138,7 +133,6 @@ def test_no_picture_is_made_without_plain_words(root: Path) -> None:
         assert ".savefig(" not in text or path.name in ("lettering.py", "ink.py"), path
 
 
-@pytest.mark.slow
 def test_a_robot_that_failed_is_a_cross_and_its_way_ends_there(spec: TrialSpec, failed: EpisodeLog) -> None:
     sheet = trial_figure.trial_figure(spec, failed, houses.load(TASK.house))
     told = "\n".join(text.get_text() for text in sheet.findobj(Text))
@@ -151,7 +145,6 @@ def test_a_robot_that_failed_is_a_cross_and_its_way_ends_there(spec: TrialSpec, 
     assert trial_trace.position_at(failed, "robot", 141)[0] > last + 1.0, "the body has gone on, in the log"
 
 
-@pytest.mark.slow
 def test_messages_that_would_hide_one_another_share_a_badge(spec: TrialSpec, failed: EpisodeLog) -> None:
     sheet = trial_figure.trial_figure(spec, failed, houses.load(TASK.house))
     sheet.canvas.draw()
@@ -170,7 +163,6 @@ def test_numbers_are_written_as_ranges(numbers: list[int], words: str) -> None:
     assert trial_trace.number_ranges(numbers) == words
 
 
-@pytest.mark.slow
 def test_a_badge_at_the_edge_takes_no_room_from_the_plan(spec: TrialSpec, log: EpisodeLog) -> None:
     house = houses.load(TASK.house)
     far = {seat: [(-300, y, yaw) for _, y, yaw in way] for seat, way in log.paths.items()}
@@ -181,7 +173,6 @@ def test_a_badge_at_the_edge_takes_no_room_from_the_plan(spec: TrialSpec, log: E
     assert first == pytest.approx(second)
 
 
-@pytest.mark.slow
 def test_a_rug_is_a_covering_of_the_floor_below_everything(spec: TrialSpec, log: EpisodeLog) -> None:
     house = houses.load(TASK.house)
     rugs = [thing for thing in house.things if floor_plan.is_flat(thing)]
@@ -195,7 +186,6 @@ def test_a_rug_is_a_covering_of_the_floor_below_everything(spec: TrialSpec, log:
     assert "rug, flat" in [text.get_text() for text in sheet.findobj(Text)]
 
 
-@pytest.mark.slow
 def test_the_same_trial_gives_the_same_film(spec: TrialSpec, log: EpisodeLog, tmp_path: Path) -> None:
     short = msgspec.structs.replace(log, paths={seat: way[:4] for seat, way in log.paths.items()})
     for name in ("one", "two"):
@@ -205,7 +195,6 @@ def test_the_same_trial_gives_the_same_film(spec: TrialSpec, log: EpisodeLog, tm
     assert b"V_VP8" in one[:1000], "what browsers play"
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("robots", [1, 7])
 @pytest.mark.parametrize("scene", [TASK.house, "willow"])
 def test_a_films_words_lie_apart_from_the_plan(spec: TrialSpec, failed: EpisodeLog, scene: str, robots: int) -> None:
@@ -234,7 +223,6 @@ def test_a_films_words_lie_apart_from_the_plan(spec: TrialSpec, failed: EpisodeL
 LONG = "with a name that goes on and on until nobody can read it any more "
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("chromium") is None, reason="Chromium is not installed")
 def test_a_browser_plays_a_film(spec: TrialSpec, log: EpisodeLog, tmp_path: Path) -> None:
     short = msgspec.structs.replace(log, paths={seat: way[:10] for seat, way in log.paths.items()})
@@ -271,7 +259,6 @@ def test_a_house_is_shown_with_its_rooms_and_a_scale() -> None:
     assert 25 <= sum(scale < 45) <= 36, "a metre is some thirty pixels"
 
 
-@pytest.mark.slow
 def test_pictures_of_the_docs_are_known_and_tell_when_they_are_old(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -321,7 +308,6 @@ def test_files_of_figures_have_no_date_and_know_their_formats(tmp_path: Path) ->
             figure_file.write_figure(made, tmp_path / name)
 
 
-@pytest.mark.slow
 def test_two_processes_write_the_same_drawing() -> None:
     """Names in an SVG and prefixes of fonts are no chance."""
     script = (

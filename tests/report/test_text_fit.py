@@ -90,7 +90,6 @@ def _beyond(axis: Axis) -> list[Tick]:
     return [tick for tick in axis.get_major_ticks() if not low <= tick.get_loc() <= high]
 
 
-@pytest.mark.slow
 def test_every_figure_of_a_report_has_its_words_whole(found: Findings, folders: list[Path]) -> None:
     assert all(len(name) == 60 for name in (LONG, WIDE))
     record = load_runs.load_runs(folders)[1].records[0]
@@ -100,7 +99,6 @@ def test_every_figure_of_a_report_has_its_words_whole(found: Findings, folders: 
     assert {name: cut(made) for name, made in drawn.items()} == {name: [] for name in drawn}
 
 
-@pytest.mark.slow
 def test_names_of_curves_lie_right_of_all_marks_and_apart(found: Findings) -> None:
     """Each began where its own curve ended, and the marks of the others hid its first letters."""
     made = session.trust_figure(found.trust, found.arms)
@@ -117,7 +115,6 @@ def test_names_of_curves_lie_right_of_all_marks_and_apart(found: Findings) -> No
     assert all(within.y0 <= box.y0 and box.y1 <= within.y1 for box in boxes)
 
 
-@pytest.mark.slow
 def test_a_picture_and_a_case_have_their_words_whole(long_trial: TrialRecord) -> None:
     house, spec = houses.load("hazel"), long_trial.spec
     event = msgspec.structs.replace(
@@ -142,7 +139,6 @@ def _pictured(spec: TrialSpec, log: EpisodeLog) -> Figure:
         return trial_figure.trial_figure(spec, log, houses.load("hazel"))
 
 
-@pytest.mark.slow
 @given(st.text(alphabet="aW_-/ .+:é$\\", max_size=80), st.floats(0.3, 3.0))
 def test_lines_are_as_wide_as_they_may_be_and_lose_no_letter(words: str, inches: float) -> None:
     lines = text_fit.wrap(words, inches, 8.0)
@@ -162,7 +158,6 @@ def test_long_names_may_be_broken_on_a_page_and_are_copied_whole() -> None:
     )
 
 
-@pytest.mark.slow
 def test_letters_in_a_figure_have_a_size_and_no_font_of_their_own(found: Findings) -> None:
     for one in figure_index.draw_figures(found, []):
         styles = re.findall(r'<text style="([^"]*)"', matplotlib_svg.to_svg(one.figure, one.name, one.words))
@@ -173,7 +168,6 @@ def test_letters_in_a_figure_have_a_size_and_no_font_of_their_own(found: Finding
             assert all(part and "," not in part and part not in ("font", "font-family") for part in parts), style
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("chromium") is None, reason="Chromium is not installed")
 @pytest.mark.parametrize("width", [1280, 700])
 def test_four_runs_fit_a_page(folders: list[Path], tmp_path: Path, width: int) -> None:
@@ -221,7 +215,6 @@ document.body.append(out);
 });</script>"""
 
 
-@pytest.mark.slow
 def test_hundreds_of_messages_share_few_badges_that_do_not_touch(long_trial: TrialRecord) -> None:
     """Joining them pair by pair, again from the start after each, took minutes."""
     sent = next(one for one in long_trial.log.events if one.kind == "sent")

@@ -14,7 +14,7 @@ from hthor.episode import play
 from hthor.eval.config.sessions import Session
 from hthor.eval.runner import trial_runner
 from hthor.eval.runner.messages import TrialOutcome
-from hthor.types import HUMAN, RobotSeat, Snapshot
+from hthor.types import HUMAN, RobotSeat, Snapshot, TaskSpec
 
 AGENT = """
 from hthor.types import Action, Send
@@ -34,10 +34,14 @@ class Agent:
 
 
 class Stage(episode_fakes.Stage):
-    """The apple comes into view at tick ``seen``."""
+    """All objects of the task come into view at tick ``seen``."""
+
+    def reset(self, task: TaskSpec, seed: int = 0) -> None:
+        super().reset(task, seed)
+        self.objects = tuple(placed.id for placed in task.objects)
 
     def snapshot(self) -> Snapshot:
-        view = ("apple",) if self.tick >= self.seen else ()
+        view = self.objects if self.tick >= self.seen else ()
         return Snapshot(tick=self.tick, poses={}, things=self.things, in_view={HUMAN: view}, holding={HUMAN: ""})
 
 

@@ -74,7 +74,6 @@ def _raised(task: TaskSpec) -> TaskSpec:
 # -------------------------------------------------------------------------------------------------------------- making
 
 
-@pytest.mark.slow
 def test_equal_recipes_give_equal_tasks_and_other_seeds_others(home: Path, made: tuple[TaskSpec, ...]):
     assert custom_suite.make_tasks(RECIPE, houses.load(home)) == made
     assert custom_suite.make_tasks(msgspec.structs.replace(RECIPE, seed=6, tasks=1), houses.load(home))[0] not in made
@@ -82,7 +81,6 @@ def test_equal_recipes_give_equal_tasks_and_other_seeds_others(home: Path, made:
     assert {task.house for task in made} == {"my home"}
 
 
-@pytest.mark.slow
 def test_what_cannot_be_done_is_drawn_again_with_another_goal_in_the_end():
     first = custom_suite.make_tasks(Recipe(name="mine", tasks=1, kinds=("mobile_manipulation",)), ELDER)[0].goal
     tried: list[TaskSpec] = []
@@ -100,7 +98,6 @@ def test_what_cannot_be_done_is_drawn_again_with_another_goal_in_the_end():
         )
 
 
-@pytest.mark.slow
 def test_a_suite_brings_its_houses_and_what_they_need(suite: Path, made: tuple[TaskSpec, ...], home: Path):
     names = sorted(path.name for path in suite.with_suffix(".houses").iterdir())
     assert names == [DATABASE, "my home.json"]
@@ -112,7 +109,6 @@ def test_a_suite_brings_its_houses_and_what_they_need(suite: Path, made: tuple[T
     assert set(library.house_files(suite)) == set(names)
 
 
-@pytest.mark.slow
 def test_a_folder_does_as_well(home: Path, made: tuple[TaskSpec, ...], tmp_path: Path):
     files = suite_files.make_files("mine", custom_suite.VERSION, suite_files.find_sources([str(home)]), [made])
     out = suite_files.write_files(tmp_path / "mine", files)
@@ -140,7 +136,6 @@ def test_houses_are_told_apart_by_name(home: Path, tmp_path: Path):
 # -------------------------------------------------------------------------------------------------- before it is played
 
 
-@pytest.mark.slow
 def test_every_unsound_task_is_named(suite: Path):
     found = library.read_suite(broken(suite, 0, 2))
     assert {one.index for one in find_faults(found)} == {0, 2}
@@ -151,7 +146,6 @@ def test_every_unsound_task_is_named(suite: Path):
     assert "hthor tasks check" in str(error.value)
 
 
-@pytest.mark.slow
 def test_the_check_lists_every_task(suite: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
     ids = [task.id for task in library.read_suite(broken(suite, 0, 1, 2)).tasks]
     monkeypatch.setattr(sys, "argv", ["hthor", "tasks", "check", str(suite), "--jobs", "1"])
@@ -163,13 +157,11 @@ def test_the_check_lists_every_task(suite: Path, monkeypatch: pytest.MonkeyPatch
     assert "tasks, 3 unsound" in said.err
 
 
-@pytest.mark.slow
 def test_one_fault_is_told_as_it_is(suite: Path):
     with pytest.raises(TaskError, match=r"mine\.json: tasks\[1\]\.objects\[0\]\.position: .* rests on no surface"):
         task_selection.checked_suite(str(broken(suite, 1)))
 
 
-@pytest.mark.slow
 def test_that_a_suite_is_sound_is_remembered_until_it_changes(suite: Path, monkeypatch: pytest.MonkeyPatch):
     looked: list[str] = []
     monkeypatch.setattr(task_selection, "validate", lambda found, file: looked.append(file))
@@ -203,7 +195,6 @@ def test_a_suite_is_narrowed_to_houses_and_difficulty():
         task_selection.narrow_selection(whole, ("aldr",), "")
 
 
-@pytest.mark.slow
 def test_difficulty_is_worked_out_where_a_suite_does_not_tell():
     whole = task_selection.narrow_selection(task_selection.select_tasks("smoke", ""), ("alder",), "")
     parts = [len(task_selection.narrow_selection(whole, (), level).suite.tasks) for level in ("easy", "medium")]

@@ -97,7 +97,6 @@ def finished(task):
 # ------------------------------------------------------------------------------------------------------ the contract
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("root", [1, 2])
 @pytest.mark.parametrize("house", DRAWN_IN)
 @pytest.mark.parametrize("name", [*KINDS, str(EXAMPLE), str(WITH_PHASE)])
@@ -140,7 +139,6 @@ def test_every_kind_has_its_own_words_and_crews_that_exist():
     assert KINDS["collaborative_carrying"].crew == ("porter",)
 
 
-@pytest.mark.slow
 @given(st.data())
 def test_progress_is_one_when_the_goal_is_met_and_only_then(data):
     """Any state of the objects: at the start, done, in a hand, gone, or somewhere on the floor."""
@@ -180,7 +178,6 @@ def test_a_job_is_done_at_its_place_and_in_nobodys_hands():
     assert not is_done(msgspec.structs.replace(job, relation="find"), there, house)
 
 
-@pytest.mark.slow
 def test_a_room_is_reached_by_its_floor():
     house = HOUSES["elder"]
     trunk = drawn(KINDS["collaborative_carrying"], "elder", 1)
@@ -217,7 +214,6 @@ def test_impossible_goals_are_refused(change, says):
     assert says in kind.objection(goal, HOUSES["elder"])
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("short", ["collect", "tidy"])
 def test_t_star_is_no_more_than_a_person_alone_needs(short):
     """Who walks along exact paths between sampled places in reach, and does the jobs in any order, is never faster."""
@@ -241,7 +237,6 @@ def test_t_star_is_no_more_than_a_person_alone_needs(short):
         assert 0.0 < t_star <= walked / rules.PACE_M_S + len(stops) * rules.HANDLING_S
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("short", ["collect", "rearrange", "tidy"])
 def test_the_least_time_is_that_of_the_best_order(short):
     """It equals the shortest of the walks through all stops in each of the possible orders."""
@@ -289,7 +284,6 @@ def suite(request):
     return tasks.load_suite(request.param)
 
 
-@pytest.mark.slow
 def test_each_kind_has_two_tasks_in_each_scene(suite):
     kind = EXTENDED[suite.name]
     assert Counter(task.house for task in suite.tasks) == dict.fromkeys(houses.names(), 2)
@@ -301,7 +295,6 @@ def test_each_kind_has_two_tasks_in_each_scene(suite):
     assert len({jsonio.canonical((task.house, task.objects)) for task in suite.tasks}) == len(suite.tasks)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["collect", "rearrange", "tidy", "carry"])
 def test_a_house_made_anew_is_the_same(name):
     again = generate.house_tasks(SUITE_SPECS[name], HOUSES["elder"])
@@ -309,7 +302,6 @@ def test_a_house_made_anew_is_the_same(name):
     assert library.suite_path(name).read_bytes() == encode_suite(tasks.load_suite(name))
 
 
-@pytest.mark.slow
 def test_apples_are_apart_and_too_much_for_one():
     suite = tasks.load_suite("collect")
     cold = 0
@@ -447,7 +439,6 @@ def test_strewn_targets_are_where_nobody_wants_them_and_the_rest_where_they_may_
             assert all(commonsense_places.places_of(job.target)[kind].verdict != "out" for kind in job.destinations)
 
 
-@pytest.mark.slow
 def test_trunks_stand_free_in_one_room_and_go_to_another():
     for task in tasks.load_suite("carry").tasks:
         house, (trunk,), (job,) = HOUSES[task.house], task.objects, task.goal.jobs

@@ -129,7 +129,6 @@ def test_the_commitment_is_a_hash_with_a_name_of_its_own():
     assert SALT.commitment() != OTHER.commitment()
 
 
-@pytest.mark.slow
 @given(PURPOSES, PURPOSES)
 def test_roots_and_words_are_of_their_purpose_alone(one, two):
     assert (SALT.root(*one) == SALT.root(*two)) == (one == two)
@@ -147,13 +146,11 @@ def test_a_text_never_seems_to_hold_more_than_its_letters_can(text):
 # -------------------------------------------------------------------------------------------------------- the suite
 
 
-@pytest.mark.slow
 def test_the_same_salt_gives_the_same_bytes(parts):
     again = secret_suites.make_house_tasks(secret_suites.house_orders(ORDER, Salt(TEXT))[1], PROOF)
     assert again == parts[1]
 
 
-@pytest.mark.slow
 def test_another_salt_or_another_name_gives_other_houses_and_tasks(parts):
     names = {lot.house for salt in (SALT, OTHER) for lot in secret_suites.house_orders(ORDER, salt)}
     names |= {lot.house for lot in secret_suites.house_orders(msgspec.structs.replace(ORDER, name="tiny2"), SALT)}
@@ -166,7 +163,6 @@ def test_another_salt_or_another_name_gives_other_houses_and_tasks(parts):
     assert {task.house_sha256 for task in other.tasks}.isdisjoint(task.house_sha256 for task in parts[1].tasks)
 
 
-@pytest.mark.slow
 def test_its_tasks_are_sound_and_in_houses_of_its_own(files, folder: Path):
     suite = tasks.load_suite(folder)
     assert suite == tasks.load_suite(folder / "suite.json")
@@ -184,7 +180,6 @@ def test_its_tasks_are_sound_and_in_houses_of_its_own(files, folder: Path):
     assert library.house_files("smoke") == {}
 
 
-@pytest.mark.slow
 def test_nothing_that_is_written_tells_the_salt_or_a_root(folder: Path):
     roots = [root for lot in secret_suites.house_orders(ORDER, SALT) for pair in lot.roots for root in pair]
     secret = [TEXT, TEXT[:16], TEXT[-16:]]
@@ -195,7 +190,6 @@ def test_nothing_that_is_written_tells_the_salt_or_a_root(folder: Path):
         assert json.loads(path.read_bytes())["metadata"]["generator"] == {"version": 1}
 
 
-@pytest.mark.slow
 def test_what_is_learned_of_public_suites_by_heart_finds_nothing_in_it(folder: Path):
     def marks(task):
         return task.instruction, task.robot_starts[0]
@@ -207,14 +201,12 @@ def test_what_is_learned_of_public_suites_by_heart_finds_nothing_in_it(folder: P
     assert {marks(task) for task in public}.isdisjoint(marks(task) for task in tasks.load_suite(folder).tasks)
 
 
-@pytest.mark.slow
 def test_starts_lie_on_the_grid_so_that_no_digit_tells_how_they_were_drawn(folder: Path):
     for task in tasks.load_suite(folder).tasks:
         for pose in (task.human_start, *task.robot_starts):
             assert (round(pose.x, 4), round(pose.y, 4), round(pose.yaw, 4)) == (pose.x, pose.y, pose.yaw)
 
 
-@pytest.mark.slow
 def test_a_house_that_is_unsound_or_too_small_is_drawn_again(monkeypatch: pytest.MonkeyPatch):
     lot = secret_suites.house_orders(SuiteOrder(name="tiny", houses=1, tasks=1), SALT)[0]
     seen = []
@@ -235,7 +227,6 @@ def test_a_house_that_is_unsound_or_too_small_is_drawn_again(monkeypatch: pytest
         )
 
 
-@pytest.mark.slow
 def test_a_task_that_cannot_be_done_is_drawn_again():
     lot = secret_suites.house_orders(SuiteOrder(name="tiny", houses=1, tasks=1), SALT)[0]
     seen = []
@@ -265,7 +256,6 @@ def test_orders_that_cannot_be_met(name, many, count, told):
         secret_suites.house_orders(SuiteOrder(name=name, houses=many, tasks=count), SALT)
 
 
-@pytest.mark.slow
 @given(st.integers(1, 40), st.integers(0, 400))
 def test_tasks_are_shared_out_evenly_and_a_quarter_are_searches(many, more):
     lots = secret_suites.house_orders(SuiteOrder(name="fine", houses=many, tasks=many + more), SALT)
@@ -373,7 +363,6 @@ def say(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]):
     return run
 
 
-@pytest.mark.slow
 def test_a_season_from_salt_to_verdict(say, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     """Make, publish, play, draw, reveal, verify: and nothing tells the salt before it is revealed."""
     salt, folder, run = tmp_path / "salt", tmp_path / "season", tmp_path / "run"
@@ -405,7 +394,6 @@ def test_a_season_from_salt_to_verdict(say, tmp_path: Path, monkeypatch: pytest.
     assert "byte for byte" in done("suite", "verify", folder, "--jobs", 1)
 
 
-@pytest.mark.slow
 def test_a_suite_that_was_tampered_with(say, folder: Path, tmp_path: Path):
     published = tmp_path / "published.json"
     published.write_bytes((folder / "commitment.json").read_bytes())
@@ -419,7 +407,6 @@ def test_a_suite_that_was_tampered_with(say, folder: Path, tmp_path: Path):
     assert "it was made with hthor 1 (here" in err
 
 
-@pytest.mark.slow
 def test_misuse_of_the_commands(say, folder: Path, tmp_path: Path):
     salt = tmp_path / "salt"
     salt.write_text(TEXT)

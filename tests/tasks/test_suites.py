@@ -52,20 +52,17 @@ def test_they_differ_from_the_scenes_in_nothing_but_in_being_new():
         assert kinds.isdisjoint(catalog.TARGETS)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", houses.names("unseen"))
 def test_each_is_sound(name):
     assert houses.check(houses.load(name), 0.25, strict=True) == ()
 
 
-@pytest.mark.slow
 def test_one_is_made_again_byte_for_byte():
     recipe = shipped.UNSEEN[3]
     file = Path(houses.__file__).parent / "unseen" / f"{recipe.name}.json"
     assert jsonio.pretty(shipped.make_house(recipe)) == file.read_bytes()
 
 
-@pytest.mark.slow
 def test_the_others_are_written_where_one_says(tmp_path: Path, capsys, monkeypatch):
     monkeypatch.setattr(shipped, "SCENES", ())
     monkeypatch.setattr(shipped, "UNSEEN", shipped.UNSEEN[:1])
@@ -158,7 +155,6 @@ def test_tasks_that_follow_one_another_are_in_different_houses():
         assert len({task.house for task in SUITE.tasks[first : first + 20]}) == 20
 
 
-@pytest.mark.slow
 def test_all_of_it_can_be_run():
     validate(SUITE, "standard")
     for task in SUITE.tasks:
@@ -169,7 +165,6 @@ def test_all_of_it_can_be_run():
         )
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["juniper", "aspen"])
 def test_a_slice_is_made_again_byte_for_byte(name):
     split = "seen" if name in names() else "new"

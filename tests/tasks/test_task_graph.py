@@ -35,7 +35,6 @@ def test_the_benchmark_has_its_parts():
     assert len(set(catalog.TARGETS) | set(catalog.RECEPTACLES)) == 14
 
 
-@pytest.mark.slow
 def test_orders_count_565_and_1583():
     found = {}
     for name in ("navigation", "manipulation"):
@@ -63,7 +62,6 @@ def test_the_counts_follow_from_the_tables_alone():
 # ------------------------------------------------------------------------------------------------------------- chance
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("target", catalog.TARGETS)
 @pytest.mark.parametrize("where", ["everything", "juniper"])
 def test_relations_are_drawn_as_often_as_they_weigh(target, where):
@@ -88,7 +86,6 @@ def test_a_whole_graph_is_drawn_target_by_target():
     assert scene_graph.sample_graph(kinds, ROOT, fixed) == {**one, "mug": fixed}
 
 
-@pytest.mark.slow
 def test_poses_realise_the_graph_that_was_drawn():
     """A relation gives way to another only where its pose is not to be had."""
     house, kept, drawn = houses.load("hazel"), 0, 0
@@ -148,7 +145,6 @@ def plan_gap(placed: Placement, name: str, house, objects) -> float:
     return math.dist((u, v), nearest)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["cedar", "willow"])
 def test_a_given_triplet_holds_and_so_does_all_that_is_near(name):
     house = houses.load(name)
@@ -165,7 +161,6 @@ def test_a_given_triplet_holds_and_so_does_all_that_is_near(name):
         assert all(plan_gap(placed, placed.near, house, objects) <= 1.0 for placed in objects if placed.near)
 
 
-@pytest.mark.slow
 def test_a_target_of_a_ring_is_near_the_one_that_came_later():
     house = houses.load("alder")
     fixed = scene_graph.find_triplet("tomato", "near", "lettuce")
@@ -198,7 +193,6 @@ def test_where_the_only_plate_is_at_the_destination_another_is_brought():
     assert math.dist(objects["tomato"].position[:2], plate.position[:2]) < 0.1
 
 
-@pytest.mark.slow
 def test_what_cannot_be_is_said():
     house = houses.load("alder")
     with pytest.raises(HthorError, match="tomato-on-plate"):

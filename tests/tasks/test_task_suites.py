@@ -71,7 +71,6 @@ def claim(task):
     return (task.goal.target, *task.id.split("/")[3].split("-"))
 
 
-@pytest.mark.slow
 def test_every_target_is_where_the_id_of_its_task_says():
     for suite in EXACT:
         kinds = {name: {thing.id: thing.kind for thing in houses.load(name).things} for name in suite_specs.SCENES}
@@ -96,7 +95,6 @@ def test_every_stratum_has_its_share():
     assert {task.kind for task in PAPER.tasks} == {"mobile_manipulation"}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("task", SOME, ids=lambda task: task.id)
 def test_a_slice_is_valid_and_as_difficult_as_it_says(task):
     house = houses.load(task.house)
@@ -107,7 +105,6 @@ def test_a_slice_is_valid_and_as_difficult_as_it_says(task):
     assert {one.id for one in task.objects} >= set(catalog.TARGETS)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("task", SOME[::4], ids=lambda task: task.id)
 def test_a_slice_can_be_done(task):
     assert solvability.check_task(task).faults == ()
@@ -116,7 +113,6 @@ def test_a_slice_can_be_done(task):
 # ------------------------------------------------------------------------------------------------------ made again
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["navigation", "manipulation"])
 def test_a_slice_made_again_is_the_same(name):
     plan, frozen = suite_specs.SUITE_SPECS[name], {task.id: task for task in tasks.load_suite(name).tasks}
@@ -126,13 +122,11 @@ def test_a_slice_made_again_is_the_same(name):
         assert jsonio.canonical(made) == jsonio.canonical(frozen[made.id])
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["smoke", "paper"])
 def test_a_suite_made_again_is_the_same_file(name):
     assert encode_suite(generate.build_suite(suite_specs.SUITE_SPECS[name])) == library.suite_path(name).read_bytes()
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", sorted(suite_specs.SUITE_SPECS))
 def test_files_are_canonical_and_carry_their_hash(name):
     data = library.suite_path(name).read_bytes()
@@ -210,7 +204,6 @@ def test_masses_are_those_of_the_priors():
 # ------------------------------------------------------------------------------------------------------------ commands
 
 
-@pytest.mark.slow
 def test_list_counts_the_suites_and_their_tasks(hthor):
     code, out, _ = hthor("tasks", "list", "--json")
     assert code == 0
@@ -222,7 +215,6 @@ def test_list_counts_the_suites_and_their_tasks(hthor):
     assert "1583 tasks" in out
 
 
-@pytest.mark.slow
 def test_list_narrows_down(hthor):
     words = ("tasks", "list", "smoke", "--house", "alder", "--kind", "manipulation", "--json")
     rows = json.loads(hthor(*words)[1])
@@ -236,7 +228,6 @@ def test_list_narrows_down(hthor):
     assert "name a suite" in err
 
 
-@pytest.mark.slow
 def test_show_tells_all_about_a_task_and_guesses_names(hthor):
     code, out, _ = hthor("tasks", "show", "navigation/alder/apple-in-fridge")
     assert code == 0
@@ -249,7 +240,6 @@ def test_show_tells_all_about_a_task_and_guesses_names(hthor):
     assert "Did you mean 'navigation/alder/apple-in-fridge'" in err
 
 
-@pytest.mark.slow
 def test_draw_writes_a_picture(hthor, tmp_path):
     path = tmp_path / "a.png"
     code, out, _ = hthor("tasks", "draw", "smoke/willow/manipulation-01", "--out", str(path))
@@ -260,7 +250,6 @@ def test_draw_writes_a_picture(hthor, tmp_path):
     assert ".png" in err
 
 
-@pytest.mark.slow
 def test_check_names_task_field_and_reason(hthor, tmp_path):
     task = next(task for task in PAPER.tasks if task.house == "willow")
     late = msgspec.structs.replace(task, id="late", t_star=300.0)

@@ -147,7 +147,6 @@ def test_no_two_objects_and_no_clutter_share_a_place(task):
                     assert any(abs(a) >= h for a, h in zip(local, half, strict=True))
 
 
-@pytest.mark.slow
 def test_starts_are_free_and_away_from_the_target_and_from_each_other(task):
     space, human = FreeSpace.of(HOUSES[task.house], 0.30, HEIGHT_M), task.human_start
     starts = (human, *task.robot_starts)
@@ -162,7 +161,6 @@ def test_starts_are_free_and_away_from_the_target_and_from_each_other(task):
     )
 
 
-@pytest.mark.slow
 def test_t_star_is_that_of_the_kind_and_the_least_time_a_plausible_bound(task):
     spec, kind = HOUSES[task.house], plugins.load("task kind", task.kind)
     assert kind.t_star(task, spec) == task.t_star
@@ -194,7 +192,6 @@ def test_no_task_is_solved_before_it_begins(task):
 # --------------------------------------------------------------------------------------------------------- the kinds
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", plugins.names("task kind"))
 def test_every_kind_keeps_the_contract(name):
     kind, spec = plugins.load("task kind", name), next(iter(HOUSES.values()))
@@ -317,7 +314,6 @@ def test_an_empty_hall_has_no_place_for_anything():
         arrange(hall(), 1)
 
 
-@pytest.mark.slow
 def test_a_rebuild_gives_the_same_bytes(tmp_path):
     plan = suite_specs.SUITE_SPECS["smoke"]
     rebuilt = generate.house_tasks(plan, HOUSES["juniper"])
@@ -361,7 +357,6 @@ def at(*keys, value):
 T1 = ("tasks", 1)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("change", "field", "problem"),
     [

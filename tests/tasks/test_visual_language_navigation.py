@@ -68,7 +68,6 @@ def written(found):
 # ----------------------------------------------------------------------------------------------------- the instruction
 
 
-@pytest.mark.slow
 @given(routes())
 def test_whoever_reads_the_words_literally_gets_to_the_end_of_the_route(found):
     house, start, end, route = found
@@ -82,7 +81,6 @@ def test_whoever_reads_the_words_literally_gets_to_the_end_of_the_route(found):
     assert room_of(house, *route.points[-1]).id == end.room
 
 
-@pytest.mark.slow
 @given(routes())
 def test_every_side_and_room_that_is_named_is_true_of_the_route(found):
     house, _, _, route = found
@@ -101,7 +99,6 @@ def test_every_side_and_room_that_is_named_is_true_of_the_route(found):
             assert directions.off_side(step.side, bearing) <= literal_reader.OFF_RAD
 
 
-@pytest.mark.slow
 @given(routes())
 def test_every_landmark_is_in_sight_where_it_is_mentioned_and_on_the_hand_that_is_named(found):
     house, _, _, route = found
@@ -141,7 +138,6 @@ def mirrored(house):
 MIRRORED = {name: mirrored(house) for name, house in HOUSES.items()}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("task", SUITE.tasks, ids=lambda task: task.id)
 def test_a_mirrored_house_gives_mirrored_words(task):
     """Boxes are mirrored by turning them the other way; the walk and the sight are the mirrored ones."""
@@ -214,7 +210,6 @@ def test_what_is_no_walk_is_told(goal, told):
     assert told in KIND.objection(goal, HOUSES["alder"])
 
 
-@pytest.mark.slow
 def test_the_suite_made_again_is_the_same_file():
     assert encode_suite(generate.build_suite(SUITE_SPECS["vln"])) == library.suite_path("vln").read_bytes()
 

@@ -154,7 +154,6 @@ def test_looking_at_a_point_turns_the_camera_there(built: World, x: float, y: fl
     assert (pose.x, pose.y) == (MIDDLE.x, MIDDLE.y)
 
 
-@pytest.mark.slow
 def test_looking_shows_what_is_looked_at(world: World) -> None:
     human = world.human
     assert human.go_to("apple").ok
@@ -214,7 +213,6 @@ def test_teleport_lets_go_of_a_door_that_it_was_moving(world: World, motion, beg
 # ------------------------------------------------------------------------------------------------------------ messages
 
 
-@pytest.mark.slow
 def test_a_message_is_sent_shown_and_answered(world: World) -> None:
     robot, human = world.robot, world.human
     assert robot.receipt() is None
@@ -364,7 +362,6 @@ def test_hands_say_why_not_for_ids_that_do_not_exist(world: World) -> None:
         assert outcome.reason
 
 
-@pytest.mark.slow
 def test_a_long_list_of_names_is_cut() -> None:
     error = UnknownName("thing", "x", [f"thing_{k}" for k in range(100)])
     assert "thing_23 and 76 more" in str(error)

@@ -54,7 +54,6 @@ def course(house: str) -> list[tuple[int, ...]]:
     return rows
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("house", ["alder", "cedar"])
 def test_the_world_is_that_of_its_version(house):
     rows = course(house)

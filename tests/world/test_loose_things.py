@@ -218,7 +218,6 @@ def test_what_a_flat_robot_s_scan_shows_free_is_free_to_drive(world: World) -> N
     assert scan.ranges[len(scan.ranges) // 2] > 1.5, "it looks through below the table"
 
 
-@pytest.mark.slow
 def test_random_actions_among_loose_things_leave_nothing_in_anything() -> None:
     report = benchmark.Report()
     benchmark.run("hazel", ("scout", "puck", "tender"), 1, 1000, "test", report)

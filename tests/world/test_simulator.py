@@ -44,7 +44,6 @@ def calls(page: str, title: str) -> list[tuple[str, str]]:
     return list(dict.fromkeys(found))
 
 
-@pytest.mark.slow
 def test_the_page_s_examples_do_what_it_shows(page: str) -> None:
     code = pages.only_code(page)
     test = doctest.DocTestParser().get_doctest(code, {}, "simulator.md", "docs/simulator.md", 0)

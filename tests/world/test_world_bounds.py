@@ -94,7 +94,6 @@ def test_two_robots_place_on_one_spot_in_one_tick(world: World) -> None:
 # ---------------------------------------------------------------------------------------------------- too fast
 
 
-@pytest.mark.slow
 @settings(max_examples=60, deadline=None, derandomize=True)
 @given(
     st.sampled_from(TARGETS),
@@ -281,7 +280,6 @@ def test_numbers_of_numpy_are_numbers() -> None:
 # ------------------------------------------------------------------------------------------------ going to objects
 
 
-@pytest.mark.slow
 def test_going_to_an_object_is_ok_only_where_it_can_be_picked_up(world: World) -> None:
     world.reset(task(on(TABLE, "apple", 0.3, 0.1), on(tiny.FRIDGE, "mug", surface=0), human=Pose(x=4.0, y=2.0)))
     human = world.human
@@ -294,7 +292,6 @@ def test_going_to_an_object_is_ok_only_where_it_can_be_picked_up(world: World) -
     assert world.out_of_hand("human", "mug") == ""
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("body", ["human", "tender"])
 def test_the_promise_holds_all_over_a_house(body: str) -> None:
     found = reaching.measure("hazel", body, Counter())

@@ -57,7 +57,6 @@ class Walker:
         return {}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("yaw", [math.pi, 0.0], ids=["facing", "turned away"])
 @pytest.mark.parametrize("name", ["frontier", "oracle"])
 def test_a_robot_in_a_doorway_lets_the_person_through(name: str, yaw: float) -> None:

@@ -76,7 +76,6 @@ FRONTS = {
 }
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("object", FRONTS)
 def test_what_is_behind_a_door_is_seen_and_taken_only_when_it_is_open(world: World, object: str) -> None:
     thing, place, pitch = FRONTS[object]
@@ -228,7 +227,6 @@ def test_reset_opens_all_doorways(world: World) -> None:
     assert np.allclose(world._env.data.geom_xpos[leaf], pose[leaf])
 
 
-@pytest.mark.slow
 def test_a_leaf_opens_into_the_first_room_clear_of_the_wall() -> None:
     (leaf,) = door_geometry.doorway_leaves(house())
     (joint,) = leaf.joints

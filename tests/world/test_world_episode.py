@@ -54,14 +54,12 @@ def world() -> World:
     return World(tiny.house(), robots=("scout",))
 
 
-@pytest.mark.slow
 def test_every_reset_gives_the_same_story(world: World) -> None:
     first = play(world)
     do(world, "human", Rotate(yaw=1.0))
     assert play(world) == first
 
 
-@pytest.mark.slow
 def test_every_process_gives_the_same_story_and_wakes_no_renderer(world: World) -> None:
     code = (
         "import sys, test_world_episode as t\n"
@@ -78,7 +76,6 @@ def test_every_process_gives_the_same_story_and_wakes_no_renderer(world: World) 
     assert out.stdout.split() == [play(world), "[]"]
 
 
-@pytest.mark.slow
 def test_a_robot_in_nobody_s_way_changes_nothing(world: World) -> None:
     assert play(world) == play(World(tiny.house()))
     assert play(world, robot_moves=False) == play(world)
@@ -171,7 +168,6 @@ def test_snapshots_are_cheap_and_fresh(world: World) -> None:
     assert world.snapshot().things["apple"].held_by == "human"
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", plugins.names("robot"))
 def test_every_robot_keeps_the_contract(name: str) -> None:
     spec: RobotSpec = plugins.load("robot", name)
@@ -208,7 +204,6 @@ def test_the_avatar_fits_its_body(world: World) -> None:
     _fits(world, "human", world.bodies["human"])
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", houses.names())
 def test_our_own_houses_can_be_lived_in(name: str) -> None:
     world = World(name, robots=("scout",))
@@ -217,7 +212,6 @@ def test_our_own_houses_can_be_lived_in(name: str) -> None:
     assert set(solids.furniture_slabs(world.house)) == set(solids.furniture_slabs(houses.load(name)))
 
 
-@pytest.mark.slow
 def test_sample_houses_can_be_lived_in(samples: list[Path]) -> None:
     databases = samples[0].parent / "databases"
     world = World(houses.load(samples[0], assets=databases), robots=("tender",))

@@ -6,7 +6,6 @@ import functools
 import sys
 from pathlib import Path
 
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -26,7 +25,6 @@ def fresh() -> World:
     return world()
 
 
-@pytest.mark.slow
 @settings(max_examples=6, deadline=None, derandomize=True)
 @given(st.integers(0, 10**6), st.sampled_from((0.02, 0.15, 0.6)))
 def test_calls_leave_a_sound_world(seed: int, odd: float) -> None:
@@ -35,13 +33,11 @@ def test_calls_leave_a_sound_world(seed: int, odd: float) -> None:
     assert report.findings == []
 
 
-@pytest.mark.slow
 def test_the_same_calls_fare_the_same() -> None:
     one, two = (worldfuzz.run(fresh(), 80, "again").digest for _ in range(2))
     assert one == two != worldfuzz.run(fresh(), 80, "other").digest
 
 
-@pytest.mark.slow
 def test_what_is_wrong_is_found() -> None:
     broken = World("hazel", robots=("tender",))
     checker = worldfuzz.Checker(broken)

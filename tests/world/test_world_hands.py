@@ -38,7 +38,6 @@ def state(world: World, id: str):
     return next(state for state in world.truth() if state.id == id)
 
 
-@pytest.mark.slow
 def test_pick_carry_place_conserves_the_object(world: World) -> None:
     before = [thing.id for thing in world.truth()]
     events = do(world, "human", Pick(object="apple"))
@@ -225,7 +224,6 @@ def test_what_could_not_lie_as_the_house_says_stays_like_furniture() -> None:
     assert state(world, "egg|1").position == pytest.approx((3.2, 0.42, 0.947))
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("scene", ["alder", "hazel", "rowan"])
 def test_a_robot_fetches_an_apple_into_the_fridge_by_motions_alone(scene: str) -> None:
     world = World(scene, robots=("tender", "puck"))

@@ -95,7 +95,6 @@ speeds = st.floats(0.0, 4.0)
 angles = st.floats(-math.pi, math.pi)
 
 
-@pytest.mark.slow
 @quick
 @given(
     kinds, st.floats(0.3, 4.7), st.floats(0.3, 3.7), st.floats(0.3, 1.6), speeds, angles, st.floats(-1.5, 1.2), angles
@@ -120,7 +119,6 @@ def test_nothing_passes_through_a_wall_or_a_surface(kind, x, y, z, speed, headin
     assert one._editor._overlap.inside(one._objects.get(id), 0.012) == ""
 
 
-@pytest.mark.slow
 @quick
 @given(kinds, st.sampled_from((TABLE, COFFEE, COUNTER, "sofa|1", "bed|1", "shelf|1")), st.floats(-2.0, 4.0), angles)
 def test_what_is_thrown_at_a_board_does_not_come_out_below(kind, thing, push, yaw) -> None:
@@ -138,7 +136,6 @@ def test_what_is_thrown_at_a_board_does_not_come_out_below(kind, thing, push, ya
     assert low > z - 0.005
 
 
-@pytest.mark.slow
 @quick
 @given(kinds, st.floats(0.5, 4.5), st.floats(0.5, 3.5), st.floats(0.1, 1.6), speeds, angles)
 def test_energy_does_not_grow(kind, x, y, z, speed, heading) -> None:
@@ -155,7 +152,6 @@ def test_energy_does_not_grow(kind, x, y, z, speed, heading) -> None:
             break
 
 
-@pytest.mark.slow
 @quick
 @given(kinds, st.sampled_from((TABLE, COFFEE, COUNTER, "bed|1", "sofa|1")), st.floats(-1, 1), st.floats(-1, 1), angles)
 def test_what_is_placed_stays(kind, thing, u, v, yaw) -> None:
@@ -175,7 +171,6 @@ def test_what_is_placed_stays(kind, thing, u, v, yaw) -> None:
     assert one.still
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("thing", [FRIDGE, *STORES])
 def test_what_is_closed_hides_its_content_from_every_sensor(thing: str) -> None:
     one = world()
@@ -205,7 +200,6 @@ def test_what_is_closed_hides_its_content_from_every_sensor(thing: str) -> None:
     assert looks >= 3
 
 
-@pytest.mark.slow
 def test_a_hand_s_refusals_name_the_reason() -> None:
     one = fresh()
     one.put_object("my apple", (2.5, 2.6, 0.79))
@@ -222,7 +216,6 @@ def test_a_hand_s_refusals_name_the_reason() -> None:
     assert reason(heavy, "robot", Pick(object="anvil")).startswith("dumbbell weighs 4.0 kg; ")
 
 
-@pytest.mark.slow
 def test_dropping_falls_settles_and_collides_again() -> None:
     one = fresh()
     one.put_object("my book", on=TABLE, position=(2.5, 2.8, 0.0))
@@ -271,7 +264,6 @@ def test_what_fits_only_across_is_placed_across() -> None:
     assert state(long, "bat").support == COFFEE
 
 
-@pytest.mark.slow
 @quick
 @given(st.lists(st.tuples(st.sampled_from(("pick", "place", "drop", "walk", "turn")), st.floats(-1, 1)), max_size=8))
 def test_hands_neither_make_nor_lose_anything(doings) -> None:
@@ -345,7 +337,6 @@ def busy(one: World, ticks: int = 900) -> str:
     return seen.hexdigest()
 
 
-@pytest.mark.slow
 def test_the_same_doings_give_the_same_states_again_and_elsewhere() -> None:
     first = busy(world())
     assert busy(world()) == first

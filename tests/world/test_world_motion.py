@@ -125,7 +125,6 @@ def test_waiting(world: World) -> None:
     assert world.tick == 5
 
 
-@pytest.mark.slow
 def test_bodies_start_on_free_floor_clear_of_each_other() -> None:
     world = World(tiny.house(), robots=("scout", "tender", "scout"))
     assert world.seats == ("human", "robot", "robot2", "robot3")
@@ -142,7 +141,6 @@ def test_bodies_start_on_free_floor_clear_of_each_other() -> None:
 moves = st.tuples(st.sampled_from(["human", "robot"]), st.floats(-math.pi, math.pi), st.floats(0.0, 0.5))
 
 
-@pytest.mark.slow
 @settings(max_examples=30, deadline=None)
 @given(st.lists(moves, min_size=1, max_size=40))
 def test_nobody_ever_enters_what_is_not_free(built: World, plan) -> None:

@@ -169,7 +169,6 @@ def test_a_saved_state_has_the_same_future(worlds: tuple[World, World], seed: in
     check_future(worlds, seed)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(6, 60))
 def test_many_saved_states_have_the_same_future(worlds: tuple[World, World], seed: int) -> None:
     check_future(worlds, seed)
@@ -326,7 +325,6 @@ def test_a_frozen_picture_is_drawn_once_and_late(worlds: tuple[World, World]) ->
     assert np.array_equal(frame(), picture)
 
 
-@pytest.mark.slow
 def test_nice_pictures_are_drawn_in_any_thread() -> None:
     world = World(tiny.house(), profile="nice")
     try:

@@ -325,7 +325,6 @@ MOVES = st.lists(
 )
 
 
-@pytest.mark.slow
 @settings(max_examples=12, derandomize=True, deadline=None)
 @given(MOVES, st.floats(-math.pi, math.pi))
 def test_wherever_it_is_carried_it_is_in_no_wall_in_nobody_and_in_reach(built: World, moves: Any, yaw: float) -> None:

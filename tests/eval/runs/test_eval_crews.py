@@ -25,6 +25,8 @@ from hthor.report.drawing import trial_figure
 from hthor.tasks.suite import encode_suite, make_suite
 from hthor.types import HUMAN
 
+pytestmark = pytest.mark.usefixtures("shared_worlds", "no_workers")
+
 HOUSE = "elder"
 GUEST = """
 import os
@@ -136,7 +138,6 @@ def said(record_: TrialRecord, seat: str) -> list[str]:
     return [event.text for event in record_.events if event.kind == "sent" and event.seat == seat]
 
 
-@pytest.mark.slow
 def test_two_guests_and_a_built_in_agent_share_a_trial(guests: dict[str, str]):
     config = GuestConfig(isolation="L1")  # where process ids tell processes apart
     (one,) = played(f"tall:{guests['talker']},small:frontier,scout:{guests['talker']}", config=config)
@@ -155,7 +156,6 @@ def test_two_guests_and_a_built_in_agent_share_a_trial(guests: dict[str, str]):
     }
 
 
-@pytest.mark.slow
 def test_when_one_robot_fails_the_others_go_on(guests: dict[str, str]):
     first, second = played(f"tall:{guests['tired']},small:{guests['talker']}", count=2)
     for one in (first, second):
@@ -168,7 +168,6 @@ def test_when_one_robot_fails_the_others_go_on(guests: dict[str, str]):
     assert find.fault_words(first).startswith("robot (tired), after 4.")
 
 
-@pytest.mark.slow
 def test_a_trial_of_several_robots_can_be_looked_at(guests: dict[str, str], tmp_path: Path):
     from hthor import houses
 
@@ -189,7 +188,6 @@ def _lines(folder: Path) -> list[bytes]:
     return sorted((folder / "trials.jsonl").read_bytes().splitlines(keepends=True))
 
 
-@pytest.mark.slow
 def test_a_run_of_several_robots_is_resumed_and_told_from_others(tmp_path: Path):
     plan, dealt = fakes.run_of(20, name="helper+other")
     assert plan.name == "scout-helper+scout-other"
@@ -220,7 +218,6 @@ def test_the_command_that_finishes_a_run_names_every_robot(tmp_path: Path):
     ]
 
 
-@pytest.mark.slow
 def test_real_runs_of_several_robots_repeat_themselves(tmp_path: Path):
     chosen = [task for task in tasks.load_suite("smoke").tasks if task.house == HOUSE][:2]
     suite = tmp_path / "brief.json"

@@ -19,6 +19,8 @@ from hthor.eval.runner import experiment, progress, run_options
 from hthor.eval.runner.trial_runner import Sources
 from hthor.report.drawing import trial_figure
 
+pytestmark = pytest.mark.usefixtures("shared_worlds", "no_workers")
+
 HOUSES = ("elder", "rowan")
 
 
@@ -81,7 +83,6 @@ def test_a_kind_with_a_suite_of_its_own_needs_no_other(name: str):
 # --------------------------------------------------------------------------------------------------- a user's own kind
 
 
-@pytest.mark.slow
 def test_the_example_kind_runs_as_it_is(root: Path, few: None, tmp_path: Path):
     file = root / "examples" / "put_away.py"
     assert len(file.read_text().splitlines()) < 100
@@ -106,7 +107,6 @@ def test_the_example_kind_runs_as_it_is(root: Path, few: None, tmp_path: Path):
     assert again == stored == done.result
 
 
-@pytest.mark.slow
 def test_the_same_file_gives_the_same_tasks(root: Path, few: None):
     one, two = (task_selection.select_tasks("", str(root / "examples" / "put_away.py")) for _ in range(2))
     assert one == two
@@ -137,7 +137,6 @@ def written(folder: Path, stem: str, *, name: str = "", met: str = "pass", goals
     return file
 
 
-@pytest.mark.slow
 def test_a_mistake_in_a_kind_is_told_with_its_line(few: None, tmp_path: Path):
     file = written(tmp_path, "hasty", met="if snapshot.tick > 3: raise KeyError('who knows')")
     with pytest.raises(HthorError, match=r"hasty\.py:8, in met: KeyError: 'who knows'") as caught:
@@ -170,7 +169,6 @@ def test_a_file_that_ends_python_is_refused(tmp_path: Path):
         task_selection.select_tasks("", str(tmp_path / "leaving.py"))
 
 
-@pytest.mark.slow
 def test_houses_that_have_nothing_for_a_kind_are_left_out(few: None, tmp_path: Path):
     some = task_selection.select_tasks("", str(written(tmp_path, "choosy", goals="if house.id == 'elder': return ()")))
     assert [task.house for task in some.suite.tasks] == ["rowan"]
@@ -190,7 +188,6 @@ def test_a_file_that_is_no_kind(tmp_path: Path):
         task_selection.select_tasks("", str(tmp_path / "empty.py"))
 
 
-@pytest.mark.slow
 def test_a_kind_that_changes_during_its_run_ends_it(few: None, tmp_path: Path):
     from hthor.eval.runner import trial_runner
 

@@ -90,7 +90,6 @@ def test_a_changed_value_fails_the_check(tmp_path: Path):
         list(trial_log.read(path))
 
 
-@pytest.mark.slow
 def test_a_second_writer_is_refused_with_the_first_ones_number(tmp_path: Path):
     script = (
         "import sys; from pathlib import Path; from hthor.eval.records.trial_log import TrialLog\n"

@@ -126,7 +126,6 @@ def test_what_is_found_is_found_by_the_person_and_by_who_opened_it():
     assert contribution.shares(TRIAL, log()) is None, "nothing was achieved"
 
 
-@pytest.mark.slow
 @given(st.data())
 def test_shares_are_shares(data):
     seats = st.sampled_from((HUMAN, "robot", "robot2"))

@@ -59,7 +59,6 @@ class Agent:
 """
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("line", "gpus"), [("gpus = 0.25", 0.25), ("gpus: int = 1", 1.0), ("pass", 0.0)])
 def test_a_class_says_how_much_of_a_gpu_it_wants(line: str, gpus: float, tmp_path: Path):
     (tmp_path / "agent.py").write_text(AGENT.format(line=line))

@@ -77,7 +77,6 @@ def test_damage_names_the_field():
     assert caught.value.field == "ticks"
 
 
-@pytest.mark.slow
 @given(st.floats(-1e6, 1e6), st.text(max_size=20))
 def test_floats_in_events_are_rounded_once(value: float, text: str):
     trial = _trial()

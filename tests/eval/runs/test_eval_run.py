@@ -48,10 +48,12 @@ class Notes(progress.Silent):
         self.notes.append(text)
 
 
-def _run(folder: Path, make=fakes.player, *, jobs: int = 2, count: int = 30, watch=None, **how) -> RunResult:
+def _run(folder: Path, make=fakes.player, *, jobs: int = 0, count: int = 30, watch=None, **how) -> RunResult:
+    """A run with so many workers, or without any in this process."""
     plan, dealt = fakes.run_of(count, **how)
+    engine = engines.find_engine("local", jobs=jobs) if jobs else fakes.Here()
     return run.run_evaluation(
-        plan, dealt, make, folder=RunFolder(folder), jobs=jobs, watcher=watch or progress.Silent()
+        plan, dealt, make, folder=RunFolder(folder), engine=engine, watcher=watch or progress.Silent()
     )
 
 
@@ -63,20 +65,19 @@ def _lines(folder: Path) -> list[bytes]:
 def reference(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run of 60 trials that nobody disturbed."""
     folder = tmp_path_factory.mktemp("reference")
-    _run(folder, jobs=1, count=60)
+    _run(folder, count=60)
     return folder
 
 
-@pytest.mark.slow
-def test_one_worker_and_two_write_the_same_lines(tmp_path: Path, reference: Path):
+@pytest.mark.parametrize("jobs", [1, 2])
+def test_workers_write_the_same_lines_as_this_process(tmp_path: Path, reference: Path, jobs: int):
     one = result_file.load_result(reference)
-    two = _run(tmp_path, jobs=2, count=60)
+    two = _run(tmp_path, jobs=jobs, count=60)
     assert _lines(tmp_path) == _lines(reference)
     assert one is not None
     assert (one.metrics, one.counts, one.hashes) == (two.metrics, two.counts, two.hashes)
 
 
-@pytest.mark.slow
 def test_a_whole_run_is_not_played_again(tmp_path: Path):
     first = _run(tmp_path)
     before = {path.name: path.stat().st_mtime_ns for path in tmp_path.iterdir()}
@@ -87,7 +88,6 @@ def test_a_whole_run_is_not_played_again(tmp_path: Path):
     assert {**before, ".lock": 0} == {**after, ".lock": 0}
 
 
-@pytest.mark.slow
 def test_a_part_is_finished_by_whole_sessions_without_writing_twice(tmp_path: Path):
     _run(tmp_path)
     path = tmp_path / "trials.jsonl"
@@ -100,20 +100,18 @@ def test_a_part_is_finished_by_whole_sessions_without_writing_twice(tmp_path: Pa
     assert "cut 50 bytes" in watch.notes[0]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("deaths", [1, 2])
 def test_a_killed_worker_costs_nothing(tmp_path: Path, reference: Path, deaths: int):
     make = functools.partial(fakes.dying_player, str(tmp_path), deaths)
-    _run(tmp_path / "run", make, count=60)
+    _run(tmp_path / "run", make, count=60, jobs=2)
     assert len(list(tmp_path.glob("died-*"))) == 3
     assert _lines(tmp_path / "run") == _lines(reference)
 
 
-@pytest.mark.slow
 def test_sessions_that_cannot_be_played_do_not_stop_the_others(tmp_path: Path, reference: Path):
     watch, make = Notes(), functools.partial(fakes.sick_player, str(tmp_path), "crash", "bug")
     with pytest.raises(collector.InternalFailure) as caught:
-        _run(tmp_path / "run", make, count=60, watch=watch)
+        _run(tmp_path / "run", make, count=60, jobs=2, watch=watch)
     told = str(caught.value)
     assert "session 1: it ended 3 workers, the last by signal SIGSEGV" in told
     assert "session 5: ZeroDivisionError: our own" in told
@@ -127,7 +125,6 @@ def test_sessions_that_cannot_be_played_do_not_stop_the_others(tmp_path: Path, r
     assert _lines(tmp_path / "run") == _lines(reference)
 
 
-@pytest.mark.slow
 def test_a_worker_that_hangs_is_ended_and_its_session_played_again(tmp_path: Path, reference: Path):
     plan, dealt = fakes.run_of(60)
     engine = engines.find_engine("local", jobs=2, limit_s=6.0)
@@ -138,29 +135,27 @@ def test_a_worker_that_hangs_is_ended_and_its_session_played_again(tmp_path: Pat
     assert _lines(tmp_path / "run") == _lines(reference)
 
 
-@pytest.mark.slow
 def test_a_session_that_always_ends_its_worker_has_its_own_exit_code(tmp_path: Path):
     make = functools.partial(fakes.dying_player, str(tmp_path), 9)
     with pytest.raises(
         collector.Unfinished, match=r"session 0: .*SIGKILL.*The same command tries them again"
     ) as caught:
-        _run(tmp_path / "run", make, count=10)
+        _run(tmp_path / "run", make, count=10, jobs=1)
     assert caught.value.exit_code == 1
 
 
-@pytest.mark.slow
 def test_a_run_of_which_nothing_can_be_played_ends_soon(tmp_path: Path):
     watch = Notes()
     with pytest.raises(collector.InternalFailure, match="30 of 30 trials are missing"):
-        _run(tmp_path, fakes.hopeless_player, watch=watch)
+        _run(tmp_path, fakes.hopeless_player, jobs=2, watch=watch)
     assert sum("is given up" in note for note in watch.notes) == 3
 
 
-@pytest.mark.slow
 def test_a_run_that_lacks_trials_does_not_keep_others_from_being_played(tmp_path: Path, monkeypatch):
     real = tasks.load_suite
     monkeypatch.setattr(tasks, "load_suite", lambda name: fakes.suite(20) if name == "fake" else real(name))
     monkeypatch.setattr(trial_runner, "make_runner", fakes.lonely_player)
+    monkeypatch.setattr(engines, "find_engine", lambda *_, **__: fakes.Here())
     options = run_options.RunOptions(agents=("none", "frontier"), suite="fake", jobs=1, out=tmp_path)
     with pytest.raises(collector.InternalFailure, match=r"session 1: ZeroDivisionError.* 10 of 20 trials are missing"):
         list(experiment.run_experiment(options, lambda _: progress.Silent()))
@@ -178,14 +173,12 @@ def test_a_worker_has_as_long_as_its_agents_deadlines_allow():
     assert engines.trial_limit_s(tasks, 2) > 2 * (60 + 60 + 60 + 5 * tasks[0].time_limit / rules.TICK_S)
 
 
-@pytest.mark.slow
 def test_a_users_error_in_a_worker_keeps_its_exit_code(tmp_path: Path):
     with pytest.raises(engines.SessionFailed, match="the agent is no good") as caught:
         _run(tmp_path, functools.partial(fakes.failing_player, "user"))
     assert caught.value.exit_code == 4
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("times", "faults"), [(0, 0), (1, 2), (2, 3)])
 def test_a_run_has_one_do_over_for_killed_agents(tmp_path: Path, times: int, faults: int):
     """Of three sessions in which an agent is killed one is played again; whatever comes of that stands."""
@@ -212,7 +205,6 @@ def test_no_later_command_has_another_do_over(tmp_path: Path):
     assert (result.counts.faults_by_kind, result.counts.replays) == ({KILLED: 3}, 1)
 
 
-@pytest.mark.slow
 def test_what_was_played_beside_a_killed_agent_does_not_count(tmp_path: Path):
     """Trials after the one that is played again went otherwise: their person had another trial before."""
     plan, dealt = fakes.run_of(10)
@@ -270,7 +262,6 @@ def test_a_full_disk_leaves_whole_lines(tmp_path: Path, monkeypatch: pytest.Monk
     assert (watch.kept, watch.new, watch.notes) == (len(held), 30 - len(held), [])
 
 
-@pytest.mark.slow
 def test_another_run_is_refused_and_told_apart(tmp_path: Path):
     _run(tmp_path, count=10)
     with pytest.raises(RunError, match=r"holds another run: seed is 0 there and 1 here\. Choose another folder"):
@@ -286,7 +277,6 @@ def test_a_folder_of_other_things_is_refused_untouched(tmp_path: Path):
     assert [path.name for path in tmp_path.iterdir()] == ["thesis.txt"]
 
 
-@pytest.mark.slow
 def test_what_does_not_repeat_itself_is_told(tmp_path: Path):
     _run(tmp_path, count=10)
     path = tmp_path / "trials.jsonl"
@@ -325,7 +315,6 @@ def _alive(pid: int) -> bool:
         return False
 
 
-@pytest.mark.slow
 def test_a_run_that_is_killed_again_and_again_ends_up_the_same(tmp_path: Path, reference: Path):
     chance = random.Random(4)
     workers: list[int] = []
@@ -346,7 +335,6 @@ def test_a_run_that_is_killed_again_and_again_ends_up_the_same(tmp_path: Path, r
     assert result_file.load_result(tmp_path).metrics == result_file.load_result(reference).metrics
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_the_first_signal_lets_trials_come_to_their_end(tmp_path: Path, number: int):
     with _start(tmp_path, 0.5) as process:
@@ -360,7 +348,6 @@ def test_the_first_signal_lets_trials_come_to_their_end(tmp_path: Path, number: 
     assert before < _played(tmp_path) <= before + 2
 
 
-@pytest.mark.slow
 def test_the_second_signal_ends_at_once(tmp_path: Path):
     with _start(tmp_path, 1.5) as process:
         _wait_for(tmp_path, 2)

@@ -21,6 +21,8 @@ from hthor.eval.results import aggregate
 from hthor.eval.runner import progress, run
 from hthor.types.events import Accepted, Declined, Event, Sent
 
+pytestmark = pytest.mark.usefixtures("shared_worlds", "no_workers")
+
 
 def _log(ticks: int, met: bool, events: tuple[Event, ...] = (), trust: int | None = 4) -> EpisodeLog:
     return EpisodeLog(events=events, paths={"human": []}, ticks=ticks, met=met, ratings={"human": trust}, faults=())
@@ -67,7 +69,6 @@ def test_a_small_log_worked_out_by_hand():
     assert [getattr(found, name).mean for name in counts] == [1.0, 0.333333, 0.333333, 0.0, 0.333333, 0.0]
 
 
-@pytest.mark.slow
 @given(st.integers(1, 900), st.booleans(), st.sampled_from(TRIALS))
 def test_laws_of_one_trial(ticks: int, met: bool, trial):
     found = trial_metrics.measure(trial, _log(ticks, met))
@@ -108,14 +109,12 @@ def _played(folder, name: str = "helper"):
     return run.run_evaluation(plan, dealt, fakes.player, folder=RunFolder(folder), jobs=1, watcher=progress.Silent())
 
 
-@pytest.mark.slow
 def test_scoring_again_gives_the_stored_result(tmp_path):
     result = _played(tmp_path)
     _, again, stored = aggregate.rescore(tmp_path)
     assert again == stored == result
 
 
-@pytest.mark.slow
 def test_a_result_of_an_older_format_is_made_anew(tmp_path):
     _played(tmp_path)
     folder = tmp_path
@@ -129,7 +128,6 @@ def test_a_result_of_an_older_format_is_made_anew(tmp_path):
         aggregate.rescore(folder)
 
 
-@pytest.mark.slow
 def test_scoring_trusts_events_not_stored_metrics(tmp_path):
     honest = _played(tmp_path)
     path = tmp_path / "trials.jsonl"
@@ -139,7 +137,6 @@ def test_scoring_trusts_events_not_stored_metrics(tmp_path):
     assert aggregate.rescore(tmp_path)[1].metrics == honest.metrics
 
 
-@pytest.mark.slow
 def test_a_line_of_another_run_is_refused(tmp_path):
     _played(tmp_path)
     other = fakes.run_of(20, seed=1)[1][0].trials[0]
@@ -149,14 +146,12 @@ def test_a_line_of_another_run_is_refused(tmp_path):
         aggregate.rescore(tmp_path)
 
 
-@pytest.mark.slow
 def test_faults_are_counted_and_their_trials_too(tmp_path):
     result = _played(tmp_path, "clumsy")
     assert result.counts.faults == 2
     assert result.counts.trials == result.metrics.sr.n == 20
 
 
-@pytest.mark.slow
 def test_the_stored_result_says_how_it_came_about(tmp_path):
     _played(tmp_path)
     document = msgspec.json.decode((tmp_path / "result.json").read_bytes())

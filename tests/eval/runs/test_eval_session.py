@@ -13,7 +13,6 @@ from hthor import rules
 from hthor.eval.config import sessions
 
 
-@pytest.mark.slow
 @given(st.integers(1, 130), st.integers(-(2**40), 2**40))
 def test_by_default_every_task_is_done_once(count: int, seed: int):
     tasks = [fakes.task(number) for number in range(count)]

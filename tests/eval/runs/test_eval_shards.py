@@ -21,6 +21,8 @@ from hthor.eval.merge import merge_shards
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.runner import progress, run
 
+pytestmark = pytest.mark.usefixtures("shared_worlds", "no_workers")
+
 COUNT = 57
 _FILES = [".lock", "effort.json", "platform.json", "run.json", "trials.jsonl"]
 
@@ -53,7 +55,6 @@ def _result(folder: Path) -> dict[str, object]:
     return document
 
 
-@pytest.mark.slow
 @settings(deadline=None)
 @given(st.integers(1, 90), st.integers(1, 40), st.integers(1, 40))
 def test_shards_are_a_partition_and_know_their_size(tasks: int, people: int, of: int):
@@ -80,7 +81,6 @@ def test_a_shard_that_there_is_not_is_refused(words: str):
         sessions.parse_shard(words)
 
 
-@pytest.mark.slow
 def test_merged_shards_are_the_undivided_run(undivided: Path, shards: Sequence[Path], tmp_path: Path):
     done = merge_shards.merge_shards(shards[::-1], tmp_path / "whole")
     assert (done.trials, done.new, done.gaps) == (COUNT, COUNT, ())
@@ -93,13 +93,11 @@ def test_merged_shards_are_the_undivided_run(undivided: Path, shards: Sequence[P
     assert _play(tmp_path / "whole", make=fakes.forgetful_player)  # plays nothing, as all is there
 
 
-@pytest.mark.slow
 def test_a_shard_is_no_result(shards: Sequence[Path]):
     assert sorted(path.name for path in shards[0].iterdir()) == _FILES
     assert shards[2].name == "run-shard-3-of-4"
 
 
-@pytest.mark.slow
 def test_what_is_missing_is_named_with_its_command(undivided: Path, shards: Sequence[Path], tmp_path: Path):
     torn = tmp_path / shards[2].name
     torn.mkdir()
@@ -120,7 +118,6 @@ def test_what_is_missing_is_named_with_its_command(undivided: Path, shards: Sequ
     assert _result(tmp_path / "whole") == _result(undivided)
 
 
-@pytest.mark.slow
 def test_the_command_says_what_is_missing_and_ends_with_one(shards: Sequence[Path], tmp_path: Path):
     def said(*words: object) -> Result:
         return CliRunner().invoke(app, ["merge", *map(str, words), "--out", str(tmp_path / "whole")])
@@ -140,14 +137,12 @@ def test_the_command_says_what_is_missing_and_ends_with_one(shards: Sequence[Pat
     assert json.loads(whole.stdout)["gaps"] == []
 
 
-@pytest.mark.slow
 def test_a_part_that_was_merged_is_finished_as_a_run(undivided: Path, shards: Sequence[Path], tmp_path: Path):
     merge_shards.merge_shards(shards[:3], tmp_path)
     _play(tmp_path)
     assert _result(tmp_path) == _result(undivided)
 
 
-@pytest.mark.slow
 def test_shards_of_several_divisions_are_merged(undivided: Path, shards: Sequence[Path], tmp_path: Path):
     half = _play(tmp_path / "run", "2/2")
     part = merge_shards.merge_shards([shards[0], shards[1], half], tmp_path / "whole")
@@ -159,7 +154,6 @@ def test_shards_of_several_divisions_are_merged(undivided: Path, shards: Sequenc
     assert _result(tmp_path / "whole") == _result(undivided)
 
 
-@pytest.mark.slow
 def test_shards_of_other_runs_are_told_apart(undivided: Path, shards: Sequence[Path], tmp_path: Path):
     other = _play(tmp_path / "other", "2/4", seed=1)
     with pytest.raises(RunError, match=r"other-shard-2-of-4 is a shard of another run than .*: seed is 0 there and 1"):

@@ -32,7 +32,6 @@ def _trials(draw, least: int = 1, metrics=METRICS):
     return metric, limit, np.array(rows), np.arange(len(rows)) // draw(st.integers(1, 3)), np.arange(len(rows)) % people
 
 
-@pytest.mark.slow
 @settings(max_examples=150, deadline=None)
 @given(_trials())
 def test_an_interval_lies_within_the_bounds_and_holds_the_estimate(trials):
@@ -43,7 +42,6 @@ def test_an_interval_lies_within_the_bounds_and_holds_the_estimate(trials):
         assert low <= found.ci95[0] <= found.mean <= found.ci95[1] <= high + 1e-6
 
 
-@pytest.mark.slow
 @settings(max_examples=150, deadline=None)
 @given(_trials(least=2))
 def test_so_does_that_of_a_difference(trials):
@@ -56,7 +54,6 @@ def test_so_does_that_of_a_difference(trials):
     assert -room - 1e-6 <= least <= found.difference <= most <= room + 1e-6
 
 
-@pytest.mark.slow
 @settings(max_examples=150, deadline=None)
 @given(_trials(least=2))
 def test_an_interval_leaves_out_zero_exactly_when_the_test_refuses_it(trials):
@@ -72,7 +69,6 @@ def test_an_interval_leaves_out_zero_exactly_when_the_test_refuses_it(trials):
             assert (least > 0.0 or most < 0.0) == (found.p < 1.0 - level)
 
 
-@pytest.mark.slow
 @settings(max_examples=100, deadline=None)
 @given(_trials(least=2))
 def test_a_surer_interval_is_wider(trials):
@@ -88,7 +84,6 @@ def test_a_surer_interval_is_wider(trials):
     assert narrow[1] <= wide[1] + 1e-6
 
 
-@pytest.mark.slow
 @settings(max_examples=100, deadline=None)
 @given(_trials(least=2, metrics=("sr", "twsr", "trust", "time_s")))
 def test_turned_about_the_middle_it_is_the_same_interval_turned(trials):

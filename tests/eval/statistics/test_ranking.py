@@ -22,7 +22,6 @@ def _played(agents: list[tuple[float, int]]) -> np.ndarray:
     return np.array([np.random.default_rng(seed).random(TRIALS) < rate for rate, seed in agents], dtype=float)
 
 
-@pytest.mark.slow
 @few
 @given(BOARD, st.randoms(use_true_random=False))
 def test_the_order_in_which_agents_are_named_does_not_matter(agents, chance):

@@ -56,7 +56,6 @@ ROOMS = {"agents", "catalog", "comms", "geometry", "guest", "houses", "navigatio
 SECRET = ("world", "humans", "tasks", "eval", "report", "calibration", "leaderboard", "looks", "commands")
 
 
-@pytest.mark.slow
 def test_agents_can_read_only_the_rooms_that_they_are_made_with(agent: Path) -> None:
     allowed = paths.readable_paths(str(agent), str(agent.parent), [])
     ours = [Path(one) for one in allowed if Path(one).is_relative_to(paths.PACKAGE)]
@@ -82,7 +81,6 @@ print("\\n".join(module.__file__ for name, module in sys.modules.items() if name
 """
 
 
-@pytest.mark.slow
 def test_all_that_agents_import_of_this_package_can_be_read(agent: Path) -> None:
     names = [
         ".".join(path.relative_to(paths.PACKAGE.parent).with_suffix("").parts).removesuffix(".__init__")
@@ -188,7 +186,6 @@ def test_every_call_of_the_tables_is_answered_as_they_say() -> None:
     assert verdict(code, 0, machine=0x40000003) == KILL
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("driven", [False, True])
 @given(command=st.integers(0, 2**32 - 1))
 def test_no_command_changes_what_stays_with_a_file_or_a_terminal(driven: bool, command: int) -> None:
@@ -201,7 +198,6 @@ def test_no_command_changes_what_stays_with_a_file_or_a_terminal(driven: bool, c
         assert answer == NO_TERMINAL
 
 
-@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(st.binary(min_size=24, max_size=24), st.integers(0, 191))
 def test_a_program_is_started_by_a_word_and_by_no_other(word: bytes, bit: int) -> None:

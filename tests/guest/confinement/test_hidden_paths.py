@@ -133,7 +133,6 @@ class Agent:
 """
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("level", ["L2", "L3"])
 def test_an_agent_tries(level: str, home: Path) -> None:
     """A real one, that reads whatever it can below its folder and says what that was."""

@@ -22,26 +22,41 @@ from tests.redteam.agents import HONEST, HOSTILE, NO_FAULT, PIPE, Case
 from tests.redteam.nobody import ROOT, runner
 from tests.support.guest_agents import BRIEFING, look
 
+EVERY_COMMIT = (
+    *("houses", "salt_in_a_file", "parents_memory", "import_the_scores", "the_keepers_pipe", "change_modes", "tcp"),
+    *("kill_the_harness", "daemon", "exec", "old_machine_code", "memory", "disk", "change_itself", "crash"),
+    *("malformed", "patches_the_wire", "the_shared_frames", "network_socket_pair", "killed_by_a_limit"),
+    *("numpy", "threads", "own_files", "processes_by_the_book"),
+)
+"""The agents that every commit is tried with, some of each sort; all others are for the night."""
+
+
+def cases(every: tuple[Case, ...]) -> list[Any]:
+    """The cases as parameters."""
+    return [case if case.name in EVERY_COMMIT else pytest.param(case, marks=pytest.mark.nightly) for case in every]
+
 
 @functools.cache
-def played(level: str) -> dict[str, Any]:
-    """What became of all agents at a level."""
+def played(level: str, nightly: bool) -> dict[str, Any]:
+    """What became of the agents of every commit, or of all others, at a level."""
     try:
         guest.in_force(level)
     except IsolationError as error:
         pytest.skip(str(error))
     python, how = runner()
-    done = subprocess.run([*python, "-P", "-m", "tests.redteam.play", level], capture_output=True, text=True, **how)
+    names = [case.name for case in (*HOSTILE, *HONEST) if (case.name not in EVERY_COMMIT) == nightly]
+    words = [*python, "-P", "-m", "tests.redteam.play", level, *names]
+    done = subprocess.run(words, capture_output=True, text=True, **how)
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)  # type: ignore[no-any-return]
 
 
 def of(level: str, case: Case) -> dict[str, Any]:
-    return next(one for one in played(level)["agents"] if one["name"] == case.name)  # type: ignore[no-any-return]
+    agents = played(level, case.name not in EVERY_COMMIT)["agents"]
+    return next(one for one in agents if one["name"] == case.name)  # type: ignore[no-any-return]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("case", HOSTILE, ids=lambda case: case.name)
+@pytest.mark.parametrize("case", cases(HOSTILE), ids=lambda case: case.name)
 @pytest.mark.parametrize("level", ["L2", "L3"])
 def test_a_hostile_agent_comes_to_nothing(level: str, case: Case) -> None:
     one = of(level, case)
@@ -51,11 +66,10 @@ def test_a_hostile_agent_comes_to_nothing(level: str, case: Case) -> None:
     assert case.told in one["fault"]["detail"], one
     assert not one["changed"], "its own folder is as it was"
     assert one["again"] == "", "the next trial is played"
-    assert played(level)["intact"]
+    assert played(level, case.name not in EVERY_COMMIT)["intact"]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("case", HONEST, ids=lambda case: case.name)
+@pytest.mark.parametrize("case", cases(HONEST), ids=lambda case: case.name)
 @pytest.mark.parametrize("level", ["L1", "L2", "L3"])
 def test_an_honest_agent_passes(level: str, case: Case, tmp_path: Path) -> None:
     one = of(level, case) if level != "L1" else _alone(case, tmp_path)
@@ -70,8 +84,8 @@ def _alone(case: Case, folder: Path) -> dict[str, Any]:
     return json.loads(done.stdout)["agents"][0]  # type: ignore[no-any-return]
 
 
-SCORED = ("houses", "salt_in_the_environment", "tcp", "kill_the_harness", "daemon", "memory", "processor", "malformed")
-"""A few of them in scored trials; `python -m benchmarks.redteam` plays all."""
+SCORED = ("houses", "kill_the_harness", "malformed")
+"""A few of them in scored trials; `python -m benchmarks.redteam` plays all, every night."""
 
 
 @functools.cache
@@ -81,7 +95,6 @@ def scored() -> dict[str, Any]:
     return json.loads(done.stdout)  # type: ignore[no-any-return]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("level", ["L2", "L3"])
 def test_a_hostile_agents_trial_is_scored_with_a_named_fault(level: str) -> None:
     found = scored()
@@ -100,9 +113,8 @@ def test_a_hostile_agents_trial_is_scored_with_a_named_fault(level: str) -> None
     assert found["intact"]
 
 
-@pytest.mark.slow
 def test_these_were_played_by_an_unprivileged_user() -> None:
-    uid = played("L2")["uid"]
+    uid = played("L2", False)["uid"]
     if uid == 0:
         pytest.skip("the tests run as root, and no other user can start this interpreter: they were played by root")
     assert uid > 0
@@ -135,7 +147,6 @@ class Agent:
 """
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("level", ["L1", "L2", "L3"])
 def test_nothing_outlives_a_killed_host(level: str, tmp_path: Path) -> None:
     try:
@@ -200,7 +211,6 @@ class Agent:
 """
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("level", ["L2", "L3"])
 def test_a_trial_leaves_nothing_to_the_next(level: str, tmp_path: Path) -> None:
     try:
@@ -236,7 +246,6 @@ class Agent:
 """
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("level", ["L1", "L2", "L3"])
 def test_the_next_trial_finds_the_wire_as_it_was(level: str, tmp_path: Path) -> None:
     try:
@@ -275,7 +284,6 @@ print(os.listdir(foreign))
 """
 
 
-@pytest.mark.slow
 def test_what_is_cleared_up_ends_at_links() -> None:
     python, how = runner()
     with tempfile.TemporaryDirectory() as folder:

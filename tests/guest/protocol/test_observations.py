@@ -114,8 +114,7 @@ def seen_by(agent: Any) -> list[Action]:
     return [agent.act(observation) for observation in observations]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("level", ["L1", "L2", "L3"])
+@pytest.mark.parametrize("level", levels.EVERY)
 def test_a_guest_gets_the_trial_that_a_local_agent_gets(level: str, tmp_path: Path) -> None:
     levels.need(level)
     path = shutil.copy(mirror_agent.__file__, tmp_path)

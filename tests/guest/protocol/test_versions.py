@@ -27,7 +27,6 @@ def old_program(tmp_path: Path, ready: str) -> str:
     return f"cmd:{sys.executable} {path}"
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("ready", ["", '"wire": 1, '])
 def test_an_agent_of_the_first_version_is_told_what_to_change(ready: str, tmp_path: Path) -> None:
     with Guest(old_program(tmp_path, ready), config=GuestConfig(isolation="L1")) as guest:
@@ -40,7 +39,6 @@ def test_an_agent_of_the_first_version_is_told_what_to_change(ready: str, tmp_pa
         assert guest.pid == 0, "it must not run on"
 
 
-@pytest.mark.slow
 def test_a_newer_agent_is_refused_with_a_reason(tmp_path: Path) -> None:
     told = r"uses version 99 of the protocol, but .* up to 2: update hthor here, or"
     guest = Guest(old_program(tmp_path, '"wire": 99, '), config=GuestConfig(isolation="L1"))
@@ -61,7 +59,6 @@ def test_the_page_tells_what_has_changed() -> None:
     assert f"version {versions.VERSION}" in page
 
 
-@pytest.mark.slow
 def test_a_python_agent_needs_nothing(tmp_path: Path) -> None:
     path = tmp_path / "my_agent.py"
     path.write_text(HEAD + agent("return Action(motion=Drive(forward=0.4, yaw=1.0))"))

@@ -125,7 +125,6 @@ def test_a_world_s_robots_have_the_cameras_that_it_was_given(world: World) -> No
     assert world.names[number] == "apple"
 
 
-@pytest.mark.slow
 def test_what_is_detected_does_not_depend_on_the_camera() -> None:
     seen = []
     for given_cameras in ((), ("square:16x16",)):
@@ -135,7 +134,6 @@ def test_what_is_detected_does_not_depend_on_the_camera() -> None:
     assert seen[0] == seen[1] != ()
 
 
-@pytest.mark.slow
 def test_more_cameras_than_robots_are_refused() -> None:
     with pytest.raises(HthorError, match="there are 2 cameras and 1 robots"):
         World(tiny.house(), robots=("scout",), cameras=("own", "thor"))
@@ -174,7 +172,6 @@ def test_every_trial_s_key_knows_the_camera() -> None:
     assert jsonio.sha256(trials[0]) != jsonio.sha256(trials[1])
 
 
-@pytest.mark.slow
 def test_the_options_reach_the_seats() -> None:
     options = run_options.RunOptions(agents=("frontier",), camera="thor", camera_size="32x32")
     (team,) = run_teams.choose_teams(options, task_selection.select_tasks("smoke", ""), GuestConfig())

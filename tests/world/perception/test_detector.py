@@ -54,7 +54,6 @@ def within(count: int, chance: float) -> bool:
     return abs(count - GLIMPSES * chance) < 4.0 * math.sqrt(GLIMPSES * chance * (1.0 - chance))
 
 
-@pytest.mark.slow
 def test_objects_are_missed_as_often_as_declared_and_nothing_else_is(worlds: dict[str, World]) -> None:
     start(worlds["ideal"])
     truth = {detection.id: detection for detection in worlds["ideal"].detections("robot")}
@@ -67,7 +66,6 @@ def test_objects_are_missed_as_often_as_declared_and_nothing_else_is(worlds: dic
     assert within(missed, 0.3)
 
 
-@pytest.mark.slow
 def test_false_alarms_are_as_many_as_declared_and_each_could_be_true(worlds: dict[str, World]) -> None:
     world, alarms = worlds["lies"], 0
     for report in glimpses(world):
@@ -86,7 +84,6 @@ def test_false_alarms_are_as_many_as_declared_and_each_could_be_true(worlds: dic
     assert within(alarms, 0.25)
 
 
-@pytest.mark.slow
 def test_positions_are_off_by_what_is_declared(worlds: dict[str, World]) -> None:
     true = (2.5, 2.6, 0.78)
     off = [
@@ -130,7 +127,6 @@ def test_the_person_s_eyes_never_err(worlds: dict[str, World]) -> None:
         assert world.detections("human") == world._visibility.detections(world._seats["human"])
 
 
-@pytest.mark.slow
 def test_a_body_declares_its_own_and_a_trial_overrules_it() -> None:
     assert World(tiny.house(), robots=("scout", "scout"), detectors=("noisy",)).detectors == {
         "robot": detector_specs.NOISY,
@@ -140,7 +136,6 @@ def test_a_body_declares_its_own_and_a_trial_overrules_it() -> None:
         World(tiny.house(), robots=("scout",), detectors=("ideal", "ideal"))
 
 
-@pytest.mark.slow
 @given(miss=st.floats(0, 1), false_alarm=st.floats(0, 1), sigma=st.floats(0, 1))
 def test_rates_are_read_back_from_their_one_spelling(miss: float, false_alarm: float, sigma: float) -> None:
     spec = detector_specs.parse(f"position_sigma={sigma!r}, miss={miss!r},false_alarm={false_alarm!r}")

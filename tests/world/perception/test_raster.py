@@ -54,7 +54,6 @@ def world() -> World:
     return world
 
 
-@pytest.mark.slow
 @settings(max_examples=25, deadline=None)
 @given(x=st.floats(0.4, 9.6), y=st.floats(0.3, 3.7), yaw=st.floats(-3.14, 3.14), pitch=st.floats(-0.5, 0.5))
 def test_a_house_is_traced_as_the_engine_s_rays_see_it(
@@ -84,7 +83,6 @@ SHAPES = """
 """
 
 
-@pytest.mark.slow
 @settings(max_examples=40, deadline=None)
 @given(
     x=st.floats(-1.0, 0.9),
@@ -113,7 +111,6 @@ def test_every_shape_is_traced_as_the_engine_s_rays_see_it(
     agree(model, data, view, hit, w)
 
 
-@pytest.mark.slow
 def test_a_picture_is_the_same_every_time(world: World) -> None:
     world._seats["robot"].pose = Pose(x=4.0, y=1.2, yaw=2.4)
     first, second = world.look("robot"), world.look("robot")

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from random_solids import house, slowly
@@ -31,7 +30,6 @@ def still_targets(targets, own) -> tuple[np.ndarray, np.ndarray]:
     return balls, spots
 
 
-@pytest.mark.slow
 @settings(max_examples=40, deadline=None)
 @given(st.integers(0, 10**6), st.lists(st.tuples(st.floats(-3.1, 3.1), st.floats(-0.8, 0.8)), min_size=1, max_size=4))
 def test_a_look_finds_what_ray_after_ray_finds(seed: int, turns: list[tuple[float, float]]) -> None:

@@ -50,7 +50,6 @@ def alone(part: str) -> str:
     return found
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("part", [MUJOCO, DM_CONTROL], ids=["mujoco", "dm_control"])
 @pytest.mark.parametrize("order", ["before", "after"])
 def test_rendering_works_whichever_is_imported_first(part: str, order: str) -> None:
@@ -59,24 +58,20 @@ def test_rendering_works_whichever_is_imported_first(part: str, order: str) -> N
     assert run(first, second, part) == alone(part)
 
 
-@pytest.mark.slow
 def test_rendering_works_beside_pictures_of_our_own() -> None:
     assert run(NICE, MUJOCO, DM_CONTROL, NICE) == f"(8, 8, 3)\n{alone(MUJOCO)}{alone(DM_CONTROL)}(8, 8, 3)\n"
 
 
-@pytest.mark.slow
 def test_the_back_end_is_chosen_at_first_use() -> None:
     late = "import os; os.environ['MUJOCO_GL'] = 'egl'"
     assert run(OURS, late, MUJOCO, backend=None) == alone(MUJOCO)
 
 
-@pytest.mark.slow
 def test_nobody_is_asked_for_a_display_meanwhile() -> None:
     question = "import sys; print([name for name in sys.modules if name.split('.')[0] in ('OpenGL', 'glfw')])"
     assert run(OURS, question) == "[]\n"
 
 
-@pytest.mark.slow
 def test_opengl_that_was_switched_off_stays_off() -> None:
     question = "import mujoco; print(hasattr(mujoco, 'GLContext'))"
     assert run(OURS, question, backend="disable") == run(question, backend="disable") == "False\n"

@@ -277,7 +277,6 @@ def trial_with_pictures() -> str:
     return f"{len(seen)} looks"
 
 
-@pytest.mark.slow
 def test_a_trial_with_pictures_needs_no_opengl() -> None:
     environment = os.environ | {"MUJOCO_GL": "disable"}
     environment["PYTHONPATH"] = os.pathsep.join([str(TESTS), str(TESTS.parent), *sys.path])

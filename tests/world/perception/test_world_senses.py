@@ -35,7 +35,6 @@ def seen(world: World, seat: str = "human"):
     return {detection.id: detection for detection in world.senses(seat).detections()}
 
 
-@pytest.mark.slow
 def test_detections_are_sorted_and_say_what_is_true(world: World) -> None:
     found = world.senses("human").detections()
     assert [detection.id for detection in found] == sorted(detection.id for detection in found)
@@ -48,7 +47,6 @@ def test_detections_are_sorted_and_say_what_is_true(world: World) -> None:
     assert seen(world)[FRIDGE].state == "closed"
 
 
-@pytest.mark.slow
 def test_walls_hide_and_doorways_show(world: World) -> None:
     assert "lettuce" not in seen(world)  # behind the back
     world.teleport("human", Pose(x=4.0, y=3.4))
