@@ -1,8 +1,8 @@
 """Installs hthor and extras of it into the Python that runs this, and says how far it is: `install.py [EXTRA...]`.
 
-pip is silent while it resolves and unpacks, which takes most of the time. This counts the packages that it collected and
-then those that lie in the environment. At a terminal it keeps one line up to date; elsewhere it writes a line every few
-seconds. If pip fails, its output is printed.
+pip is silent while it resolves and unpacks, which takes most of the time. This counts the packages that it has
+collected and then those that lie in the environment. At a terminal it keeps one line up to date; elsewhere it writes a
+line every few seconds. If pip fails, its output is printed.
 """
 
 from __future__ import annotations

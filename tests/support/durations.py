@@ -1,8 +1,8 @@
 """How long tests take: `--record-durations` measures it, `--quick` leaves out the tests that take long.
 
-`tests/durations.json` lists the tests of more than a tenth of a second, with the seconds of their slowest case. The time
-of a test is that of its call and of all fixtures that it uses, those included that are made once for many tests: it
-would wait for them if it ran alone. Tests that are not listed are quick, or new.
+`tests/durations.json` lists the tests of more than a tenth of a second, with the seconds of their slowest case. The
+time of a test is that of its call and of all fixtures that it uses, those included that are made once for many tests:
+it would wait for them if it ran alone. Tests that are not listed are quick, or new.
 """
 
 from __future__ import annotations
