@@ -88,7 +88,7 @@ def runner() -> TrialRunner:
 
 
 @pytest.mark.parametrize("agent", ["none", "frontier"])
-@pytest.mark.parametrize("house", ["alder", "juniper", "willow"])
+@pytest.mark.parametrize("house", ["alder", pytest.param("juniper", marks=pytest.mark.nightly), "willow"])
 def test_a_still_stranger_far_away_changes_nothing_up_to_the_first_meeting(runner, house, agent):
     for task in [task for task in tasks.load_suite("smoke").tasks if task.house == house][:2]:
         given = with_a_stranger(task)

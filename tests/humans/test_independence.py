@@ -49,6 +49,16 @@ def alone(stage: trial_runner.TrialRunner) -> list[EpisodeLog]:
     return first_trials("silent", stage)
 
 
+@pytest.fixture(scope="module")
+def spun(stage: trial_runner.TrialRunner) -> list[EpisodeLog]:
+    return first_trials("frontier", stage, Spinner())
+
+
+@pytest.fixture(scope="module")
+def wandered(stage: trial_runner.TrialRunner) -> list[EpisodeLog]:
+    return first_trials("frontier", stage, Wanderer())
+
+
 def first_trials(agent: str, stage: trial_runner.TrialRunner, mind: object = None) -> list[EpisodeLog]:
     """The first trials of a few people, in a few houses."""
     smoke, logs = tasks.load_suite("smoke"), []
@@ -89,10 +99,10 @@ def test_until_they_meet_the_person_is_alone(
 
 
 def test_a_robot_that_is_never_in_the_way_changes_nothing_at_all(
-    stage: trial_runner.TrialRunner, alone: list[EpisodeLog]
+    alone: list[EpisodeLog], wandered: list[EpisodeLog]
 ) -> None:
     undisturbed = 0
-    for without, together in zip(alone, first_trials("frontier", stage, Wanderer()), strict=True):
+    for without, together in zip(alone, wandered, strict=True):
         if meeting(together) >= together.ticks:
             assert together.paths[HUMAN] == without.paths[HUMAN]
             assert together.ticks == without.ticks
@@ -109,23 +119,22 @@ def person(log: EpisodeLog) -> bytes:
 
 
 def test_two_robots_that_neither_speak_nor_stand_in_the_way_meet_the_same_person(
-    stage: trial_runner.TrialRunner,
+    spun: list[EpisodeLog], wandered: list[EpisodeLog]
 ) -> None:
     """Byte for byte: path, stick, pitch, attempts, glimpses, choices, trust."""
     apart = 0
-    pairs = zip(first_trials("frontier", stage, Spinner()), first_trials("frontier", stage, Wanderer()), strict=True)
-    for spun, wandered in pairs:
-        if meeting(spun) >= spun.ticks and meeting(wandered) >= wandered.ticks:
-            assert person(spun) == person(wandered)
-            apart += spun.paths["robot"] != wandered.paths["robot"]
+    for turning, walking in zip(spun, wandered, strict=True):
+        if meeting(turning) >= turning.ticks and meeting(walking) >= walking.ticks:
+            assert person(turning) == person(walking)
+            apart += turning.paths["robot"] != walking.paths["robot"]
     assert apart > 2, "the robots were hardly ever out of the way, so this test showed nothing"
 
 
-def test_the_person_alone_is_the_same_person(stage: trial_runner.TrialRunner, alone: list[EpisodeLog]) -> None:
+def test_the_person_alone_is_the_same_person(alone: list[EpisodeLog], spun: list[EpisodeLog]) -> None:
     """Without a robot nobody is asked how far they trust it; all else is the same, byte for byte."""
     same = 0
-    for without, spun in zip(alone, first_trials("frontier", stage, Spinner()), strict=True):
-        if meeting(spun) >= spun.ticks:
-            assert person(msgspec.structs.replace(spun, ratings={HUMAN: None})) == person(without)
+    for without, turning in zip(alone, spun, strict=True):
+        if meeting(turning) >= turning.ticks:
+            assert person(msgspec.structs.replace(turning, ratings={HUMAN: None})) == person(without)
             same += 1
     assert same > 2

@@ -39,6 +39,8 @@ from hthor.humans.population.parameters import Parameters
 from hthor.humans.population.population import Population, Validity
 from hthor.report.terminal import result_tables
 
+pytestmark = pytest.mark.usefixtures("no_workers")
+
 KINDS = ("cautious", "distracted", "fast", "ignores_messages", "over_trusting", "poor_memory", "slow")
 MODEL = '''"""A person who stands still; waits for nothing."""
 class Model:

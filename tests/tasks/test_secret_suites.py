@@ -363,6 +363,7 @@ def say(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]):
     return run
 
 
+@pytest.mark.usefixtures("no_workers")
 def test_a_season_from_salt_to_verdict(say, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     """Make, publish, play, draw, reveal, verify: and nothing tells the salt before it is revealed."""
     salt, folder, run = tmp_path / "salt", tmp_path / "season", tmp_path / "run"
@@ -375,13 +376,13 @@ def test_a_season_from_salt_to_verdict(say, tmp_path: Path, monkeypatch: pytest.
         return out
 
     done("suite", "salt", "--out", salt)
-    make = ("suite", "make", "season-1", "--salt-file", salt, "--houses", 2, "--tasks", 4, "--jobs", 1)
+    make = ("suite", "make", "season-1", "--salt-file", salt, "--houses", 1, "--tasks", 2, "--jobs", 1)
     made = json.loads(done(*make, "--out", folder, "--json"))
-    assert made["commitment"]["tasks"] == 4
+    assert made["commitment"]["tasks"] == 2
     assert json.loads(done("suite", "verify", folder, "--json"))["state"] == "sealed"
     done("eval", "--agent", "silent", "--suite", folder, "--out", run, "--jobs", 1, "--quiet")
     result = json.loads((run / "result.json").read_bytes())
-    assert result["counts"]["trials"] == 4
+    assert result["counts"]["trials"] == 2
     done("score", run)
     picture = tmp_path / "trial.png"
     done("replay", run, 0, "--out", picture)

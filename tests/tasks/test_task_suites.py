@@ -18,7 +18,7 @@ from hthor.tasks.arrangement import scene_graph
 from hthor.tasks.generation import difficulty, generate, suite_specs
 from hthor.tasks.kind import TaskKind
 from hthor.tasks.kinds.mobile_manipulation import TEMPLATES
-from hthor.tasks.suite import encode_suite, make_suite
+from hthor.tasks.suite import encode_suite, in_turn, make_suite
 from hthor.tasks.suites import library
 from hthor.tasks.validate import task_faults
 from hthor.types import Goal, Placement, Snapshot
@@ -122,6 +122,15 @@ def test_a_slice_made_again_is_the_same(name):
         assert jsonio.canonical(made) == jsonio.canonical(frozen[made.id])
 
 
+@pytest.mark.parametrize("name", ["smoke", "paper"])
+def test_a_house_made_again_is_the_same_and_houses_take_turns(name):
+    plan, frozen = suite_specs.SUITE_SPECS[name], tasks.load_suite(name).tasks
+    columns = {house: tuple(task for task in frozen if task.house == house) for house in plan.houses}
+    assert tuple(in_turn(list(columns.values()))) == frozen
+    assert generate.house_tasks(plan, houses.load("willow")) == columns["willow"]
+
+
+@pytest.mark.nightly
 @pytest.mark.parametrize("name", ["smoke", "paper"])
 def test_a_suite_made_again_is_the_same_file(name):
     assert encode_suite(generate.build_suite(suite_specs.SUITE_SPECS[name])) == library.suite_path(name).read_bytes()

@@ -210,6 +210,12 @@ def test_what_is_no_walk_is_told(goal, told):
     assert told in KIND.objection(goal, HOUSES["alder"])
 
 
+def test_a_house_made_again_is_the_same():
+    own = tuple(task for task in SUITE.tasks if task.house == "willow")
+    assert generate.house_tasks(SUITE_SPECS["vln"], HOUSES["willow"]) == own
+
+
+@pytest.mark.nightly
 def test_the_suite_made_again_is_the_same_file():
     assert encode_suite(generate.build_suite(SUITE_SPECS["vln"])) == library.suite_path("vln").read_bytes()
 

@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 import tempfile
+from pathlib import Path
 
 import pytest
 
@@ -25,15 +26,18 @@ from dm_control import mujoco as dm
 print(dm.Physics.from_xml_string('{BALL}').render(48, 64).sum())
 """
 NICE = """
+import world_house
 from hthor.world import World
-print(World("hazel").human.rgb((8, 8), profile="nice").shape)
+print(World(world_house.house()).human.rgb((8, 8), profile="nice").shape)
 """
+SUPPORT = Path(__file__).parents[2] / "support"
 OURS = "import hthor.world.world"
 
 
 def run(*parts: str, backend: str | None = "egl") -> str:
     """What a fresh process prints; its complaint when it fails."""
     given = {name: value for name, value in os.environ.items() if name not in ("MUJOCO_GL", "PYOPENGL_PLATFORM")}
+    given["PYTHONPATH"] = os.pathsep.join([str(SUPPORT), given.get("PYTHONPATH", "")])
     environment = given | ({} if backend is None else {"MUJOCO_GL": backend})
     command = [sys.executable, "-c", "\n".join(parts)]
     with tempfile.TemporaryDirectory() as folder:
