@@ -86,7 +86,7 @@ def test_habits_sum_up_all_trials() -> None:
 
 
 @pytest.mark.usefixtures("shared_worlds")
-@pytest.mark.parametrize("share", [0.0, pytest.param(0.5, marks=pytest.mark.nightly), 1.0])
+@pytest.mark.parametrize("share", [*(pytest.param(share, marks=pytest.mark.nightly) for share in (0.0, 0.5)), 1.0])
 def test_logs_of_proxies_tell_how_often_they_walk_with_the_map_hidden(share: float) -> None:
     smoke = tasks.load_suite("smoke")
     few = make_suite("few", 1, tuple(task for task in smoke.tasks if task.house in ("alder", "hazel"))[:4])

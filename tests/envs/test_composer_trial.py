@@ -255,7 +255,9 @@ def test_composers_hooks_and_delays_work_in_ticks(world: World) -> None:
     assert ticks == [0, 0, 1, 2, 3]
 
 
-@pytest.mark.parametrize(("suite", "agent"), [("smoke", "frontier"), ("smoke", "oracle")])
+@pytest.mark.parametrize(
+    ("suite", "agent"), [("smoke", "frontier"), pytest.param("smoke", "oracle", marks=pytest.mark.nightly)]
+)
 def test_a_trial_in_steps_is_the_trial_of_the_batch(suite: str, agent: str) -> None:
     session = make_sessions(tasks.load_suite(suite), agent=agent)[0]
     short = msgspec.structs.replace(session, trials=session.trials[:3])

@@ -128,7 +128,7 @@ def stage() -> trial_runner.TrialRunner:
     return trial_runner.TrialRunner()
 
 
-@pytest.mark.parametrize("agent", ["silent", "oracle"])
+@pytest.mark.parametrize("agent", [pytest.param("silent", marks=pytest.mark.nightly), "oracle"])
 def test_a_person_plays_on_without_the_truth(agent: str, stage: trial_runner.TrialRunner) -> None:
     veiled, plain = trials(agent, stage, veiled=True), trials(agent, stage, veiled=False)
     assert veiled == plain, "what was hidden had been used"

@@ -87,8 +87,17 @@ def runner() -> TrialRunner:
     return TrialRunner()
 
 
-@pytest.mark.parametrize("agent", ["none", "frontier"])
-@pytest.mark.parametrize("house", ["alder", pytest.param("juniper", marks=pytest.mark.nightly), "willow"])
+@pytest.mark.parametrize(
+    ("house", "agent"),
+    [
+        ("alder", "frontier"),
+        ("willow", "none"),
+        pytest.param("alder", "none", marks=pytest.mark.nightly),
+        pytest.param("willow", "frontier", marks=pytest.mark.nightly),
+        pytest.param("juniper", "none", marks=pytest.mark.nightly),
+        pytest.param("juniper", "frontier", marks=pytest.mark.nightly),
+    ],
+)
 def test_a_still_stranger_far_away_changes_nothing_up_to_the_first_meeting(runner, house, agent):
     for task in [task for task in tasks.load_suite("smoke").tasks if task.house == house][:2]:
         given = with_a_stranger(task)

@@ -110,7 +110,10 @@ def test_a_film_shows_every_logged_pose_and_the_end(record: trial_record.TrialRe
     assert video.get(cv2.CAP_PROP_FRAME_COUNT) >= len(ticks)
 
 
-@pytest.mark.parametrize("suffix", figure_file.SUFFIXES)
+@pytest.mark.parametrize(
+    "suffix",
+    [pytest.param(one, marks=pytest.mark.nightly) if one == ".pdf" else one for one in figure_file.SUFFIXES],
+)
 def test_a_strip_tells_what_happened_and_was_said(
     record: trial_record.TrialRecord, tmp_path: Path, suffix: str
 ) -> None:

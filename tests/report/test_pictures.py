@@ -94,11 +94,16 @@ def test_knowledge_of_beliefs_has_a_row_where_a_robot_predicted_them(spec: Trial
         assert ("beliefs known" in [text.get_text() for text in sheet.findobj(Text)]) == drawn
 
 
-def test_a_film_lasts_as_long_as_the_trial(spec: TrialSpec, log: EpisodeLog, tmp_path: Path) -> None:
-    path = tmp_path / "film.webm"
+@pytest.fixture(scope="module")
+def film(spec: TrialSpec, log: EpisodeLog, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("film") / "film.webm"
     trial_video.write_video(path, spec, log, houses.load(TASK.house))
-    film = cv2.VideoCapture(str(path))
-    seconds = film.get(cv2.CAP_PROP_FRAME_COUNT) / film.get(cv2.CAP_PROP_FPS)
+    return path
+
+
+def test_a_film_lasts_as_long_as_the_trial(film: Path) -> None:
+    opened = cv2.VideoCapture(str(film))
+    seconds = opened.get(cv2.CAP_PROP_FRAME_COUNT) / opened.get(cv2.CAP_PROP_FPS)
     assert seconds == pytest.approx(14.1 / trial_video.SPEED + webm_file.HOLD_S, abs=0.1)
 
 
@@ -224,9 +229,8 @@ LONG = "with a name that goes on and on until nobody can read it any more "
 
 
 @pytest.mark.skipif(shutil.which("chromium") is None, reason="Chromium is not installed")
-def test_a_browser_plays_a_film(spec: TrialSpec, log: EpisodeLog, tmp_path: Path) -> None:
-    short = msgspec.structs.replace(log, paths={seat: way[:10] for seat, way in log.paths.items()})
-    trial_video.write_video(tmp_path / "film.webm", spec, short, houses.load(TASK.house))
+def test_a_browser_plays_a_film(film: Path, tmp_path: Path) -> None:
+    shutil.copy(film, tmp_path / "film.webm")
     (tmp_path / "page.html").write_text(PAGE)
     options = ["--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=20000"]
     options += [f"--user-data-dir={tmp_path / 'browser'}", "--dump-dom", f"file://{tmp_path / 'page.html'}"]

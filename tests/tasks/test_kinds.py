@@ -309,6 +309,14 @@ def test_least_times_in_a_suite_are_those_of_its_kind(suite, house):
 
 
 @pytest.mark.parametrize("name", ["collect", "rearrange", "tidy", "carry"])
+def test_a_task_made_anew_is_the_same(name):
+    spec = SUITE_SPECS[name]
+    again = generate.make_ordered_task(spec, HOUSES["elder"], spec.orders(spec, HOUSES["elder"])[0])
+    assert again == next(task for task in tasks.load_suite(name).tasks if task.house == "elder")
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("name", ["collect", "rearrange", "tidy", "carry"])
 def test_a_house_made_anew_is_the_same(name):
     again = generate.house_tasks(SUITE_SPECS[name], HOUSES["elder"])
     assert again == tuple(task for task in tasks.load_suite(name).tasks if task.house == "elder")

@@ -6,7 +6,7 @@ import math
 
 import msgspec
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hthor import houses, plugins, tasks
@@ -68,6 +68,7 @@ def written(found):
 # ----------------------------------------------------------------------------------------------------- the instruction
 
 
+@settings(max_examples=40)
 @given(routes())
 def test_whoever_reads_the_words_literally_gets_to_the_end_of_the_route(found):
     house, start, end, route = found
@@ -81,14 +82,15 @@ def test_whoever_reads_the_words_literally_gets_to_the_end_of_the_route(found):
     assert room_of(house, *route.points[-1]).id == end.room
 
 
+@settings(max_examples=40)
 @given(routes())
 def test_every_side_and_room_that_is_named_is_true_of_the_route(found):
     house, _, _, route = found
-    doors = [step for step in written(found) or () if step.act in ("door", "opening")]
+    steps = written(found) or ()
+    doors = [step for step in steps if step.act in ("door", "opening")]
     left = [stretch for stretch in route.stretches if stretch.exit is not None] if route and doors else []
     assert len(doors) == len(left)
     kinds = {room.id: room.kind for room in house.rooms}
-    steps = written(found) or ()
     for number, (step, stretch) in enumerate(zip(doors, left, strict=True)):
         assert kinds[stretch.exit.other_side(stretch.room.id)] == step.room
         assert (step.act == "door") == stretch.exit.is_door
@@ -99,6 +101,7 @@ def test_every_side_and_room_that_is_named_is_true_of_the_route(found):
             assert directions.off_side(step.side, bearing) <= literal_reader.OFF_RAD
 
 
+@settings(max_examples=40)
 @given(routes())
 def test_every_landmark_is_in_sight_where_it_is_mentioned_and_on_the_hand_that_is_named(found):
     house, _, _, route = found

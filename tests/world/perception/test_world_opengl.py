@@ -54,8 +54,15 @@ def alone(part: str) -> str:
     return found
 
 
-@pytest.mark.parametrize("part", [MUJOCO, DM_CONTROL], ids=["mujoco", "dm_control"])
-@pytest.mark.parametrize("order", ["before", "after"])
+@pytest.mark.parametrize(
+    ("part", "order"),
+    [
+        pytest.param(MUJOCO, "before", id="before-mujoco"),
+        pytest.param(DM_CONTROL, "after", id="after-dm_control"),
+        pytest.param(MUJOCO, "after", id="after-mujoco", marks=pytest.mark.nightly),
+        pytest.param(DM_CONTROL, "before", id="before-dm_control", marks=pytest.mark.nightly),
+    ],
+)
 def test_rendering_works_whichever_is_imported_first(part: str, order: str) -> None:
     imports = "import mujoco, dm_control.mujoco"
     first, second = (OURS, imports) if order == "before" else (imports, OURS)
