@@ -48,19 +48,21 @@ _SIDE_PX, _EYES_PX = 280, 207
 """Width of the column with the person's eyes and display, and height of the eyes' view [pixels]."""
 _SAID_PX, _LINE_PX = 66, 27
 """Height of the words below the house, and distance of their lines [pixels]."""
-_BESIDE_PX = 12
-"""How far from a body its name is [pixels]."""
+_BESIDE_PX, _ABOVE_PX = 12, 34
+"""How far from a body its name is, and how far above a thing the upper edge of its name [pixels]."""
 _FINER, _DPI, _SHIFT = 2, 100, 4
 _BIG_PT, _SMALL_PT = 14.0, 10.0
 _AZIMUTH = -math.pi / 2
 _PAPER, _FAINT, _LINE = "#ffffff", "#7d838c", "#d5d8dd"
+ROBOT = "robot"
+"""The seat of the only robot."""
 
 
 class _Cameras(CameraFrames):
-    """A world that keeps, at some ticks, what the person sees, and the house from above as it is then."""
+    """A world that keeps, at some ticks, what person and robot see, and the house from above as it is then."""
 
     def __init__(self, world: Any, ticks: Sequence[int], viewpoint: Viewpoint, size: tuple[int, int]) -> None:
-        super().__init__(world, ticks, "fast", (HUMAN,))
+        super().__init__(world, ticks, "fast", (HUMAN, ROBOT))
         self._above = functools.partial(world.overview, viewpoint, "rgb", (_FINER * size[0], _FINER * size[1]), "fast")
         self._at = frozenset(ticks)
         self.above: dict[int, Any] = {}
@@ -180,14 +182,16 @@ class Film:
         """The house with paths, names and the newest message."""
         picture = self.cameras.above[tick].copy()
         taken = any(isinstance(event, Picked) and event.tick <= tick for event in self.log.events)
-        for job, start in trial_trace.targets(self.record.spec, self.house):
-            if not taken:
-                self._mark(picture, start.position, floor_plan.title(start.kind))
-            for thing in self.house.things:
-                if {thing.id, thing.kind} & set(job.destinations):
-                    self._mark(picture, thing.centre, floor_plan.title(thing.kind))
         for seat in self.log.paths:
             self._draw_path(picture, seat, tick)
+        for job, start in trial_trace.targets(self.record.spec, self.house):
+            for thing in self.house.things:
+                if {thing.id, thing.kind} & set(job.destinations):
+                    x, y, z = thing.centre
+                    self._name_thing(picture, (x, y, z + thing.size[2] / 2), floor_plan.title(thing.kind))
+            if not taken:
+                self._mark(picture, start.position)
+                self._name_thing(picture, start.position, floor_plan.title(start.kind))
         for message in trial_trace.messages(self.log):
             if message.position is not None and self._is_news(message, tick):
                 self._draw_claim(picture, message)
@@ -211,16 +215,19 @@ class Film:
 
     def _name_body(self, picture: Any, seat: str, tick: int) -> None:
         x, y = trial_trace.position_at(self.log, seat, tick)
-        column, row = (round(part) for part in self._pixels([(x, y, 0.0)])[0].tolist())
+        column, row = self._pixel((x, y, 0.0))
         name, shade = trial_trace.seat_name(seat, self.log.paths), trial_trace.seat_colour(seat)
         side, step = ("left", _BESIDE_PX) if is_person(seat) else ("right", -_BESIDE_PX)
         _label(picture, name, (column + step, row - 4), shade, side=side)
 
-    def _mark(self, picture: Any, place: Vec3, name: str) -> None:
-        x, y = (round(part) for part in self._pixels([place])[0].tolist())
-        for shade, thick, size in ((_PAPER, 5, 20), (trial_trace.TARGET, 2, 18)):
-            cv2.drawMarker(picture, (x, y), bgr(shade)[::-1], cv2.MARKER_STAR, size, thick, cv2.LINE_AA)
-        _label(picture, name, (x, y - 32), trial_trace.TARGET)
+    def _mark(self, picture: Any, place: Vec3) -> None:
+        at = self._pixel(place)
+        for shade, thick, size in ((_PAPER, 4, 15), (trial_trace.TARGET, 2, 13)):
+            cv2.drawMarker(picture, at, bgr(shade)[::-1], cv2.MARKER_STAR, size, thick, cv2.LINE_AA)
+
+    def _name_thing(self, picture: Any, place: Vec3, name: str) -> None:
+        x, y = self._pixel(place)
+        _label(picture, name, (x, y - _ABOVE_PX), trial_trace.TARGET)
 
     def _draw_claim(self, picture: Any, message: Sent) -> None:
         """Draw a line from where the robot was to the place of its message."""
@@ -231,12 +238,15 @@ class Film:
         points = [np.round(begin + (end - begin) * part).astype(int) for part in np.linspace(0.0, 1.0, 9)]
         for one, other in list(pairwise(points))[::2]:
             cv2.line(picture, tuple(map(int, one)), tuple(map(int, other)), shade, 3, cv2.LINE_AA)
-        where = (round(float(end[0])), round(float(end[1])))
-        cv2.circle(picture, where, 15, shade, 3, cv2.LINE_AA)
+        cv2.circle(picture, self._pixel(message.position), 13, shade, 3, cv2.LINE_AA)
 
     def _pixels(self, points: Sequence[Vec3]) -> Any:
         """(N, 2) columns and rows of points of the house."""
         return self.viewpoint.project(np.array(points, float), self.size)[:, :2]
+
+    def _pixel(self, point: Vec3) -> tuple[int, int]:
+        column, row = self._pixels([point])[0].tolist()
+        return (round(column), round(row))
 
     def _draw_said(self, frame: Any, tick: int) -> None:
         """Write what happened last below the house."""
@@ -266,27 +276,32 @@ class Film:
         return f"{who} {trial_trace.ACTS[event.kind][1]} {what}".strip(), trial_trace.seat_colour(event.seat)
 
     def _draw_side(self, frame: Any, tick: int) -> None:
-        """Draw what the person sees, and below it the panel or the map of their display."""
+        """Draw what the person sees; below it their display, or, while it is empty, what the robot sees."""
         left, top = SIZE[0] - _EDGE_PX - _SIDE_PX, _HEAD_PX
-        eyes = cv2.resize(self.cameras.draw(tick, HUMAN), (_SIDE_PX, _SIDE_PX * 3 // 4), interpolation=cv2.INTER_AREA)
-        spare = (len(eyes) - _EYES_PX) // 2
-        frame[top : top + _EYES_PX, left : left + _SIDE_PX] = eyes[spare : spare + _EYES_PX]
-        _frame(frame, (left, top, _SIDE_PX, _EYES_PX), trial_trace.seat_colour(HUMAN))
-        _label(frame, "what the person sees", (left, top), trial_trace.seat_colour(HUMAN), side="left")
+        self._draw_view(frame, (left, top, _SIDE_PX, _EYES_PX), HUMAN, tick)
         top += _EYES_PX + _GAP_PX
         high = SIZE[1] - _FOOT_PX - top
         part = self.displays.panel(HUMAN, tick, _SIDE_PX, high)
+        shown = self.displays.map(HUMAN, tick, high) if part is None else None
+        if shown is not None:
+            at = (_SIDE_PX - high) // 2
+            part = np.full((high, _SIDE_PX, 3), shown[2, 2], np.uint8)
+            part[:, at : at + high] = shown
         if part is None:
-            part = np.full((high, _SIDE_PX, 3), 246, np.uint8)
-            shown = self.displays.map(HUMAN, tick, high)
-            if shown is not None:
-                at = (_SIDE_PX - high) // 2
-                part[:] = shown[2, 2]
-                part[:, at : at + high] = shown
-            else:
-                _write(part, "nothing on the display", (_SIDE_PX // 2, high // 2), _SMALL_PT, _FAINT, side="middle")
+            self._draw_view(frame, (left, top, _SIDE_PX, high), ROBOT, tick)
+            return
         frame[top : top + high, left : left + _SIDE_PX] = part
-        _frame(frame, (left, top, _SIDE_PX, high), _LINE)
+        _frame(frame, (left, top, _SIDE_PX, high), trial_trace.MESSAGE)
+
+    def _draw_view(self, frame: Any, box: tuple[int, int, int, int], seat: str, tick: int) -> None:
+        """Draw what somebody sees, cut above and below to the shape of the box."""
+        left, top, wide, high = box
+        view, shade = self.cameras.draw(tick, seat), trial_trace.seat_colour(seat)
+        view = cv2.resize(view, (wide, round(len(view) * wide / view.shape[1])), interpolation=cv2.INTER_AREA)
+        spare = (len(view) - high) // 2
+        frame[top : top + high, left : left + wide] = view[spare : spare + high]
+        _frame(frame, box, shade)
+        _label(frame, f"what the {trial_trace.seat_name(seat, self.log.paths)} sees", (left, top), shade, side="left")
 
     def _draw_foot(self, frame: Any, tick: int) -> None:
         """Draw the trial's time as a line, with its milestones."""
