@@ -26,6 +26,7 @@ from typing import Any
 import cv2
 import numpy as np
 
+from benchmarks import readme_film
 from hthor import houses, jsonio, rules, tasks
 from hthor.eval.config import robot_team, sessions, task_selection
 from hthor.eval.records.trial_record import TrialRecord
@@ -58,6 +59,7 @@ _SHEETS = ("hthor/world/rendering/contact_sheet.py", "hthor/world/rendering/open
 LOOK_BELOW = 0.98
 """Pictures that are less similar than this to those that they replace are named for a person to look at."""
 _OVERVIEWS = tuple(f"hthor/world/rendering/{part}.py" for part in ("ray_renderer", "shading", "viewpoint"))
+_SUFFIXES = (".png", ".jpg", ".webp")
 BY_HAND = ("robots.png", "loose_things.jpg")
 """Pictures that need a stage and a camera of their own."""
 AGENTS, SUITE, CASE = ("none", "frontier", "oracle"), "smoke", "smoke/birch/manipulation-01"
@@ -85,6 +87,10 @@ OF_TASKS = {
     "pipeline.jpg": ("paper/alder/manipulation-01", "--pipeline"),
 }
 """Figures of tasks in three dimensions: a task, and the option of `hthor tasks draw`."""
+FILMS = {"trial.webp": "paper/juniper/manipulation-03"}
+"""Trials with the oracle as the README's film shows one."""
+_FILMING = ("report/drawing", "report/drawing/film", "report/drawing/overviews", "report/drawing/person_display")
+"""Folders with the code that draws a film, besides `benchmarks.readme_film` itself."""
 
 
 def names() -> list[str]:
@@ -93,6 +99,7 @@ def names() -> list[str]:
         *TRIALS,
         *OF_TASKS,
         *TASKS,
+        *FILMS,
         "eyes.jpg",
         *_OF_RUNS,
         "display.png",
@@ -107,6 +114,10 @@ def origin(name: str) -> str:
         code = [f"hthor/report/drawing/{part}.py" for part in _DRAWING]
         facts = [TRIALS[name], task, houses.load(task.house).sha256, rules.sha256(), _sha256(ROOT / _REFERENCE)]
         return jsonio.sha256([*facts, *(_code_sha256(ROOT / path) for path in code)])
+    if name in FILMS:
+        task = _task(FILMS[name])
+        shown = [FILMS[name], task, houses.load(task.house).sha256, rules.sha256(), _sha256(ROOT / _REFERENCE)]
+        return jsonio.sha256([*shown, *map(_code_sha256, _code_of_films())])
     if name in OF_TASKS:
         task = _task(OF_TASKS[name][0])
         code = [*sorted((ROOT / "hthor/report/drawing/overviews").glob("*.py")), *(ROOT / path for path in _OVERVIEWS)]
@@ -143,7 +154,7 @@ def problems(folder: Path = FOLDER) -> list[str]:
             found.append(f"{name}: is not the file that was made last")
         elif entry.get("origin") != origin(name):
             found.append(f"{name}: is out of date: what it shows, or the code that draws it, has changed since")
-    there = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.suffix in (".png", ".jpg")}
+    there = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.suffix in _SUFFIXES}
     found += [f"{name}: nothing makes it" for name in sorted(there - {*names(), *BY_HAND})]
     return found
 
@@ -180,13 +191,17 @@ def likeness(before: Any, after: Any) -> str:
 
 def played(task_id: str) -> TrialRecord:
     """The trial of a task with the oracle, as `hthor eval` plays it with the seed 0."""
+    return [done.record for done in trial_runner.make_runner()(session_until(task_id))][-1]
+
+
+def session_until(task_id: str) -> sessions.Session:
+    """The session of a task with the oracle, up to the trial of this task."""
     chosen = task_selection.select_tasks(task_id.partition("/")[0], "")
     suite, crew = chosen.suite, robot_team.form_team(chosen.robots, ["oracle"] * len(chosen.robots))
     for one in sessions.make_sessions(suite, agent=crew):
         ids = [trial.task.id for trial in one.trials]
         if task_id in ids:
-            until = sessions.Session(number=one.number, trials=one.trials[: ids.index(task_id) + 1])
-            return [done.record for done in trial_runner.make_runner()(until)][-1]
+            return sessions.Session(number=one.number, trials=one.trials[: ids.index(task_id) + 1])
     raise ValueError(f"the suite {suite.name} has no task {task_id}")
 
 
@@ -194,6 +209,13 @@ def _code_of_pages() -> list[Path]:
     """The files that decide how a report and a case look, and the reference of how trials go."""
     pages = sorted((ROOT / "hthor" / "report").rglob("*.py"))
     return [*pages, ROOT / _REFERENCE]
+
+
+def _code_of_films() -> list[Path]:
+    """The files that decide how a film looks."""
+    folders = [path for folder in _FILMING for path in sorted((ROOT / "hthor" / folder).glob("*.py"))]
+    more = ("hthor/report/page/camera_frames.py", "hthor/comms/map_picture.py", *_OVERVIEWS)
+    return [ROOT / "benchmarks" / "readme_film.py", *folders, *(ROOT / path for path in more)]
 
 
 def _maker(name: str) -> Callable[[Path], None]:
@@ -205,6 +227,8 @@ def _maker(name: str) -> Callable[[Path], None]:
         return lambda path: _hthor("tasks", "draw", TASKS[name], "--out", path)
     if name in TRIALS:
         return lambda path: _draw_trial(path, TRIALS[name])
+    if name in FILMS:
+        return lambda path: readme_film.write_film(path, session_until(FILMS[name]))
     if name in OF_TASKS:
         return lambda path: _draw_smaller(path, "tasks", "draw", *OF_TASKS[name])
     if name == "display.png":

@@ -1,13 +1,19 @@
-"""Follows README.md to the letter: `readme.py [--skip COMMAND]... [FOLDER]`.
+"""Follows README.md to the letter: `readme.py [--skip COMMAND]... [--page PAGE]... [FOLDER]`.
 
-Clones the last commit into a new folder whose name has spaces, then runs every command and snippet that the README
-shows, in its order and in one shell, as a reader would type them. Prints what each took; stops at the first that fails.
+Runs every command and snippet that the README shows, in its order and in one shell, as a reader would type them, in a
+new folder whose name has spaces. Its first command clones the last commit. Prints what each took; stops at the first
+that fails.
+
+Other pages are followed instead with --page, in the order in which they are named. If FOLDER has a clone that was set
+up before, they go on there: `readme.py FOLDER && readme.py --page docs/index.md FOLDER`. A page that does not clone
+gets a clone.
 """
 
 from __future__ import annotations
 
 import argparse
 import re
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -15,7 +21,8 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-NAME = "hthor, as a reader has it"
+NAME, CLONE = "hthor, as a reader has it", "hthor"
+"""The folder that a reader is in, and the clone in it."""
 BLOCK = re.compile(r"^```(\w*)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 INLINE = re.compile(r"`((?:hthor|make|python) [^`]+)`")
 NOT_TYPED = ("hthor --install-completion", "hthor eval", "hthor tasks make")
@@ -23,7 +30,7 @@ NOT_TYPED = ("hthor --install-completion", "hthor eval", "hthor tasks make")
 
 
 def commands(text: str) -> list[str]:
-    """Every command of the README, in order; a snippet of Python is one command too."""
+    """Every command of a page, in order; a snippet of Python is one command too."""
     found: list[str] = []
     for part in re.split(r"(^```.*?^```)", text, flags=re.MULTILINE | re.DOTALL):
         block = BLOCK.match(part)
@@ -51,7 +58,8 @@ def _alternatives(line: str) -> list[str]:
 
 
 def filled(command: str, folder: Path) -> str:
-    """The command with the README's placeholders replaced by runs, trials and tasks that are there."""
+    """The command with a page's placeholders replaced by the repository, runs, trials and tasks that are there."""
+    command = command.replace("git clone URL", f"git clone --quiet {shlex.quote(str(ROOT))}")
     if not re.search(r"\b(RUN|TRIAL|TASK)\b", command):
         return command
     played = sorted((path.parent for path in folder.glob("runs/*smoke*/run.json")), key=lambda run: run.name)
@@ -67,17 +75,24 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--skip", action="append", default=[], metavar="COMMAND", help="leave this command out")
     parser.add_argument("--list", action="store_true", help="only print the commands")
+    parser.add_argument("--page", action="append", type=Path, metavar="PAGE", help="follow this page, not README.md")
     parser.add_argument("folder", nargs="?", type=Path, help="where to clone to; a temporary folder unless given")
     options = parser.parse_args()
-    wanted = [line for line in commands((ROOT / "README.md").read_text()) if line not in options.skip]
+    pages = [(ROOT / page).read_text() for page in options.page or ["README.md"]]
+    wanted = [line for page in pages for line in commands(page) if line not in options.skip]
     if options.list:
         sys.stdout.write("\n".join(wanted) + "\n")
         return 0
-    parent = options.folder or Path(tempfile.mkdtemp(prefix="hthor readme "))
-    folder = parent / NAME
-    subprocess.run(["git", "clone", "--quiet", str(ROOT), str(folder)], check=True)
-    shell = subprocess.Popen(["bash"], cwd=folder, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
-    return _follow(shell, wanted, folder)
+    place = (options.folder or Path(tempfile.mkdtemp(prefix="hthor readme "))).resolve() / NAME
+    place.mkdir(parents=True, exist_ok=True)
+    clone = place / CLONE
+    clones = any(line.startswith("git clone") for line in wanted[:1])
+    if not clones and not clone.is_dir():
+        subprocess.run(["git", "clone", "--quiet", str(ROOT), str(clone)], check=True)
+    shell = subprocess.Popen(
+        ["bash"], cwd=place if clones else clone, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    )
+    return _follow(shell, wanted, clone)
 
 
 def _follow(shell: subprocess.Popen[str], wanted: list[str], folder: Path) -> int:

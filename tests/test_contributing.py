@@ -7,6 +7,7 @@ import functools
 import importlib.util
 import json
 import re
+import shlex
 import subprocess
 import sys
 import tomllib
@@ -200,8 +201,8 @@ def test_prose_has_lines_that_fit(path: Path):
 
 
 @functools.cache
-def _wrapper() -> ModuleType:
-    spec = importlib.util.spec_from_file_location("wrap_markdown", ROOT / "scripts" / "wrap_markdown.py")
+def _script(name: str) -> ModuleType:
+    spec = importlib.util.spec_from_file_location(name, ROOT / "scripts" / f"{name}.py")
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
@@ -210,7 +211,7 @@ def _wrapper() -> ModuleType:
 
 
 def _wrapped(text: str) -> str:
-    wrapped: str = _wrapper().wrapped(text)
+    wrapped: str = _script("wrap_markdown").wrapped(text)
     return wrapped
 
 
@@ -251,6 +252,114 @@ def test_modules_of_the_reference_are_there_and_have_a_docstring(module: str):
     assert spec is not None
     assert spec.origin is not None
     assert ast.get_docstring(ast.parse(Path(spec.origin).read_text()))
+
+
+def test_the_guide_lists_every_page():
+    listed = set(re.findall(r"^\| \[([\w.-]+)\]\(\1\) \|", (ROOT / "docs" / "index.md").read_text(), re.MULTILINE))
+    assert listed == {path.name for path in DOCS} - {"index.md"} | {NOTEBOOK.name}
+
+
+# ---- README
+
+
+README = (ROOT / "README.md").read_text()
+FILM = re.compile(r"^!\[.{20,}\]\((docs/images/\w+\.webp)\)$", re.MULTILINE)
+ANIMATION, FRAME = b"ANIM", b"ANMF"
+
+
+def test_the_readme_is_short_and_begins_with_a_film():
+    assert len(README.split()) <= 650
+    (film,) = FILM.finditer(README)
+    assert README[: film.start()].count("\n") < 8
+    data = (ROOT / film[1]).read_bytes()
+    assert len(data) <= 2_000_000
+    parts = _parts_of_webp(data)
+    lasts = [int.from_bytes(part[12:15], "little") for name, part in parts if name == FRAME]
+    assert sum(lasts) == 8000, "milliseconds"
+    assert len(lasts) > 50
+    (animation,) = (part for name, part in parts if name == ANIMATION)
+    assert animation[4:6] == b"\0\0", "it begins anew for ever"
+
+
+def _parts_of_webp(data: bytes) -> list[tuple[bytes, bytes]]:
+    """The chunks of a WebP file: names and contents."""
+    assert data[:4] == b"RIFF"
+    assert data[8:12] == b"WEBP"
+    parts, at = [], 12
+    while at < len(data):
+        size = int.from_bytes(data[at + 4 : at + 8], "little")
+        parts.append((data[at : at + 4], data[at + 8 : at + 8 + size]))
+        at += 8 + size + size % 2
+    return parts
+
+
+def test_the_readmes_rows_are_those_of_the_board():
+    board = json.loads((ROOT / "leaderboard" / "leaderboard.json").read_text())
+    (section,) = (one for one in board["sections"] if one["suite"]["name"] == "standard")
+    table = README.partition("## Leaderboard\n")[2].partition("## ")[0]
+    assert f"{section['trials']} tasks" in table
+    rows = [line.strip("| ").split(" | ") for line in table.splitlines() if line.startswith("| ")][1:]
+    assert len(rows) == 3
+    entries = {entry["name"]: entry for entry in section["rows"]}
+    for name, success, weighted in rows:
+        rate, low, high = map(float, re.findall(r"[\d.]+", success))
+        assert [rate, low, high] == pytest.approx(
+            [100 * part for part in (entries[name]["sr"]["mean"], *entries[name]["sr"]["ci95"])], abs=0.051
+        )
+        assert float(weighted.removesuffix(" %")) == pytest.approx(100 * entries[name]["twsr"]["mean"], abs=0.051)
+
+
+def test_the_readme_cites_what_the_citation_file_cites():
+    cited = yaml.safe_load((ROOT / "CITATION.cff").read_text())
+    software, paper = (
+        dict(re.findall(r"(\w+)=\{+(.*?)\}+,?$", entry, re.MULTILINE))
+        for entry in README.partition("```bibtex\n")[2].partition("```")[0].split("\n\n")
+    )
+    assert software == {
+        "author": cited["authors"][0]["name"],
+        "title": cited["title"],
+        "note": f"Version {cited['version']}",
+    }
+    (reference,) = cited["references"]
+    first, others = reference["authors"]
+    assert paper == {
+        "author": f"{first['family-names']}, {first['given-names']} {others['name']}",
+        "title": reference["title"],
+        "booktitle": reference["conference"]["name"],
+        "year": str(reference["year"]),
+        "note": reference["identifiers"][0]["value"],
+    }
+
+
+def test_the_readmes_agent_has_ten_lines_and_is_the_example():
+    (code,) = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
+    assert len([line for line in code.splitlines() if line.strip()]) <= 10
+    assert (ROOT / "examples" / "wanderer.py").read_text().endswith(code)
+
+
+def test_the_readmes_commands_begin_with_the_clone_and_name_the_agents_file():
+    commands = _script("readme").commands(README)
+    assert [command.partition(" ")[0] for command in commands[:3]] == ["git", "make", "make"]
+    assert (
+        _script("readme").filled(commands[0], ROOT) == f"git clone --quiet {shlex.quote(str(ROOT))} hthor && cd hthor"
+    )
+    (written,) = (number for number, command in enumerate(commands) if command.startswith("cat > my_agent.py <<"))
+    used = [number for number, command in enumerate(commands) if " my_agent.py" in command and number != written]
+    assert used
+    assert min(used) > written
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/index.md"])
+def test_a_pages_placeholders_are_all_filled(page: str, tmp_path: Path):
+    for name in ("frontier", "oracle"):
+        folder = tmp_path / "runs" / f"{name}-smoke-0"
+        folder.mkdir(parents=True)
+        (folder / "run.json").write_text("{}")
+    script = _script("readme")
+    commands = script.commands((ROOT / page).read_text())
+    assert len(commands) > 5
+    typed = [script.filled(line, tmp_path) for line in commands if "SNIPPET" not in line]
+    assert [line for line in typed if re.search(r"(?<![\w/.-])[A-Z]{3,}(?![\w/.-])", line)] == []
 
 
 # ---- notebook and diagram
