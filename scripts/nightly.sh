@@ -9,7 +9,7 @@
 #   bare         the tests without bubblewrap, a browser and Node: they skip with a reason, or do without
 #   ray          the engine for clusters
 #   calibration  a small fit of the human proxies to the published study
-#   readme       the long commands of the README and of the documentation's first page
+#   readme       every command of the documentation's first page
 #   leaderboard  a submission's whole way to the board's page
 source "$(dirname "$0")/leaderboard/common.sh"
 cd "$ROOT"
@@ -47,7 +47,7 @@ part() {
       PYTHONPATH="$folder" "$PYTHON" -m pytest -q tests/eval/runs/test_eval_ray.py
       ;;
     calibration) hthor calibrate --target paper --suite paper --quick --out "$folder/quick" ;;
-    readme) "$PYTHON" scripts/readme.py --skip "make test" ;;
+    readme) "$PYTHON" scripts/readme.py --page docs/index.md ;;
     leaderboard) scripts/leaderboard.sh ;;
     *)
       echo "there is no part '$1': ${PARTS[*]}" >&2
