@@ -5,7 +5,9 @@ from __future__ import annotations
 import shutil
 import subprocess
 import sys
+from itertools import pairwise
 from pathlib import Path
+from types import SimpleNamespace
 
 import cv2
 import msgspec
@@ -15,7 +17,7 @@ from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from benchmarks import pictures
+from benchmarks import pictures, readme_film
 from hthor import houses, tasks
 from hthor.episode import EpisodeLog, Fault
 from hthor.errors import HthorError
@@ -278,6 +280,34 @@ def test_pictures_of_the_docs_are_known_and_tell_when_they_are_old(
     assert "is out of date" in pictures.problems(tmp_path)[0]
     (tmp_path / "other.png").write_bytes(b"")
     assert pictures.problems(tmp_path)[-1] == "other.png: nothing makes it"
+
+
+def test_a_film_shows_the_whole_trial_and_slows_down_for_messages() -> None:
+    sent = Sent(tick=100, seat="robot", message=0, text="Here.", object=None, position=None)
+    taken = Picked(tick=300, seat="human", object="tomato")
+    done = Placed(tick=400, seat="human", object="tomato", on="fridge")
+    record = SimpleNamespace(ticks=400, log=SimpleNamespace(events=(sent, taken, done)))
+    ticks = readme_film.shown_ticks(record)  # type: ignore[arg-type]
+    assert len(ticks) * readme_film.FRAME_S == readme_film.LENGTH_S
+    assert (ticks[0], ticks[-1]) == (0, 400)
+    steps = [after - tick for tick, after in pairwise(ticks)]
+    assert min(steps) >= 0
+    reading = [step for tick, step in zip(ticks, steps, strict=False) if 100 <= tick < 113]
+    before = [step for tick, step in zip(ticks, steps, strict=False) if tick < 90]
+    assert max(reading) < min(before), "time runs slower while a message is read"
+
+
+def test_a_film_is_out_of_date_when_the_code_that_draws_it_changes(monkeypatch: pytest.MonkeyPatch) -> None:
+    before = pictures.origin("trial.webp")
+    hashed: list[Path] = []
+
+    def changed(path: Path) -> str:
+        hashed.append(path)
+        return f"another {path.name}"
+
+    monkeypatch.setattr(pictures, "_code_sha256", changed)
+    assert pictures.origin("trial.webp") != before
+    assert {"readme_film.py", "display_pictures.py", "framing.py", "ray_renderer.py"} <= {path.name for path in hashed}
 
 
 def test_a_picture_that_shows_something_else_is_named_for_eyes() -> None:
