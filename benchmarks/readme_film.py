@@ -16,15 +16,14 @@ from typing import Any
 
 import cv2
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
 from PIL import Image
 
 from hthor import houses, rules
 from hthor.eval.config.sessions import Session
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner.trial_runner import TrialRunner
-from hthor.report.drawing import floor_plan, lettering, text_fit, trial_trace
+from hthor.report.drawing import floor_plan, text_fit, trial_trace
+from hthor.report.drawing.film import frame_words
 from hthor.report.drawing.film.frame_words import bgr
 from hthor.report.drawing.overviews import framing
 from hthor.report.drawing.person_display.display_pictures import DisplayPictures
@@ -50,8 +49,10 @@ _SAID_PX, _LINE_PX = 66, 27
 """Height of the words below the house, and distance of their lines [pixels]."""
 _BESIDE_PX, _ABOVE_PX = 12, 34
 """How far from a body its name is, and how far above a thing the upper edge of its name [pixels]."""
-_FINER, _DPI, _SHIFT = 2, 100, 4
+_FINER, _SHIFT = 2, 4
 _BIG_PT, _SMALL_PT = 14.0, 10.0
+_CAPITAL, _LABEL_PX = 0.73, 23
+"""Height of a capital letter, in parts of the letters' size, and of a name's field [pixels]."""
 _AZIMUTH = -math.pi / 2
 _PAPER, _FAINT, _LINE = "#ffffff", "#7d838c", "#d5d8dd"
 ROBOT = "robot"
@@ -81,7 +82,7 @@ class _Cameras(CameraFrames):
 def write_film(path: Path, session: Session) -> None:
     """Write the film of the last trial of a session as an animated WebP that begins anew for ever."""
     frames, lasts = _joined(Film(session).frames())
-    first, *others = (Image.fromarray(frame) for frame in frames)
+    first, *others = (Image.fromarray(cv2.cvtColor(frame, cv2.COLOR_BGR2RGB)) for frame in frames)
     first.save(
         path,
         save_all=True,
@@ -154,7 +155,7 @@ class Film:
         self.displays = DisplayPictures(self.log, self.cameras.images(trial_trace.messages(self.log)))
 
     def frames(self) -> list[Any]:
-        """All frames, (H, W, 3) uint8 each, red first."""
+        """All frames, (H, W, 3) uint8 each, blue first."""
         speeds = [(after - tick) * rules.TICK_S / FRAME_S for tick, after in pairwise([*self.ticks, self.ticks[-1]])]
         return [self.draw(tick, speed) for tick, speed in zip(self.ticks, _even(speeds), strict=True)]
 
@@ -167,7 +168,7 @@ class Film:
         self._draw_said(frame, tick)
         self._draw_side(frame, tick)
         self._draw_foot(frame, tick)
-        return np.ascontiguousarray(frame)
+        return frame
 
     def _draw_head(self, frame: Any, tick: int, speed: float) -> None:
         _write(frame, f"“{self.record.spec.task.instruction}”", (_EDGE_PX, _HEAD_PX // 2), _BIG_PT, trial_trace.INK)
@@ -180,7 +181,7 @@ class Film:
 
     def _from_above(self, tick: int) -> Any:
         """The house with paths, names and the newest message."""
-        picture = self.cameras.above[tick].copy()
+        picture = cv2.cvtColor(self.cameras.above[tick], cv2.COLOR_RGB2BGR)
         taken = any(isinstance(event, Picked) and event.tick <= tick for event in self.log.events)
         for seat in self.log.paths:
             self._draw_path(picture, seat, tick)
@@ -211,7 +212,7 @@ class Film:
         pixels = self._pixels([(x, y, 0.03) for x, y in way.tolist()])
         line = [np.round(pixels * (1 << _SHIFT)).astype(np.int32)]
         for shade, thick in ((_PAPER, 5), (trial_trace.seat_colour(seat), 3)):
-            cv2.polylines(picture, line, False, bgr(shade)[::-1], thick, cv2.LINE_AA, _SHIFT)
+            cv2.polylines(picture, line, False, bgr(shade), thick, cv2.LINE_AA, _SHIFT)
 
     def _name_body(self, picture: Any, seat: str, tick: int) -> None:
         x, y = trial_trace.position_at(self.log, seat, tick)
@@ -223,7 +224,7 @@ class Film:
     def _mark(self, picture: Any, place: Vec3) -> None:
         at = self._pixel(place)
         for shade, thick, size in ((_PAPER, 4, 15), (trial_trace.TARGET, 2, 13)):
-            cv2.drawMarker(picture, at, bgr(shade)[::-1], cv2.MARKER_STAR, size, thick, cv2.LINE_AA)
+            cv2.drawMarker(picture, at, bgr(shade), cv2.MARKER_STAR, size, thick, cv2.LINE_AA)
 
     def _name_thing(self, picture: Any, place: Vec3, name: str) -> None:
         x, y = self._pixel(place)
@@ -234,7 +235,7 @@ class Film:
         assert message.position is not None
         x, y = trial_trace.position_at(self.log, message.seat, message.tick)
         begin, end = self._pixels([(x, y, 0.6), message.position])
-        shade = bgr(trial_trace.MESSAGE)[::-1]
+        shade = bgr(trial_trace.MESSAGE)
         points = [np.round(begin + (end - begin) * part).astype(int) for part in np.linspace(0.0, 1.0, 9)]
         for one, other in list(pairwise(points))[::2]:
             cv2.line(picture, tuple(map(int, one)), tuple(map(int, other)), shade, 3, cv2.LINE_AA)
@@ -251,7 +252,7 @@ class Film:
     def _draw_said(self, frame: Any, tick: int) -> None:
         """Write what happened last below the house."""
         words, shade = self._said(tick)
-        room = self.size[0] / _DPI
+        room = self.size[0] / frame_words.DPI
         top = _HEAD_PX + self.size[1] + _GAP_PX
         lines = text_fit.wrap(words, room, _BIG_PT, bold=True)[:2]
         for number, line in enumerate(lines):
@@ -290,7 +291,7 @@ class Film:
         if part is None:
             self._draw_view(frame, (left, top, _SIDE_PX, high), ROBOT, tick)
             return
-        frame[top : top + high, left : left + _SIDE_PX] = part
+        frame[top : top + high, left : left + _SIDE_PX] = part[:, :, ::-1]
         _frame(frame, (left, top, _SIDE_PX, high), trial_trace.MESSAGE)
 
     def _draw_view(self, frame: Any, box: tuple[int, int, int, int], seat: str, tick: int) -> None:
@@ -299,7 +300,7 @@ class Film:
         view, shade = self.cameras.draw(tick, seat), trial_trace.seat_colour(seat)
         view = cv2.resize(view, (wide, round(len(view) * wide / view.shape[1])), interpolation=cv2.INTER_AREA)
         spare = (len(view) - high) // 2
-        frame[top : top + high, left : left + wide] = view[spare : spare + high]
+        frame[top : top + high, left : left + wide] = view[spare : spare + high, :, ::-1]
         _frame(frame, box, shade)
         _label(frame, f"what the {trial_trace.seat_name(seat, self.log.paths)} sees", (left, top), shade, side="left")
 
@@ -310,13 +311,13 @@ class Film:
         def across(at: int) -> int:
             return left + round((right - left) * at / self.record.ticks)
 
-        cv2.line(frame, (left, y), (right, y), bgr(_LINE)[::-1], 4, cv2.LINE_AA)
-        cv2.line(frame, (left, y), (across(tick), y), bgr(trial_trace.INK)[::-1], 4, cv2.LINE_AA)
+        cv2.line(frame, (left, y), (right, y), bgr(_LINE), 4, cv2.LINE_AA)
+        cv2.line(frame, (left, y), (across(tick), y), bgr(trial_trace.INK), 4, cv2.LINE_AA)
         for event in _milestones(self.record):
             shade = trial_trace.MESSAGE if isinstance(event, Sent) else trial_trace.seat_colour(event.seat)
             shade = shade if event.tick <= tick else "#b9bec6"
-            cv2.circle(frame, (across(event.tick), y), 8, bgr(_PAPER)[::-1], -1, cv2.LINE_AA)
-            cv2.circle(frame, (across(event.tick), y), 6, bgr(shade)[::-1], -1, cv2.LINE_AA)
+            cv2.circle(frame, (across(event.tick), y), 8, bgr(_PAPER), -1, cv2.LINE_AA)
+            cv2.circle(frame, (across(event.tick), y), 6, bgr(shade), -1, cv2.LINE_AA)
 
 
 def _play(session: Session, watch: Callable[[Any], Any]) -> TrialRecord:
@@ -341,40 +342,20 @@ def _smaller(picture: Any, times: int) -> Any:
 
 def _frame(frame: Any, box: tuple[int, int, int, int], shade: str) -> None:
     left, top, wide, high = box
-    cv2.rectangle(frame, (left, top), (left + wide - 1, top + high - 1), bgr(shade)[::-1], 2)
+    cv2.rectangle(frame, (left, top), (left + wide - 1, top + high - 1), bgr(shade), 2)
 
 
 def _label(frame: Any, words: str, at: tuple[int, int], shade: str, side: str = "middle") -> None:
     """Write white words on a field of a colour, whose upper left end, middle or right end is at a place."""
-    inked = _lettered(words, _SMALL_PT, _PAPER)
-    high, wide = inked.shape[0] + 2, inked.shape[1] + 10
+    wide = frame_words.words_width(words, _SMALL_PT) + 10
     left = min(max(at[0] - {"left": 0, "middle": wide // 2, "right": wide}[side], 0), frame.shape[1] - wide)
-    top = min(max(at[1], 0), frame.shape[0] - high)
-    cv2.rectangle(frame, (left, top), (left + wide - 1, top + high - 1), bgr(shade)[::-1], -1)
-    _paste(frame, inked, left + 5, top + 1)
+    top = min(max(at[1], 0), frame.shape[0] - _LABEL_PX)
+    cv2.rectangle(frame, (left, top), (left + wide - 1, top + _LABEL_PX - 1), bgr(shade), -1)
+    _write(frame, words, (left + 5, top + _LABEL_PX // 2), _SMALL_PT, _PAPER)
 
 
 def _write(frame: Any, words: str, at: tuple[int, int], size: float, shade: str, side: str = "left") -> None:
-    """Write words whose left end, middle or right end is at a column, centred on a row."""
-    inked = _lettered(words, size, shade)
-    left = at[0] - {"left": 0, "middle": inked.shape[1] // 2, "right": inked.shape[1]}[side]
-    _paste(frame, inked, left, at[1] - inked.shape[0] // 2)
-
-
-def _paste(frame: Any, inked: Any, left: int, top: int) -> None:
-    part = frame[top : top + inked.shape[0], left : left + inked.shape[1]]
-    cover = inked[: part.shape[0], : part.shape[1]]
-    alpha = cover[:, :, 3:].astype(np.float32) / 255.0
-    part[:] = np.round(part * (1.0 - alpha) + cover[:, :, :3] * alpha).astype(np.uint8)
-
-
-@functools.lru_cache(maxsize=512)
-@lettering.plain_lettering()
-def _lettered(words: str, size: float, shade: str) -> Any:
-    """A line of words as (H, W, 4) uint8."""
-    wide = 1.03 * text_fit.text_width(words, size, bold=True) + 0.02
-    sheet = Figure(figsize=(wide, 1.5 * size / 72.0), dpi=_DPI, facecolor="none")
-    sheet.text(0.0, 0.5, words, fontsize=size, color=shade, weight="bold", va="center_baseline")
-    canvas = FigureCanvasAgg(sheet)
-    canvas.draw()
-    return np.asarray(canvas.buffer_rgba()).copy()
+    """Write words whose left or right end is at a column; the middle of their capitals is at a row."""
+    left = at[0] - {"left": 0, "right": frame_words.words_width(words, size)}[side]
+    baseline = at[1] + round(_CAPITAL * size / 72.0 * frame_words.DPI / 2)
+    frame_words.write_words(frame, words, (left, baseline), shade, size=size)

@@ -79,10 +79,8 @@ def no_workers() -> Iterator[None]:
     """Sessions of evaluations are run in this process, which saves starting others."""
     import eval_fakes
 
-    from hthor.eval.runner import engines
-
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(engines, "find_engine", lambda *_, **__: eval_fakes.Here())
+        eval_fakes.play_here(patch)
         yield
 
 

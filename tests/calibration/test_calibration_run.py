@@ -23,7 +23,7 @@ from hthor.cli import app
 from hthor.errors import HthorError, MissingExtra, RunError, UnknownName
 from hthor.eval.config import robot_team
 from hthor.eval.config.sessions import make_sessions
-from hthor.eval.runner import engines, progress
+from hthor.eval.runner import progress
 from hthor.eval.runner.trial_runner import TrialRunner
 from hthor.humans.population import parameter_registry, population_file
 from hthor.tasks.suite import make_suite
@@ -44,7 +44,7 @@ def _train(folder, count, jobs=1, suite=TINY):
 def trained(tmp_path_factory):
     folder = tmp_path_factory.mktemp("trained")
     with pytest.MonkeyPatch.context() as patch:  # in this process; that workers play the same has a test of its own
-        patch.setattr(engines, "find_engine", lambda *_, **__: eval_fakes.Here())
+        eval_fakes.play_here(patch)
         return folder, _train(folder, 3)
 
 

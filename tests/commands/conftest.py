@@ -12,7 +12,7 @@ import typer
 from command_line import Said
 
 from hthor import cli, tasks
-from hthor.eval.runner import engines, trial_runner
+from hthor.eval.runner import trial_runner
 
 _GET_COMMAND = functools.cache(typer.main.get_command)
 """Reading the signatures of all commands takes a tenth of a second, which a process pays once."""
@@ -25,7 +25,7 @@ def say(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> 
     monkeypatch.delenv("FORCE_COLOR", raising=False)
     monkeypatch.setenv("_TYPER_FORCE_DISABLE_TERMINAL", "1")  # the command sets it; this takes it back afterwards
     monkeypatch.setattr(typer.main, "get_command", _GET_COMMAND)
-    monkeypatch.setattr(engines, "find_engine", lambda *_, **__: fakes.Here())
+    fakes.play_here(monkeypatch)
 
     def run(*words: object) -> Said:
         monkeypatch.setattr(sys, "argv", ["hthor", *map(str, words)])

@@ -28,7 +28,7 @@ from hthor import guest
 from hthor.cli import app
 from hthor.errors import AgentError, HthorError, RunError
 from hthor.eval.config import robot_team
-from hthor.eval.runner import engines, trial_runner
+from hthor.eval.runner import trial_runner
 from hthor.guest import AgentInputs, Guest, GuestConfig, GuestFault, IsolationError
 from hthor.guest.agent import agent_files, manifest
 from hthor.guest.agent import inputs as giving
@@ -429,7 +429,7 @@ def evaluate(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., A
     """`hthor eval` with real agents, logs and results, in a world without an engine."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(trial_runner, "TrialRunner", Quick)
-    monkeypatch.setattr(engines, "find_engine", lambda *_, **__: eval_fakes.Here())
+    eval_fakes.play_here(monkeypatch)
 
     def run(*words: str) -> Any:
         fixed = ["--kind", "object_goal_navigation", "--limit", "3", "--participants", "2", "--isolation", "L1"]

@@ -155,7 +155,7 @@ def test_a_run_that_lacks_trials_does_not_keep_others_from_being_played(tmp_path
     real = tasks.load_suite
     monkeypatch.setattr(tasks, "load_suite", lambda name: fakes.suite(20) if name == "fake" else real(name))
     monkeypatch.setattr(trial_runner, "make_runner", fakes.lonely_player)
-    monkeypatch.setattr(engines, "find_engine", lambda *_, **__: fakes.Here())
+    fakes.play_here(monkeypatch)
     options = run_options.RunOptions(agents=("none", "frontier"), suite="fake", jobs=1, out=tmp_path)
     with pytest.raises(collector.InternalFailure, match=r"session 1: ZeroDivisionError.* 10 of 20 trials are missing"):
         list(experiment.run_experiment(options, lambda _: progress.Silent()))
