@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import ast
+import cProfile
 import random
 import shutil
-import sys
 from pathlib import Path
-from types import FrameType
 from typing import Any
 
 import pytest
@@ -263,17 +262,10 @@ def test_everything_that_a_trial_runs_counts(sources: Sources, suite: str, agent
 
 def _called(act: Any) -> set[str]:
     """Names of our modules of which a function is called; a module's own first run does not count."""
-    files: set[str] = set()
-
-    def note(frame: FrameType, event: str, _: object) -> None:
-        if event == "call" and frame.f_code.co_name != "<module>":
-            files.add(frame.f_code.co_filename)
-
-    sys.setprofile(note)
-    try:
-        act()
-    finally:
-        sys.setprofile(None)
+    profile = cProfile.Profile(builtins=False)
+    profile.runcall(act)
+    codes = [entry.code for entry in profile.getstats()]
+    files = {code.co_filename for code in codes if not isinstance(code, str) and code.co_name != "<module>"}
     paths = [Path(file) for file in files if Path(file).is_relative_to(code_identity.PACKAGE)]
     parts = [path.relative_to(code_identity.PACKAGE.parent).with_suffix("").parts for path in paths]
     return {".".join(one[:-1] if one[-1] == "__init__" else one) for one in parts}

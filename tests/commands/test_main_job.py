@@ -42,10 +42,10 @@ from hthor.types import HUMAN
 HOUSES = ("alder", "elder")
 """The smoke suite's tasks in these are enough here; `test_eval_session` deals the whole suite."""
 FOLDER = Path(tempfile.mkdtemp(prefix="hthor-tests-"))
-SUITE = FOLDER / "brief.json"
+SUITE, FEW_TASKS = FOLDER / "brief.json", FOLDER / "few.json"
 EVAL = ("eval", "--agent", "frontier", "--humans", "proxy", "--suite", str(SUITE), "--participants", "2", "--quiet")
 EVAL += ("--no-control",)
-TRIALS = 12
+TRIALS, FEW = 12, 3
 
 
 pytestmark = pytest.mark.usefixtures("shared_worlds")
@@ -53,10 +53,12 @@ pytestmark = pytest.mark.usefixtures("shared_worlds")
 
 @pytest.fixture(scope="module", autouse=True)
 def brief() -> Iterator[tasks.Suite]:
-    """A suite of a few houses' tasks, and its file."""
+    """A suite of a few houses' tasks, and its file; a file of a few of those in the smallest."""
     chosen = tuple(task for task in tasks.load_suite("smoke").tasks if task.house in HOUSES)
     suite = make_suite("brief", 1, chosen)
     SUITE.write_bytes(encode_suite(suite))
+    few = tuple(task for task in chosen if task.house == HOUSES[1])[:FEW]
+    FEW_TASKS.write_bytes(encode_suite(make_suite("few", 1, few)))
     yield suite
     shutil.rmtree(FOLDER)
 
@@ -244,13 +246,13 @@ def test_a_new_agent_works_unedited_from_anywhere_beside_one_that_fails(
     assert say("agent", "new", "far/mine.py").code == 0
     written(tmp_path, act="assert observation.tick < 100, 'tired'")
     agents = ("--agent", "far/mine.py", "--agent", "agent.py")
-    done = say("eval", *agents, "--suite", SUITE, "--participants", "1", "--json")
+    done = say("eval", *agents, "--suite", FEW_TASKS, "--participants", "1", "--json")
     assert done.code == 3, done.err
     mine, tired = (one["result"] for one in json.loads(done.out)["runs"])
-    assert (mine["counts"]["trials"], mine["counts"]["faults"]) == (TRIALS // 2, 0)
-    assert (tired["counts"]["trials"], tired["counts"]["faults"] > 2) == (TRIALS // 2, True)
+    assert (mine["counts"]["trials"], mine["counts"]["faults"]) == (FEW, 0)
+    assert (tired["counts"]["trials"], tired["counts"]["faults"] > 1) == (FEW, True)
     assert mine["isolation"]["level"] == tired["isolation"]["level"] == guest.in_force().level
-    assert f"failed in {tired['counts']['faults']} of {TRIALS // 2} trials" in done.err
+    assert f"failed in {tired['counts']['faults']} of {FEW} trials" in done.err
     assert "after 10.0 s: raised: AssertionError: tired" in done.err
     assert 'File "agent.py", line' in done.err, "the agent's own frames, and none of ours"
     assert "hthor/" not in done.err.partition("Traceback")[2].partition("see:")[0]
@@ -261,7 +263,7 @@ def test_a_new_agent_works_unedited_from_anywhere_beside_one_that_fails(
     assert (rerun["same"], rerun["changed"]) == (True, False)
     assert rerun["left"]["failures"][0]["detail"].endswith("AssertionError: tired\n")
     assert rerun["left"]["failures"][0]["looks"][-1]["action"] is None
-    folder = next((tmp_path / "runs").glob("mine-brief-*"))
+    folder = next((tmp_path / "runs").glob("mine-few-*"))
     assert json.loads((folder / "result.json").read_bytes()) == mine
 
 
@@ -280,9 +282,9 @@ def played(agent: str, count: int = 2) -> list[TrialRecord]:
 
 
 def test_the_example_works(root: Path):
-    records = played(str(root / "examples" / "sweeper.py"))
-    assert not any(record.faults for record in records)
-    assert all(len(set(record.paths["robot"])) > 10 for record in records), "it goes places"
+    (record,) = played(str(root / "examples" / "sweeper.py"), 1)
+    assert not record.faults
+    assert len(set(record.paths["robot"])) > 10, "it goes places"
 
 
 AGENT = """
@@ -306,7 +308,7 @@ HARMLESS = {
 FAULTY = {
     "raises in begin": ({"begin": "raise ValueError('no begin')"}, "raised", "ValueError: no begin"),
     "raises in act": ({"act": "raise KeyError('x')"}, "raised", "KeyError: 'x'"),
-    "hangs": ({"act": "while True: pass"}, "timeout", "gave no answer within 0.5 s"),
+    "hangs": ({"act": "while True: pass"}, "timeout", "gave no answer within 0.2 s"),
     "exits": ({"act": "sys.exit(3)"}, "raised", "SystemExit: 3"),
     "kills itself": ({"act": "os.kill(os.getpid(), 9)"}, "raised", "PermissionError"),
     "aborts": ({"act": "os.abort()"}, "died", "SIGABRT"),
@@ -320,6 +322,10 @@ FAULTY = {
     "gives NaN": ({"act": "return Action(motion=Move(forward=math.nan))"}, "not_finite", "Move.forward"),
     "wants all memory": ({"act": "bytearray(1 << 62)"}, "raised", "MemoryError"),
 }
+
+
+TELLING = ("raises in begin", "hangs", "aborts", "gives NaN")
+"""One for each way that a fault takes to the umpire. Every commit has these; `test_guest` has all misdeeds."""
 
 
 def written(folder: Path, **bodies: str) -> str:
@@ -354,11 +360,14 @@ def test_a_robot_that_does_nothing_is_as_no_robot_until_its_body_is_in_the_way(i
         assert not any(event.kind in ("sent", "fault") for event in idle.events)
 
 
-@pytest.mark.parametrize("name", FAULTY)
+@pytest.mark.parametrize(
+    "name", [name if name in TELLING else pytest.param(name, marks=pytest.mark.nightly) for name in FAULTY]
+)
 def test_a_failing_agent_leaves_the_person_alone(
     name: str, tmp_path: Path, idle_robot: list[TrialRecord], monkeypatch: pytest.MonkeyPatch
 ):
-    monkeypatch.setattr(guest, "Guest", functools.partial(guest.Guest, step_s=0.5, bank_s=0.0))
+    if name == "hangs":
+        monkeypatch.setattr(guest, "Guest", functools.partial(guest.Guest, step_s=0.2, bank_s=0.0))
     bodies, kind, told = FAULTY[name]
     records = played(written(tmp_path, **bodies))
     assert len(records) == 2, "the next trial is played all the same"
@@ -511,8 +520,9 @@ def test_leaderboard(board: Path, reference: Path, brief: tasks.Suite, say: Call
     whole = json.loads((reference / "result.json").read_bytes())["metrics"]
     assert metrics == {name: whole[name] for name in metrics}
 
-    verify = ("leaderboard", "verify", entry, "--suite", SUITE, "--draw", "0123abcd", "--json", "--fresh", "0")
-    said = say(*verify, "--sample", "3", "--by", "a test", "--date", "2027-01-01", "--write")
+    verify = ("leaderboard", "verify", entry, "--suite", SUITE, "--sample", "3", "--draw", "0123abcd", "--json")
+    verify += ("--fresh", "0")
+    said = say(*verify, "--by", "a test", "--date", "2027-01-01", "--write")
     assert said.code == 0, said.err
     found = json.loads(said.out)
     for part in (found["trials"], found["control"]):
@@ -538,10 +548,9 @@ def test_leaderboard(board: Path, reference: Path, brief: tasks.Suite, say: Call
     )
     files.write_document(alone, worse)
     files.write_document(entry, msgspec.structs.replace(true, uplift=uplift))
-    said = say(*verify)
+    said = say(*verify, "--write")
     parts = json.loads(said.out)
     assert (said.code, parts["trials"]["passed"], parts["control"]["passed"]) == (5, True, False)
-    assert say(*verify, "--write").code == 5
     listed = json.loads((here / "leaderboard.json").read_bytes())
     assert [one["id"] for one in listed["refuted"]] == [control.id], "it is the control that does not stand"
     (row,) = [row for section in listed["sections"] for row in section["rows"]]
