@@ -28,7 +28,8 @@ print(dm.Physics.from_xml_string('{BALL}').render(48, 64).sum())
 NICE = """
 import world_house
 from hthor.world import World
-print(World(world_house.house()).human.rgb((8, 8), profile="nice").shape)
+world = globals().get("world") or World(world_house.house())
+print(world.human.rgb((8, 8), profile="nice").shape)
 """
 SUPPORT = Path(__file__).parents[2] / "support"
 OURS = "import hthor.world.world"
