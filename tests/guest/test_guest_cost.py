@@ -8,8 +8,7 @@ from pathlib import Path
 import levels
 import pytest
 
-from hthor import guest
-from hthor.guest import Guest, GuestConfig, GuestPool, IsolationError
+from hthor.guest import Guest, GuestConfig, GuestPool
 from hthor.guest.process_tools import resource_usage
 from tests.support.guest_agents import BRIEFING, look
 
@@ -34,10 +33,7 @@ def spent() -> float:
 
 @pytest.mark.parametrize("level", levels.EVERY)
 def test_the_processor_time_of_guests_is_counted_once(level: str, tmp_path: Path) -> None:
-    try:
-        guest.in_force(level)
-    except IsolationError as error:
-        pytest.skip(str(error))
+    levels.need(level)
     path = tmp_path / "burns.py"
     path.write_text(BURNS)
     with Guest(path, config=GuestConfig(isolation=level)) as mind:

@@ -14,7 +14,7 @@ from msgspec import structs
 
 from hthor import guest
 from hthor.errors import AgentError, UnknownName
-from hthor.guest import Guest, GuestConfig, GuestFault, IsolationError, load_info
+from hthor.guest import Guest, GuestConfig, GuestFault, load_info
 from hthor.guest.agent import manifest, reference
 from hthor.guest.confinement import paths
 from hthor.guest.protocol import wire
@@ -62,10 +62,7 @@ class Walled(Sensors):
 
 
 def at(level: str) -> str:
-    try:
-        guest.in_force(level)
-    except IsolationError as error:
-        pytest.skip(str(error))
+    levels.need(level)
     return level
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import importlib.util
 import json
 import os
@@ -29,7 +30,7 @@ from hthor.cli import app
 from hthor.errors import AgentError, HthorError, RunError
 from hthor.eval.config import robot_team
 from hthor.eval.runner import trial_runner
-from hthor.guest import AgentInputs, Guest, GuestConfig, GuestFault, IsolationError
+from hthor.guest import AgentInputs, Guest, GuestConfig, GuestFault
 from hthor.guest.agent import agent_files, manifest
 from hthor.guest.agent import inputs as giving
 from hthor.guest.agent.agent_paths import AgentPaths
@@ -55,14 +56,6 @@ def names(agent: Path | str, config: GuestConfig | None = None) -> list[str]:
     made = robot_team.load_agent_info(str(agent), config).manifest
     assert made is not None
     return [file.path for file in made.files]
-
-
-def at(level: str) -> str:
-    try:
-        guest.in_force(level)
-    except IsolationError as error:
-        pytest.skip(str(error))
-    return level
 
 
 WEIGHTS = "name = 'net' + '-' + 'big.txt'\nassert open(HERE / 'weights' / name).read()"
@@ -135,7 +128,7 @@ def test_an_agent_is_the_same_wherever_it_lies_and_whatever_holds_it(tmp_path: P
     (tmp_path / "a" / "weights" / "net-big.txt").write_text("1")
     path = write(tmp_path / "a", WEIGHTS, top="import helper")
     found = []
-    for level in ("L1", at("L2")):
+    for level in ("L1", levels.need("L2")):
         found.append(robot_team.load_agent_info(str(path), GuestConfig(isolation=level)).manifest)
     (tmp_path / "a").rename(tmp_path / "elsewhere")
     found.append(robot_team.load_agent_info(str(tmp_path / "elsewhere" / "agent.py")).manifest)
@@ -166,7 +159,7 @@ def test_compiled_files_beside_an_agent_are_never_run(tmp_path: Path) -> None:
         py_compile.compile(str(source), invalidation_mode=py_compile.PycInvalidationMode.UNCHECKED_HASH, doraise=True)
         source.write_text(honest)
         assert Path(importlib.util.cache_from_source(str(source))).exists()
-    for level in ("L1", at("L2")):
+    for level in ("L1", levels.need("L2")):
         with Guest(path, config=GuestConfig(isolation=level)) as mind:
             mind.begin(BRIEFING)
             action = mind.act(look())
@@ -264,7 +257,7 @@ def taking(tmp_path: Path) -> Path:
 
 @pytest.mark.parametrize("level", levels.EVERY)
 def test_arguments_reach_the_constructor_and_a_file_among_them_is_readable(taking: Path, level: str) -> None:
-    at(level)
+    levels.need(level)
     out = taking.parents[1] / "out" / "net.txt"
     given = giving.parse_inputs([f"checkpoint={out}", "speed=0.25", "loud=yes"])
     with Guest(taking, config=GuestConfig(isolation=level, inputs=given)) as mind:
@@ -330,7 +323,7 @@ def test_a_command_gets_arguments_as_words(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("level", levels.EVERY)
 def test_what_isolation_hides_is_named_and_readable_shows_it(tmp_path: Path, level: str) -> None:
-    at(level)
+    levels.need(level)
     (tmp_path / "out" / "old").mkdir(parents=True)
     (tmp_path / "out" / "net.txt").write_text("0.25")
     (tmp_path / "out" / "old" / "run.json").write_text(json.dumps({"schema": "hthor.run/4"}))
@@ -422,6 +415,10 @@ def test_what_no_source_names_can_be_made_part_of_an_agent(tmp_path: Path) -> No
     assert names(path, config) == ["agent.py", "w/net.bin"]
 
 
+in_force = functools.cache(guest.in_force)
+"""Each command asks this by starting a guest; here the first answer counts for all."""
+
+
 class Quick(trial_runner.TrialRunner):
     """Trials of some dozen ticks in a world without an engine."""
 
@@ -438,6 +435,7 @@ def evaluate(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., A
     """`hthor eval` with real agents, logs and results, in a world without an engine."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(trial_runner, "TrialRunner", Quick)
+    monkeypatch.setattr(guest, "in_force", in_force)
     eval_fakes.play_here(monkeypatch)
 
     def run(*words: str) -> Any:

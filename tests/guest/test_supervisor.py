@@ -9,10 +9,9 @@ import sys
 import tempfile
 from pathlib import Path
 
+import levels
 import pytest
 
-from hthor import guest
-from hthor.guest import IsolationError
 from hthor.guest.supervisor import preloading
 from tests.redteam.nobody import ROOT, runner
 from tests.support.guest_agents import HEAD, PROCESS_CHAINS, agent, process_chain, start_trial
@@ -49,10 +48,7 @@ print(json.dumps(done))
 
 
 def test_what_imports_libraries_for_an_agent_can_do_little_else() -> None:
-    try:
-        guest.in_force("L2")
-    except IsolationError as error:
-        pytest.skip(str(error))
+    levels.need("L2")
     python, how = runner()
     with tempfile.TemporaryDirectory() as folder:
         if "user" in how:
@@ -67,10 +63,7 @@ def test_what_imports_libraries_for_an_agent_can_do_little_else() -> None:
 
 @pytest.mark.parametrize("level", ["L2", pytest.param("L3", marks=PROCESS_CHAINS[2].marks)])  # type: ignore[union-attr]
 def test_the_supervisor_of_a_guest_is_confined(level: str, tmp_path: Path) -> None:
-    try:
-        guest.in_force(level)
-    except IsolationError as error:
-        pytest.skip(str(error))
+    levels.need(level)
     with start_trial(tmp_path / "agent.py", level) as mind:
         supervisor = process_chain(mind.pid)[-2]
         status = Path(f"/proc/{supervisor}/status").read_text()

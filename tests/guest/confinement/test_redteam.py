@@ -12,10 +12,10 @@ import time
 from pathlib import Path
 from typing import Any
 
+import levels
 import pytest
 
-from hthor import guest
-from hthor.guest import Guest, GuestConfig, IsolationError
+from hthor.guest import Guest, GuestConfig
 from hthor.guest.process_tools import cleanup
 from tests.redteam import nobody
 from tests.redteam.agents import HONEST, HOSTILE, NO_FAULT, PIPE, Case
@@ -39,10 +39,7 @@ def cases(every: tuple[Case, ...]) -> list[Any]:
 @functools.cache
 def played(level: str, nightly: bool) -> dict[str, Any]:
     """What became of the agents of every commit, or of all others, at a level."""
-    try:
-        guest.in_force(level)
-    except IsolationError as error:
-        pytest.skip(str(error))
+    levels.need(level)
     python, how = runner()
     names = [case.name for case in (*HOSTILE, *HONEST) if (case.name not in EVERY_COMMIT) == nightly]
     words = [*python, "-P", "-m", "tests.redteam.play", level, *names]
@@ -149,10 +146,7 @@ class Agent:
 
 @pytest.mark.parametrize("level", ["L1", "L2", "L3"])
 def test_nothing_outlives_a_killed_host(level: str, tmp_path: Path) -> None:
-    try:
-        guest.in_force(level)
-    except IsolationError as error:
-        pytest.skip(str(error))
+    levels.need(level)
     path = tmp_path / "daemon.py"
     path.write_text(DAEMON)
     env = {**os.environ, "PYTHONPATH": str(ROOT)}
@@ -213,10 +207,7 @@ class Agent:
 
 @pytest.mark.parametrize("level", ["L2", "L3"])
 def test_a_trial_leaves_nothing_to_the_next(level: str, tmp_path: Path) -> None:
-    try:
-        guest.in_force(level)
-    except IsolationError as error:
-        pytest.skip(str(error))
+    levels.need(level)
     path = tmp_path / "leaky.py"
     path.write_text(LEAK)
     with Guest(path, config=GuestConfig(isolation=level)) as mind:
@@ -248,10 +239,7 @@ class Agent:
 
 @pytest.mark.parametrize("level", ["L1", "L2", "L3"])
 def test_the_next_trial_finds_the_wire_as_it_was(level: str, tmp_path: Path) -> None:
-    try:
-        guest.in_force(level)
-    except IsolationError as error:
-        pytest.skip(str(error))
+    levels.need(level)
     path = tmp_path / "late.py"
     path.write_text(HALF_SAID.replace("{pipe}", PIPE))
     with Guest(path, config=GuestConfig(isolation=level)) as mind:
