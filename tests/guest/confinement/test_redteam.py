@@ -29,19 +29,33 @@ EVERY_COMMIT = (
     *("numpy", "threads", "own_files", "processes_by_the_book"),
 )
 """The agents that every commit is tried with, some of each sort; all others are for the night."""
+IN_NAMESPACES = (
+    *("houses", "parents_memory", "tcp", "kill_the_harness", "daemon", "memory", "disk", "network_socket_pair"),
+    *("the_shared_frames", "malformed", "numpy", "processes_by_the_book"),
+)
+"""Those of them that every commit tries at L3 too, which is L2 in namespaces: files, processes, network and limits."""
 
 
-def cases(every: tuple[Case, ...]) -> list[Any]:
-    """The cases as parameters."""
-    return [case if case.name in EVERY_COMMIT else pytest.param(case, marks=pytest.mark.nightly) for case in every]
+def at_night(level: str, case: Case) -> bool:
+    return case.name not in (IN_NAMESPACES if level == "L3" else EVERY_COMMIT)
+
+
+def cases(every: tuple[Case, ...], *at: str) -> list[Any]:
+    """The cases at these levels, as parameters."""
+    return [
+        pytest.param(level, case, marks=pytest.mark.nightly if at_night(level, case) else (), id=f"{level}-{case.name}")
+        for level in at
+        for case in every
+    ]
 
 
 @functools.cache
 def played(level: str, nightly: bool) -> dict[str, Any]:
-    """What became of the agents of every commit, or of all others, at a level."""
+    """What became of the agents of every commit, or of all others, at a level; at L1 only honest ones are played."""
     levels.need(level)
     python, how = runner()
-    names = [case.name for case in (*HOSTILE, *HONEST) if (case.name not in EVERY_COMMIT) == nightly]
+    every = HONEST if level == "L1" else (*HOSTILE, *HONEST)
+    names = [case.name for case in every if at_night(level, case) == nightly]
     words = [*python, "-P", "-m", "tests.redteam.play", level, *names]
     done = subprocess.run(words, capture_output=True, text=True, **how)
     assert done.returncode == 0, done.stderr
@@ -49,12 +63,11 @@ def played(level: str, nightly: bool) -> dict[str, Any]:
 
 
 def of(level: str, case: Case) -> dict[str, Any]:
-    agents = played(level, case.name not in EVERY_COMMIT)["agents"]
+    agents = played(level, at_night(level, case))["agents"]
     return next(one for one in agents if one["name"] == case.name)  # type: ignore[no-any-return]
 
 
-@pytest.mark.parametrize("case", cases(HOSTILE), ids=lambda case: case.name)
-@pytest.mark.parametrize("level", ["L2", "L3"])
+@pytest.mark.parametrize(("level", "case"), cases(HOSTILE, "L2", "L3"))
 def test_a_hostile_agent_comes_to_nothing(level: str, case: Case) -> None:
     one = of(level, case)
     assert one["level"] == level
@@ -63,22 +76,13 @@ def test_a_hostile_agent_comes_to_nothing(level: str, case: Case) -> None:
     assert case.told in one["fault"]["detail"], one
     assert not one["changed"], "its own folder is as it was"
     assert one["again"] == "", "the next trial is played"
-    assert played(level, case.name not in EVERY_COMMIT)["intact"]
+    assert played(level, at_night(level, case))["intact"]
 
 
-@pytest.mark.parametrize("case", cases(HONEST), ids=lambda case: case.name)
-@pytest.mark.parametrize("level", ["L1", "L2", "L3"])
-def test_an_honest_agent_passes(level: str, case: Case, tmp_path: Path) -> None:
-    one = of(level, case) if level != "L1" else _alone(case, tmp_path)
+@pytest.mark.parametrize(("level", "case"), cases(HONEST, "L1", "L2", "L3"))
+def test_an_honest_agent_passes(level: str, case: Case) -> None:
+    one = of(level, case)
     assert one["fault"]["kind"] == "", one
-
-
-def _alone(case: Case, folder: Path) -> dict[str, Any]:
-    python, how = runner()
-    words = [*python, "-P", "-m", "tests.redteam.play", "L1", case.name]
-    done = subprocess.run(words, capture_output=True, text=True, **how)
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)["agents"][0]  # type: ignore[no-any-return]
 
 
 SCORED = ("houses", "kill_the_harness", "malformed")
