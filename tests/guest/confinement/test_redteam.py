@@ -241,7 +241,7 @@ class Agent:
 """
 
 
-@pytest.mark.parametrize("level", ["L1", "L2", "L3"])
+@pytest.mark.parametrize("level", levels.EVERY)
 def test_the_next_trial_finds_the_wire_as_it_was(level: str, tmp_path: Path) -> None:
     levels.need(level)
     path = tmp_path / "late.py"
