@@ -13,6 +13,8 @@ import pytest
 
 from hthor.errors import AgentError
 from hthor.guest import Guest, GuestFault, GuestPool, load_info
+from hthor.guest.host.trial_exchange import TrialExchange
+from hthor.guest.protocol import wire
 from hthor.types import (
     Action,
     Message,
@@ -173,6 +175,29 @@ def test_a_fault_does_not_tell_what_a_clock_said(started: Callable[..., Guest]) 
     assert fault.value.detail == "the agent gave no answer within 0.2 s and what was left of 0.4 s more"
 
 
+class Slow:
+    """Stands for the channel to an agent that takes so many seconds over each answer, on a clock of its own."""
+
+    def __init__(self, *takes: float) -> None:
+        self.takes, self.granted = list(takes), []  # type: list[float], list[float]
+
+    def send(self, message: object, seconds: float, allowed: str) -> float:
+        self.granted.append(seconds)
+        return seconds
+
+    def receive(self, seconds: float, allowed: str) -> tuple[object, float]:
+        return wire.Acted(action=Action()), seconds - self.takes.pop(0)
+
+
+def test_a_step_has_its_own_time_and_what_is_left_in_the_bank() -> None:
+    channel: Any = Slow(0.0, 2.0, 0.5, 1.25, 0.0)
+    exchange = TrialExchange(channel, step_s=0.5, bank_s=2.5, ahead=False, window=None)
+    for tick in range(5):
+        assert exchange.act(look(tick)) == Action()
+    assert channel.granted == [3.0, 3.0, 1.5, 1.5, 0.75]
+
+
+@pytest.mark.nightly
 def test_a_slow_step_is_paid_for_from_the_bank(started: Callable[..., Guest]) -> None:
     guest = started(agent("time.sleep(2.0 if observation.tick else 0)\nreturn Action()"), step_s=0.5, bank_s=2.5)
     assert [guest.act(look(tick)) for tick in (0, 1, 0)] == [Action()] * 3

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import struct
 import subprocess
 import sys
@@ -28,7 +29,13 @@ from hthor.guest.confinement import (
 
 def covered(path: Path, allowed: tuple[str, ...]) -> bool:
     """Whether a rule for one of these reaches a file."""
-    return any(path.resolve().is_relative_to(Path(one).resolve()) for one in allowed)
+    real = path.resolve()
+    return not {real, *real.parents}.isdisjoint(_resolved(allowed))
+
+
+@functools.cache
+def _resolved(allowed: tuple[str, ...]) -> frozenset[Path]:
+    return frozenset(Path(one).resolve() for one in allowed)
 
 
 @pytest.fixture
