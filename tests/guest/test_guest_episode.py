@@ -123,7 +123,7 @@ def clock_of(name: str) -> DecisionClock:
 
 def run(clock: DecisionClock, robots: dict[str, Any], world: Any = None) -> EpisodeLog:
     spec = trial("object_poses", "house_map")
-    spec = msgspec.structs.replace(spec, task=msgspec.structs.replace(TASK, time_limit=6.0 if world else 12.0))
+    spec = msgspec.structs.replace(spec, task=msgspec.structs.replace(TASK, time_limit=3.0 if world else 6.0))
     people = {"human": Mind(first_person), "human2": Mind(second_person)}
     return play(spec, world or Stage(), people, robots, clock)
 
