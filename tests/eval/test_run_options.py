@@ -13,7 +13,7 @@ import guest_agents
 import msgspec
 import pytest
 from command_line import run
-from eval_fakes import people, suite
+from eval_fakes import character, people, player, suite
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from typer.testing import CliRunner
@@ -121,7 +121,7 @@ class Agent:
         pass
 
     def act(self, observation):
-        time.sleep(0.6)
+        time.sleep(0.3)
         return Action()
 """
 
@@ -190,12 +190,17 @@ def test_a_run_keeps_the_name_that_it_began_with(tmp_path: Path) -> None:
 
 
 @pytest.fixture(scope="module")
-def shelf(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def shelf(tmp_path_factory: pytest.TempPathFactory, no_workers: None) -> Path:
     """A folder of runs: one that is whole, one with faults that was interrupted, and three that cannot be read."""
     folder = tmp_path_factory.mktemp("shelf")
     words = ("eval", "--suite", "fake", "--no-control", "--max-faults", "100%")
-    assert run(*words, "--agent", "helper", "--name", "good", "--out", str(folder / "whole"))[0] == 0
-    assert run(*words, "--agent", "clumsy", "--out", str(folder / "deep" / "half"))[0] == 0
+    load = tasks.load_suite
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(tasks, "load_suite", lambda word: suite(20) if word == "fake" else load(word))
+        patch.setattr(trial_runner, "make_runner", player)
+        patch.setattr(robot_team, "load_agent_info", lambda word, *_: character(word))
+        told(*words, "--agent", "helper", "--name", "good", "--out", str(folder / "whole"))
+        told(*words, "--agent", "clumsy", "--out", str(folder / "deep" / "half"))
     log = folder / "deep" / "half" / "trials.jsonl"
     log.write_bytes(b"".join(log.read_bytes().splitlines(keepends=True)[:12]))
     (folder / "deep" / "half" / "result.json").unlink()

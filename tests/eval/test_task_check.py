@@ -110,7 +110,7 @@ def test_workers_check_what_one_process_checks(task):
 # --------------------------------------------------------------------------------------------------------- the person
 
 
-@pytest.mark.parametrize("number", range(0, 12, 3))
+@pytest.mark.parametrize("number", [0, 3, *(pytest.param(n, marks=pytest.mark.nightly) for n in (6, 9))])
 def test_nobody_is_quicker_than_the_least_time_nor_than_their_pace(number):
     task = SMOKE.tasks[number]
     feat = omniscient_solver.solve(World(task.house), task)

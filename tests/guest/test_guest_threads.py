@@ -133,9 +133,18 @@ if sys.argv[3] == "killed":
 """
 
 
-@pytest.mark.parametrize("level", levels.EVERY)
-@pytest.mark.parametrize("how", ["killed", "done"])
-def test_it_ends_with_the_evaluation_though_a_thread_started_it(level: str, how: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("how", "level"),
+    [
+        ("done", "L1"),
+        ("killed", "L3"),
+        *(
+            pytest.param(*one, marks=pytest.mark.nightly)
+            for one in (("done", "L2"), ("done", "L3"), ("killed", "L1"), ("killed", "L2"))
+        ),
+    ],
+)
+def test_it_ends_with_the_evaluation_though_a_thread_started_it(how: str, level: str, tmp_path: Path) -> None:
     levels.need(level)
     path = tmp_path / "my_agent.py"
     path.write_text(HEAD + agent(SLEEPS))
