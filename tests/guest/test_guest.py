@@ -179,7 +179,8 @@ class Slow:
     """Stands for the channel to an agent that takes so many seconds over each answer, on a clock of its own."""
 
     def __init__(self, *takes: float) -> None:
-        self.takes, self.granted = list(takes), []  # type: list[float], list[float]
+        self.takes = list(takes)
+        self.granted: list[float] = []
 
     def send(self, message: object, seconds: float, allowed: str) -> float:
         self.granted.append(seconds)

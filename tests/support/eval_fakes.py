@@ -185,10 +185,12 @@ def forgetful_player() -> Callable[[Session], Iterator[TrialOutcome]]:
     return perform
 
 
-def slow_player(seconds: float = 0.05) -> Callable[[Session], Iterator[TrialOutcome]]:
+def slow_player(seconds: float = 0.05, first_s: float | None = None) -> Callable[[Session], Iterator[TrialOutcome]]:
+    """Takes so long over each trial, and as long as is said over the first one of a session."""
+
     def perform(session_: Session) -> Iterator[TrialOutcome]:
-        for played in player()(session_):
-            time.sleep(seconds)
+        for number, played in enumerate(player()(session_)):
+            time.sleep(seconds if number or first_s is None else first_s)
             yield played
 
     return perform
@@ -339,9 +341,9 @@ def play_here(patch: pytest.MonkeyPatch) -> None:
     patch.setattr(engines, "find_engine", lambda *_, **__: Here())
 
 
-def run_in(folder: Path, *, count: int = 60, jobs: int = 2, seconds: float = 0.02) -> None:
+def run_in(folder: Path, seconds: float = 0.02, first_s: float | None = None) -> None:
     """A whole run as a command does it."""
-    _evaluate(folder, count, functools.partial(slow_player, seconds), engines.find_engine("local", jobs=jobs))
+    _evaluate(folder, 60, functools.partial(slow_player, seconds, first_s), engines.find_engine("local", jobs=2))
 
 
 def guarded(folder: str, count: str) -> None:
@@ -382,7 +384,7 @@ if __name__ == "__main__":
         if sys.argv[1] in ("guarded", "hosted", "clustered"):
             getattr(eval_fakes, sys.argv[1])(*sys.argv[2:])
         else:
-            eval_fakes.run_in(Path(sys.argv[1]), seconds=float(sys.argv[2]) if sys.argv[2:] else 0.02)
+            eval_fakes.run_in(Path(sys.argv[1]), *map(float, sys.argv[2:]))
     except HthorError as error:
         sys.stderr.write(f"{error}\n")
         sys.exit(error.exit_code)

@@ -17,7 +17,7 @@ import pytest
 
 from hthor import rules, tasks
 from hthor.errors import KILLED, RunError
-from hthor.eval.records import session_restarts, trial_log
+from hthor.eval.records import session_restarts, trial_log, trial_record
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.results import aggregate, result_file
 from hthor.eval.results.result_file import RunResult
@@ -307,15 +307,15 @@ def test_what_does_not_repeat_itself_is_told(tmp_path: Path):
     assert "9 re-run trials differ from the log" in watch.notes[0]
 
 
-def _start(folder: Path, seconds: float = 0.02) -> subprocess.Popen[str]:
+def _start(folder: Path, *seconds: float) -> subprocess.Popen[str]:
+    """A run by two workers whose trials take so long, or the first of each session and all others."""
     script = str(Path(fakes.__file__).resolve())
-    words = [sys.executable, script, str(folder), str(seconds)]
+    words = [sys.executable, script, str(folder), *map(str, seconds)]
     return subprocess.Popen(words, stderr=subprocess.PIPE, text=True, start_new_session=True)
 
 
 def _played(folder: Path) -> int:
-    path = folder / "trials.jsonl"
-    return path.read_bytes().count(b"\n") if path.exists() else 0
+    return len(_whole_lines(folder))
 
 
 def _wait_for(folder: Path, trials: int) -> None:
@@ -323,6 +323,20 @@ def _wait_for(folder: Path, trials: int) -> None:
     while _played(folder) < trials:
         assert time.monotonic() < deadline, "the run does not get on"
         time.sleep(0.005)
+
+
+def _wait_for_both(folder: Path) -> None:
+    """Until both workers have played the first trial of their sessions."""
+    deadline = time.monotonic() + 60
+    while len({trial_record.decode(line).spec.session for line in _whole_lines(folder)}) < 2:
+        assert time.monotonic() < deadline, "the run does not get on"
+        time.sleep(0.005)
+
+
+def _whole_lines(folder: Path) -> list[bytes]:
+    path = folder / "trials.jsonl"
+    lines = path.read_bytes().splitlines(keepends=True) if path.exists() else []
+    return [line for line in lines if line.endswith(b"\n")]
 
 
 def _children(pid: int) -> list[int]:
@@ -356,8 +370,8 @@ def test_a_run_that_is_killed_again_and_again_ends_up_the_same(tmp_path: Path, r
 
 @pytest.mark.parametrize("number", [pytest.param(signal.SIGINT, marks=pytest.mark.nightly), signal.SIGTERM])
 def test_the_first_signal_lets_trials_come_to_their_end(tmp_path: Path, number: int):
-    with _start(tmp_path, 0.5) as process:
-        _wait_for(tmp_path, 2)
+    with _start(tmp_path, 0.5, 0.0) as process:
+        _wait_for_both(tmp_path)
         before = _played(tmp_path)
         os.killpg(process.pid, number)  # as a terminal and Slurm do: to the workers as well
         _, words = process.communicate(timeout=30)
@@ -368,8 +382,8 @@ def test_the_first_signal_lets_trials_come_to_their_end(tmp_path: Path, number: 
 
 
 def test_the_second_signal_ends_at_once(tmp_path: Path):
-    with _start(tmp_path, 1.5) as process:
-        _wait_for(tmp_path, 2)
+    with _start(tmp_path, 1.5, 0.0) as process:
+        _wait_for_both(tmp_path)
         before, began = _played(tmp_path), time.monotonic()
         os.killpg(process.pid, signal.SIGINT)
         time.sleep(0.2)
