@@ -11,6 +11,7 @@ from collections import defaultdict
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
+from typing import NamedTuple
 
 import grimp
 import pytest
@@ -98,41 +99,39 @@ def test_rooms_have_few_inner_arrows() -> None:
     assert sum(counts.values()) < MOST_ARROWS, counts
 
 
-def lengths(path: Path) -> list[int]:
-    """The lines of each function of a module."""
-    functions = (node for node in ast.walk(ast.parse(path.read_bytes())) if isinstance(node, ast.FunctionDef))
-    return [(node.end_lineno or 0) - node.lineno + 1 for node in functions]
+class Source(NamedTuple):
+    """What the laws below ask of a module."""
+
+    lengths: list[int]
+    """The lines of each function."""
+    texts: list[str]
+    """What is written for people: docstrings, other strings and comments."""
+    libraries: set[tuple[str, bool]]
+    """The libraries that it imports, by their names on PyPI, and whether it can be imported without them."""
 
 
-def test_the_median_function_is_short() -> None:
-    assert statistics.median(length for path in FILES for length in lengths(path)) < MEDIAN_FUNCTION
+@cache
+def sources() -> dict[Path, Source]:
+    return {path: read(path) for path in FILES}
 
 
-def texts(path: Path) -> Iterator[str]:
-    """What is written for people: the docstrings and other strings of a module, and its comments."""
-    source = path.read_text(encoding="utf-8")
-    for node in ast.walk(ast.parse(source)):
-        if isinstance(node, ast.Constant) and isinstance(node.value, str):
-            yield node.value
-    yield from re.findall(r"(?<!['\"])#[^'\"\n]*$", source, flags=re.MULTILINE)
+def read(path: Path) -> Source:
+    text = path.read_text(encoding="utf-8")
+    tree = ast.parse(text)
+    nodes = list(ast.walk(tree))
+    functions = (node for node in nodes if isinstance(node, ast.FunctionDef))
+    strings = [node.value for node in nodes if isinstance(node, ast.Constant) and isinstance(node.value, str)]
+    comments = re.findall(r"(?<!['\"])#[^'\"\n]*$", text, flags=re.MULTILINE)
+    return Source(
+        [(node.end_lineno or 0) - node.lineno + 1 for node in functions],
+        strings + comments,
+        set(libraries(tree, nodes)),
+    )
 
 
-def test_private_words_do_not_come_back() -> None:
-    pattern = re.compile(rf"\b({'|'.join(PRIVATE_WORDS)})\b", re.IGNORECASE)
-    found = [
-        f"{path.relative_to(PACKAGE)}: {match[0]}"
-        for path in FILES
-        for text in texts(path)
-        for match in pattern.finditer(" ".join(text.split()))
-    ]
-    assert not found
-
-
-def libraries(path: Path) -> Iterator[tuple[str, bool]]:
-    """The libraries that a module imports, by their names on PyPI, and whether it can be imported without them."""
-    tree = ast.parse(path.read_bytes())
+def libraries(tree: ast.Module, nodes: list[ast.AST]) -> Iterator[tuple[str, bool]]:
     first = {id(node) for node in tree.body}
-    for node in ast.walk(tree):
+    for node in nodes:
         if isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]
         elif isinstance(node, ast.ImportFrom):
@@ -143,10 +142,25 @@ def libraries(path: Path) -> Iterator[tuple[str, bool]]:
             yield DISTRIBUTIONS.get(name, name.replace("_", "-")), id(node) not in first
 
 
+def test_the_median_function_is_short() -> None:
+    assert statistics.median(length for one in sources().values() for length in one.lengths) < MEDIAN_FUNCTION
+
+
+def test_private_words_do_not_come_back() -> None:
+    pattern = re.compile(rf"\b({'|'.join(PRIVATE_WORDS)})\b", re.IGNORECASE)
+    found = [
+        f"{path.relative_to(PACKAGE)}: {match[0]}"
+        for path, one in sources().items()
+        for text in one.texts
+        for match in pattern.finditer(" ".join(text.split()))
+    ]
+    assert not found
+
+
 def test_every_imported_library_is_declared() -> None:
     project = tomllib.loads((PACKAGE.parent / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     core = {Requirement(line).name for line in project["dependencies"]}
     extras = {Requirement(line).name for lines in project["optional-dependencies"].values() for line in lines}
-    imported = {(path.relative_to(PACKAGE), *library) for path in FILES for library in libraries(path)}
+    imported = {(path.relative_to(PACKAGE), *library) for path, one in sources().items() for library in one.libraries}
     assert not {(path, name) for path, name, late in imported if name not in (core | extras if late else core)}
     assert not core - {name for _, name, _ in imported}, "declared and never imported"

@@ -18,15 +18,14 @@ from hthor.eval.metrics import trial_metrics
 from hthor.eval.records import trial_record
 from hthor.eval.runner import trial_runner
 
+pytestmark = pytest.mark.usefixtures("shared_worlds")
+
 _OWN = (("human model", "proxy"), ("agent", "frontier"), ("robot", "scout"))
 ROOTS = (
     *(trial_runner.__name__, trial_metrics.__name__, trial_record.__name__),
     *(plugins.module_name("metric", name) for name in plugins.names("metric")),
     *(plugins.module_name("task kind", name) for name in ("mobile_manipulation", "object_goal_navigation")),
-    *(
-        plugins.module_name(sort, name)
-        for sort, name in (("human model", "proxy"), ("agent", "frontier"), ("robot", "scout"))
-    ),
+    *(plugins.module_name(sort, name) for sort, name in _OWN),
 )
 
 
@@ -167,9 +166,10 @@ def _move(root: Path, old: str, new: str) -> None:
             path.write_text(ast.unparse(ast.fix_missing_locations(moved)), encoding="utf-8")
 
 
-def test_every_number_of_every_counted_module_counts(sources: Sources) -> None:
+@pytest.mark.parametrize("every", [4, pytest.param(1, marks=pytest.mark.nightly)])
+def test_every_number_of_every_counted_module_counts(sources: Sources, every: int) -> None:
     """One number changed in each module changes what that module says."""
-    for name in sources.closure(ROOTS):
+    for name in sorted(sources.closure(ROOTS))[::every]:
         text = text_of(sources, name)
         count = numbers(text)
         if count:
@@ -180,11 +180,12 @@ def test_every_number_of_every_counted_module_counts(sources: Sources) -> None:
             assert before.tokens != after.tokens or before.part != after.part, name
 
 
-def test_what_one_module_says_reaches_the_hash(sources: Sources, whole: str) -> None:
-    """Thirty mutations, drawn from all numbers of all counted modules."""
+@pytest.mark.parametrize("mutations", [8, pytest.param(30, marks=pytest.mark.nightly)])
+def test_what_one_module_says_reaches_the_hash(sources: Sources, whole: str, mutations: int) -> None:
+    """Mutations drawn from all numbers of all counted modules."""
     texts = {name: text_of(sources, name) for name in sources.closure(ROOTS)}
-    drawn = random.Random("thirty mutations").sample(
-        [(name, which) for name, text in texts.items() for which in range(numbers(text))], 30
+    drawn = random.Random("mutations").sample(
+        [(name, which) for name, text in texts.items() for which in range(numbers(text))], mutations
     )
     for name, which in drawn:
         assert edited(sources, {name: mutated(texts[name], which)}).sha256(ROOTS) != whole, (name, which)

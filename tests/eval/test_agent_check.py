@@ -12,8 +12,6 @@ import pytest
 from hthor import cli
 from hthor.errors import HthorError
 from hthor.eval.agent_check import checks
-from hthor.eval.runner import trial_runner
-from hthor.eval.runner.trial_runner import Sources
 
 pytestmark = pytest.mark.usefixtures("shared_worlds", "no_workers")
 
@@ -62,21 +60,6 @@ AGENTS = {
         {"loads": ("broken", "agent.py:4"), "acts": ("skipped", "")},
     ),
 }
-
-
-@pytest.fixture(scope="module", autouse=True)
-def one_world_for_all() -> Any:
-    """All checks are held in the same two houses."""
-    worlds: dict[object, Any] = {}
-    before = trial_runner.TrialRunner.__init__
-
-    def begin(self: trial_runner.TrialRunner, sources: Sources | None = None, pool: Any = None) -> None:
-        before(self, sources, pool)
-        self._worlds = worlds
-
-    trial_runner.TrialRunner.__init__ = begin  # type: ignore[method-assign]
-    yield
-    trial_runner.TrialRunner.__init__ = before  # type: ignore[method-assign]
 
 
 @pytest.fixture

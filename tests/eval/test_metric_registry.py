@@ -76,7 +76,7 @@ def _run(folder: Path, name: str, *, absent: bool = False) -> Path:
 
 
 def test_a_metric_is_added_by_one_file(tmp_path: Path) -> None:
-    ignored = shutil.ignore_patterns("__pycache__", "data", "unseen", "suites.json")
+    ignored = shutil.ignore_patterns("data", "unseen", "suites.json")
     shutil.copytree(code_identity.PACKAGE, tmp_path / "hthor", ignore=ignored)
     (tmp_path / "hthor" / "eval" / "metrics" / "definitions" / "gestures.py").write_text(ADDED)
     alone, helper = _run(tmp_path / "alone", "silent", absent=True), _run(tmp_path / "helper", "helper")

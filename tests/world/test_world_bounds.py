@@ -292,7 +292,7 @@ def test_going_to_an_object_is_ok_only_where_it_can_be_picked_up(world: World) -
     assert world.out_of_hand("human", "mug") == ""
 
 
-@pytest.mark.parametrize("body", ["human", "tender"])
+@pytest.mark.parametrize("body", ["human", pytest.param("tender", marks=pytest.mark.nightly)])
 def test_the_promise_holds_all_over_a_house(body: str) -> None:
     found = reaching.measure("hazel", body, Counter())
     assert found["went"] == found["picked"] >= 30

@@ -224,7 +224,9 @@ def test_what_could_not_lie_as_the_house_says_stays_like_furniture() -> None:
     assert state(world, "egg|1").position == pytest.approx((3.2, 0.42, 0.947))
 
 
-@pytest.mark.parametrize("scene", ["alder", "hazel", "rowan"])
+@pytest.mark.parametrize(
+    "scene", ["alder", *(pytest.param(name, marks=pytest.mark.nightly) for name in ("hazel", "rowan"))]
+)
 def test_a_robot_fetches_an_apple_into_the_fridge_by_motions_alone(scene: str) -> None:
     world = World(scene, robots=("tender", "puck"))
     tender, puck = world.robot, world.actor("robot2")

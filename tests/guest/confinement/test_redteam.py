@@ -22,22 +22,26 @@ from tests.redteam.agents import HONEST, HOSTILE, NO_FAULT, PIPE, Case
 from tests.redteam.nobody import ROOT, runner
 from tests.support.guest_agents import BRIEFING, look
 
-EVERY_COMMIT = (
-    *("houses", "salt_in_a_file", "parents_memory", "import_the_scores", "the_keepers_pipe", "change_modes", "tcp"),
-    *("kill_the_harness", "daemon", "exec", "old_machine_code", "memory", "disk", "change_itself", "crash"),
-    *("malformed", "patches_the_wire", "the_shared_frames", "network_socket_pair", "killed_by_a_limit"),
-    *("numpy", "threads", "own_files", "processes_by_the_book"),
-)
-"""The agents that every commit is tried with, some of each sort; all others are for the night."""
-IN_NAMESPACES = (
-    *("houses", "parents_memory", "tcp", "kill_the_harness", "daemon", "memory", "disk", "network_socket_pair"),
-    *("the_shared_frames", "malformed", "numpy", "processes_by_the_book"),
-)
-"""Those of them that every commit tries at L3 too, which is L2 in namespaces: files, processes, network and limits."""
+EVERY_COMMIT = {
+    "L1": ("numpy", "threads", "own_files", "processes_by_the_book"),
+    "L2": (
+        *("houses", "salt_in_a_file", "import_the_scores", "the_keepers_pipe", "change_modes", "exec"),
+        *("old_machine_code", "change_itself", "crash", "patches_the_wire", "killed_by_a_limit"),
+        *("numpy", "threads", "own_files"),
+    ),
+    "L3": (
+        *("houses", "parents_memory", "tcp", "kill_the_harness", "daemon", "memory", "disk", "network_socket_pair"),
+        *("the_shared_frames", "malformed", "numpy", "processes_by_the_book"),
+    ),
+}
+"""The agents that every commit is tried with at each level, some of each sort; all others are for the night.
+
+L3 is L2 in namespaces, so what reaches for files, processes, the network and limits is tried there.
+"""
 
 
 def at_night(level: str, case: Case) -> bool:
-    return case.name not in (IN_NAMESPACES if level == "L3" else EVERY_COMMIT)
+    return case.name not in EVERY_COMMIT[level]
 
 
 def cases(every: tuple[Case, ...], *at: str) -> list[Any]:
@@ -89,19 +93,14 @@ SCORED = ("houses", "kill_the_harness", "malformed")
 """A few of them in scored trials; `python -m benchmarks.redteam` plays all, every night."""
 
 
-@functools.cache
-def scored() -> dict[str, Any]:
-    done = nobody.scored("L2,L3", *SCORED)
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout)  # type: ignore[no-any-return]
-
-
-@pytest.mark.parametrize("level", ["L2", "L3"])
+@pytest.mark.parametrize("level", levels.CONFINED)
 def test_a_hostile_agents_trial_is_scored_with_a_named_fault(level: str) -> None:
-    found = scored()
-    if level in found["missing"]:
+    done = nobody.scored(level, *SCORED)
+    assert done.returncode == 0, done.stderr
+    found = json.loads(done.stdout)
+    if found["missing"]:  # that user may have less than we have
         pytest.skip(found["missing"][level])
-    idle, *agents = [one for one in found["agents"] if one["level"] == level]
+    idle, *agents = found["agents"]
     assert (idle["name"], idle["kind"], len(agents)) == ("nop", "", len(SCORED))
     cases = {case.name: case for case in HOSTILE}
     for one in agents:

@@ -75,6 +75,7 @@ def test_rendering_works_whichever_is_imported_first(parts: tuple[str, ...], imp
     assert run(*imports, *parts) == alone(*parts)
 
 
+@pytest.mark.nightly  # at each commit, the test above draws theirs beside our imports, and others draw ours
 def test_rendering_works_beside_pictures_of_our_own() -> None:
     theirs = alone(MUJOCO, DM_CONTROL)
     assert run(WORLD, NICE, MUJOCO, DM_CONTROL, NICE) == f"(8, 8, 3)\n{theirs}(8, 8, 3)\n"
