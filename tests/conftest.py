@@ -51,14 +51,15 @@ def samples() -> list[Path]:
 
 
 _WORLDS: dict[Any, Any] = {}
-_MOST_WORLDS = 12
+_MOST_WORLDS = 16
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="module", autouse=True)
 def shared_worlds() -> Iterator[None]:
     """Trials in this process share the worlds of the houses that ship with hthor: each takes a third of a second.
 
-    A trial does not depend on those before it in its world, which `test_real_episode` and the main job's tests show.
+    A trial does not depend on those before it in its world, which `test_real_episode`, where they share none, and the
+    main job's tests show.
     """
     from hthor.eval.runner.trial_runner import Sources, TrialRunner
 

@@ -18,8 +18,6 @@ from hthor.eval.metrics import trial_metrics
 from hthor.eval.records import trial_record
 from hthor.eval.runner import trial_runner
 
-pytestmark = pytest.mark.usefixtures("shared_worlds")
-
 _OWN = (("human model", "proxy"), ("agent", "frontier"), ("robot", "scout"))
 ROOTS = (
     *(trial_runner.__name__, trial_metrics.__name__, trial_record.__name__),

@@ -85,7 +85,6 @@ def test_habits_sum_up_all_trials() -> None:
     assert display_habits.display_habits(()).words == "Nobody answered a message."
 
 
-@pytest.mark.usefixtures("shared_worlds")
 @pytest.mark.parametrize("share", [*(pytest.param(share, marks=pytest.mark.nightly) for share in (0.0, 0.5)), 1.0])
 def test_logs_of_proxies_tell_how_often_they_walk_with_the_map_hidden(share: float) -> None:
     smoke = tasks.load_suite("smoke")

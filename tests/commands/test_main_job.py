@@ -48,9 +48,6 @@ EVAL += ("--no-control",)
 TRIALS, FEW = 12, 3
 
 
-pytestmark = pytest.mark.usefixtures("shared_worlds")
-
-
 @pytest.fixture(scope="module", autouse=True)
 def brief() -> Iterator[tasks.Suite]:
     """A suite of two houses' tasks, in a file; another file has a few tasks of the smaller house."""

@@ -16,6 +16,11 @@ from hthor.types import Action
 TRIALS = 3
 
 
+@pytest.fixture(scope="module", autouse=True)
+def shared_worlds() -> None:
+    """Here a runner of trials has worlds of its own."""
+
+
 @pytest.fixture(scope="module")
 def runner() -> TrialRunner:
     return TrialRunner()

@@ -13,7 +13,7 @@ from hthor import cli
 from hthor.errors import HthorError
 from hthor.eval.agent_check import checks
 
-pytestmark = pytest.mark.usefixtures("shared_worlds", "no_workers")
+pytestmark = pytest.mark.usefixtures("no_workers")
 
 HEAD = "import random, time\nfrom hthor.types import *\n"
 AGENTS = {

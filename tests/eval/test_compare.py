@@ -29,7 +29,7 @@ from hthor.eval.runner import progress, run
 from hthor.eval.statistics import power
 from hthor.report.terminal import result_tables
 
-pytestmark = pytest.mark.usefixtures("shared_worlds", "no_workers")
+pytestmark = pytest.mark.usefixtures("no_workers")
 
 
 def _run(folder: Path, name: str, *, absent: bool = False, seed: int = 0, make=fakes.player, count: int = 60) -> Path:

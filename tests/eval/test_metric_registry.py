@@ -21,7 +21,7 @@ from hthor.eval.records import trial_record
 from hthor.eval.results.result_file import RunResult, Scores
 from scripts import metrics_reference
 
-pytestmark = pytest.mark.usefixtures("shared_worlds", "no_workers")
+pytestmark = pytest.mark.usefixtures("no_workers")
 
 DOCS = Path(__file__).parents[2] / "docs" / "metrics.md"
 ADDED = '''

@@ -31,7 +31,7 @@ from hthor.tasks.suite import encode_suite, make_suite
 from hthor.types import HUMAN
 from hthor.types.events import Attempt
 
-pytestmark = pytest.mark.usefixtures("shared_worlds", "no_workers")
+pytestmark = pytest.mark.usefixtures("no_workers")
 
 HOUSE = "elder"
 PNG = b"\x89PNG\r\n"

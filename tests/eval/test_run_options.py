@@ -33,7 +33,7 @@ from hthor.guest import GuestFault
 from hthor.leaderboard.entries import overrides
 from hthor.types import Action
 
-pytestmark = pytest.mark.usefixtures("shared_worlds", "no_workers")
+pytestmark = pytest.mark.usefixtures("no_workers")
 
 SMOKE = tasks.load_suite("smoke").tasks
 

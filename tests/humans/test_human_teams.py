@@ -27,7 +27,7 @@ from hthor.tasks.suite import encode_suite, make_suite
 from hthor.types import HUMAN
 from hthor.types.events import Shown
 
-pytestmark = pytest.mark.usefixtures("shared_worlds", "no_workers")
+pytestmark = pytest.mark.usefixtures("no_workers")
 
 SECOND = "human2"
 

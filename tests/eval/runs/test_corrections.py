@@ -32,7 +32,7 @@ from hthor.leaderboard.entries.files import BoardError
 from hthor.report.analysis import load_runs, run_provenance
 from hthor.report.page import case_study
 
-pytestmark = pytest.mark.usefixtures("shared_worlds", "no_workers")
+pytestmark = pytest.mark.usefixtures("no_workers")
 
 COUNT = 20
 CABLE = "the headset's cable came loose"

@@ -25,7 +25,7 @@ from hthor.report.drawing import trial_figure
 from hthor.tasks.suite import encode_suite, make_suite
 from hthor.types import HUMAN
 
-pytestmark = pytest.mark.usefixtures("shared_worlds", "no_workers")
+pytestmark = pytest.mark.usefixtures("no_workers")
 
 HOUSE = "elder"
 GUEST = """

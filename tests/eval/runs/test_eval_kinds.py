@@ -19,7 +19,7 @@ from hthor.eval.runner import experiment, progress, run_options
 from hthor.eval.runner.trial_runner import Sources
 from hthor.report.drawing import trial_figure
 
-pytestmark = pytest.mark.usefixtures("shared_worlds", "no_workers")
+pytestmark = pytest.mark.usefixtures("no_workers")
 
 HOUSES = ("elder", "rowan")
 

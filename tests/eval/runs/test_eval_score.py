@@ -21,7 +21,7 @@ from hthor.eval.results import aggregate
 from hthor.eval.runner import progress, run
 from hthor.types.events import Accepted, Declined, Event, Sent
 
-pytestmark = pytest.mark.usefixtures("shared_worlds", "no_workers")
+pytestmark = pytest.mark.usefixtures("no_workers")
 
 
 def _log(ticks: int, met: bool, events: tuple[Event, ...] = (), trust: int | None = 4) -> EpisodeLog:

@@ -21,7 +21,7 @@ from hthor.eval.merge import merge_shards
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.runner import progress, run
 
-pytestmark = pytest.mark.usefixtures("shared_worlds", "no_workers")
+pytestmark = pytest.mark.usefixtures("no_workers")
 
 COUNT = 57
 _FILES = [".lock", "effort.json", "platform.json", "run.json", "trials.jsonl"]
