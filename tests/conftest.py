@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import law_cases
 import pytest
 from durations import (  # noqa: F401  hooks of pytest
     pytest_addoption,
@@ -28,9 +29,9 @@ os.environ.setdefault("NUMBA_CACHE_DIR", str(code_identity.compiled()))  # befor
 _OUTSIDE = re.compile(r"\bL3\b|bwrap|bubblewrap|chromium|\bnode\b|hthor\.guest|guest_fakes|Guest\(|import guest\b")
 """A file of tests in which one of these stands may depend on programs that not every machine has."""
 gc.set_threshold(50_000, 10, 10)  # thousands of tests stay in memory: searching them so often took 8 % of the time
-settings.register_profile("hthor", deadline=None, derandomize=True)  # a change breaks a test, or it does not
-settings.register_profile("explore", deadline=None)  # other cases each time: HYPOTHESIS_PROFILE=explore make test
-settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "hthor"))
+settings.register_profile("hthor", deadline=None, derandomize=True, max_examples=law_cases.cases(100))
+settings.register_profile("explore", deadline=None)
+settings.load_profile(law_cases.PROFILE)
 
 ROOT = Path(__file__).resolve().parents[1]
 SAMPLES = ROOT.parent / "shared" / "houses"

@@ -18,7 +18,7 @@ from xml.etree import ElementTree
 
 import pytest
 import yaml
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import hthor
@@ -220,7 +220,6 @@ WORDS = st.lists(
 )
 
 
-@settings(deadline=None)
 @given(st.lists(st.tuples(st.sampled_from(["", "- ", "12. ", "  * "]), WORDS), max_size=4))
 def test_wrapping_changes_white_space_alone_and_is_done_after_once(parts: list[tuple[str, list[str]]]):
     text = "\n\n".join(head + " ".join(["start", *words]) for head, words in parts) + "\n"

@@ -15,6 +15,7 @@ import jsonschema
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 
 from hthor import code_identity, documents, jsonio, log_corrections
 from hthor.calibration import evidence, targets
@@ -188,7 +189,7 @@ def entry(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return board_fakes.entry_of(board, "helper")
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=cases(150))
 @given(data=st.data())
 def test_the_schema_is_kept_without_a_library_for_schemas(
     data: st.DataObject, entry: Path, tmp_path_factory: pytest.TempPathFactory

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 
 from hthor.comms import display, map_picture
 from hthor.comms.display import PARTS, Displays, DisplayState
@@ -111,7 +112,7 @@ def course(steps: list[tuple[str, int]]) -> list[Event]:
     return events
 
 
-@settings(max_examples=80)
+@settings(max_examples=cases(80))
 @given(STEPS)
 def test_a_log_tells_what_was_shown_at_every_tick(steps: list[tuple[str, int]]) -> None:
     events = course(steps)
@@ -150,7 +151,7 @@ def middle_of(picture: np.ndarray, shade: tuple[int, int, int]) -> tuple[float, 
     return rows.mean() / len(picture) - 0.5, columns.mean() / len(picture) - 0.5
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=cases(15))
 @given(st.floats(0.8, 25.0), st.floats(-math.pi, math.pi))
 def test_the_picture_has_bodies_in_their_direction_and_in_the_right_order_of_distance(far: float, way: float) -> None:
     ahead, left = far * math.cos(way), far * math.sin(way)

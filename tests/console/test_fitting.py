@@ -8,6 +8,7 @@ import re
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 from rich import box
 from rich.console import Group
 from rich.table import Table
@@ -69,7 +70,7 @@ def test_what_stands_below_a_table_stays():
     assert text.rstrip().endswith("and a last word")
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=cases(60))
 @given(
     st.integers(20, 100),
     st.lists(st.tuples(st.from_regex(r"[a-z]{1,12}", fullmatch=True), st.floats(-999, 999)), min_size=1, max_size=5),

@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 from scipy import stats as scipy_stats
 
 from hthor import jsonio
@@ -102,7 +103,7 @@ def test_holm_is_never_bolder_than_one_test_nor_shyer_than_bonferroni(p: list[fl
     assert sorted(range(len(p)), key=lambda k: (p[k], k)) == sorted(range(len(p)), key=lambda k: (adjusted[k], p[k], k))
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=cases(30))
 @given(st.lists(st.tuples(st.booleans(), st.booleans()), min_size=2, max_size=50))
 def test_the_interval_and_p_say_the_same(outcomes: list[tuple[bool, bool]]):
     first, second = (np.array([pair[k] for pair in outcomes], dtype=float) for k in (0, 1))
@@ -121,7 +122,7 @@ def test_several_runs_are_compared_pair_by_pair(runs: Path):
     assert all(pair.p_holm == 1.0 for pair in found.pairs)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=cases(100))
 @given(st.lists(st.tuples(st.floats(-1, 1), st.floats(0, 1)), min_size=1, max_size=8))
 def test_a_verdict_and_the_level_of_its_interval_say_the_same(differences: list[tuple[float, float]]):
     for (difference, p), found in zip(differences, paired_difference.verdicts(differences), strict=True):
@@ -328,7 +329,7 @@ def test_power_of_textbook_size():
     assert found.sessions == -(-found.trials // 10)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=cases(40))
 @given(st.floats(0.1, 0.9), st.floats(0.02, 0.09), st.floats(0.0, 0.6))
 def test_more_correlation_and_larger_differences_need_less(rate: float, gap: float, correlation: float):
     plain = power.sample_size(rate, rate + gap)

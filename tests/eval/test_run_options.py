@@ -14,7 +14,7 @@ import msgspec
 import pytest
 from command_line import run
 from eval_fakes import character, people, player, suite
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from typer.testing import CliRunner
 
@@ -38,7 +38,6 @@ pytestmark = pytest.mark.usefixtures("no_workers")
 SMOKE = tasks.load_suite("smoke").tasks
 
 
-@settings(deadline=None)
 @given(st.integers(1, len(SMOKE) - 1))
 def test_a_larger_choice_contains_a_smaller_one(count: int) -> None:
     some, more = task_selection.choose_subset(SMOKE, count), task_selection.choose_subset(SMOKE, count + 1)

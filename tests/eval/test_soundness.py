@@ -8,6 +8,7 @@ import msgspec
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 from two_rooms import SIDE, TABLE, house, on, thing
 
 from hthor import catalog
@@ -37,7 +38,7 @@ def test_what_stands_apart_or_rests_does_not_penetrate():
 
 
 @given(st.floats(0.006, 0.2), st.sampled_from(("bin", "bowl", "side_table", "vase")))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=cases(20))
 def test_the_depth_is_how_far_one_thing_was_pushed_into_another(depth: float, kind: str):
     """Blocks side by side, pushed together, or a round thing pressed into the table's top."""
     if kind == "side_table":

@@ -12,6 +12,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
+from law_cases import cases
 
 from hthor.guest import Guest
 from hthor.guest.protocol import shared_frames
@@ -24,7 +25,7 @@ TYPES = st.sampled_from(["u1", "<f4", "<i4", "<f8", "?"])
 
 
 @given(st.lists(TYPES.flatmap(lambda dtype: arrays.arrays(dtype, SHAPES)), max_size=4))
-@settings(max_examples=40)
+@settings(max_examples=cases(40))
 def test_what_is_put_in_comes_out_the_same(given_arrays: list[Any]) -> None:
     window = shared_frames.FrameWriter()
     view = shared_frames.FrameReader(window.handle)

@@ -23,6 +23,7 @@ import levels
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 from typer.testing import CliRunner
 
 from hthor import guest
@@ -197,7 +198,7 @@ def test_a_file_that_no_manifest_can_list_is_not_opened_unseen(tmp_path: Path, n
 
 
 @given(st.lists(st.text(st.characters(codec="ascii", exclude_characters="/\0"), min_size=1, max_size=40), max_size=8))
-@settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=cases(50), suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_scanning_never_leaves_the_agents_folder(tmp_path: Path, words: list[str]) -> None:
     own = tmp_path / "own"
     own.mkdir(exist_ok=True)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 
 from hthor import houses, navigation
 from hthor.houses.space.free_space import FreeSpace
@@ -174,7 +175,7 @@ SPOTS = st.sampled_from(
 )
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=cases(30))
 @given(SPOTS, SPOTS)
 def test_paths_there_and_back_are_about_equal_and_field_agrees(a: tuple[float, float], b: tuple[float, float]) -> None:
     planner = Planner(whole(), RADIUS)
@@ -189,7 +190,7 @@ def test_paths_there_and_back_are_about_equal_and_field_agrees(a: tuple[float, f
     assert path_length(walked) == pytest.approx(there, rel=0.05, abs=0.1)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=cases(30))
 @given(SPOTS, st.lists(st.lists(SPOTS, min_size=1, max_size=4), max_size=4))
 def test_the_nearest_of_each_group_is_the_nearest_by_the_distances_of_all(
     a: tuple[float, float], groups: list[list[tuple[float, float]]]
@@ -209,7 +210,7 @@ def test_the_nearest_of_nothing_or_of_what_cannot_be_reached_is_infinitely_far()
     assert none == away == (math.inf, -1)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=cases(30))
 @given(SPOTS, SPOTS, st.floats(0.1, 12.0))
 def test_a_path_of_bounded_length_is_the_same_path_or_none(
     a: tuple[float, float], b: tuple[float, float], most: float

@@ -8,6 +8,7 @@ import pytest
 import world_house as tiny
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 from world_house import COFFEE, COUNTER, FRIDGE, TABLE, on, task
 
 from hthor import houses, rules
@@ -16,7 +17,7 @@ from hthor.types import Close, Move, Open, Pose
 from hthor.world import World
 
 MIDDLE = Pose(x=4.0, y=2.0)
-quick = settings(max_examples=20, deadline=None, derandomize=True)
+quick = settings(max_examples=cases(20))
 
 
 @pytest.fixture(scope="module")

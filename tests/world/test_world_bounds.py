@@ -13,6 +13,7 @@ import pytest
 import world_house as tiny
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 from world_house import COFFEE, TABLE, on, task
 
 from hthor import catalog
@@ -94,7 +95,7 @@ def test_two_robots_place_on_one_spot_in_one_tick(world: World) -> None:
 # ---------------------------------------------------------------------------------------------------- too fast
 
 
-@settings(max_examples=60, deadline=None, derandomize=True)
+@settings(max_examples=cases(60))
 @given(
     st.sampled_from(TARGETS),
     st.tuples(st.floats(0.3, 9.7), st.floats(0.3, 3.7), st.floats(0.3, 2.3)),

@@ -10,6 +10,7 @@ import pytest
 import world_house as tiny
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 from msgspec import UNSET
 from world_house import TABLE, do, on, task, wait
 
@@ -67,7 +68,7 @@ def place(world: World, seat: str) -> tuple[float, float]:
 # ---------------------------------------------------------------------------------------------------- where it goes
 
 
-@settings(max_examples=60, deadline=None, derandomize=True)
+@settings(max_examples=cases(60))
 @given(st.sampled_from(("human", "human2", "robot")), angles, st.integers(1, 20), st.floats(0.05, 1.0), angles)
 def test_a_walk_by_drive_and_one_by_move_end_in_one_place(empty, seat, way, ticks, share, heading) -> None:
     speed = share * min(empty.bodies[seat].speed, 1.4 / (ticks * rules.TICK_S))
@@ -97,7 +98,7 @@ def test_left_is_left_of_the_head_and_too_fast_is_shortened(empty: World) -> Non
 steered = st.tuples(st.integers(0, 3), st.floats(-2.0, 2.0), st.floats(-2.0, 2.0), st.floats(-10.0, 10.0))
 
 
-@settings(max_examples=40, deadline=None, derandomize=True)
+@settings(max_examples=cases(40))
 @given(st.lists(st.tuples(st.lists(steered, max_size=4), st.integers(1, 12)), min_size=1, max_size=8))
 def test_nobody_drives_into_anything(built: World, script) -> None:
     begin(built, Pose(x=4.0, y=2.0), Pose(x=3.4, y=1.6), Pose(x=6.0, y=2.0), Pose(x=6.2, y=2.8))
@@ -119,7 +120,7 @@ def test_nobody_drives_into_anything(built: World, script) -> None:
                 assert math.dist((pose.x, pose.y), place(built, seat)) <= most
 
 
-@settings(max_examples=30, deadline=None, derandomize=True)
+@settings(max_examples=cases(30))
 @given(st.floats(0.1, 1.0), st.floats(-0.4, 0.4))
 def test_two_people_who_meet_are_alike(empty: World, speed: float, aside: float) -> None:
     begin(empty, Pose(x=1.5, y=2.0 + aside), Pose(x=3.5, y=2.0 - aside, yaw=math.pi))
@@ -144,7 +145,7 @@ def test_those_who_drive_go_before_those_who_move(empty: World) -> None:
 # ------------------------------------------------------------------------------------------------ steps of a tick
 
 
-@settings(max_examples=25, deadline=None, derandomize=True)
+@settings(max_examples=cases(25))
 @given(st.lists(st.tuples(steered, st.integers(0, 7)), min_size=1, max_size=10))
 def test_who_makes_the_steps_does_not_matter(built: World, script) -> None:
     def play(steps_by_hand: bool) -> list[object]:
@@ -180,7 +181,7 @@ def test_a_set_point_holds_from_its_step_on(empty: World) -> None:
 # ------------------------------------------------------------------------------------------------------------ heads
 
 
-@settings(max_examples=60, deadline=None, derandomize=True)
+@settings(max_examples=cases(60))
 @given(st.lists(st.tuples(st.floats(-20.0, 20.0), st.floats(-1.5, 1.5)), min_size=1, max_size=12))
 def test_a_measured_head_is_taken_as_it_is(empty: World, heads) -> None:
     begin(empty, MIDDLE)
@@ -199,7 +200,7 @@ def test_a_measured_head_is_taken_as_it_is(empty: World, heads) -> None:
     assert abs(wrap(empty.pose("human").yaw - heads[-1][0])) < 1e-9
 
 
-@settings(max_examples=40, deadline=None, derandomize=True)
+@settings(max_examples=cases(40))
 @given(angles, st.floats(-1.5, 1.5))
 def test_a_robot_turns_whole_at_its_rate(empty: World, yaw: float, pitch: float) -> None:
     begin(empty, Pose(x=1.0, y=1.0), Pose(x=1.0, y=3.0), MIDDLE)
@@ -239,7 +240,7 @@ def test_a_turned_head_keeps_its_angle_in_other_motions(empty: World) -> None:
     assert empty.pose("human") == MIDDLE
 
 
-@settings(max_examples=80, deadline=None, derandomize=True)
+@settings(max_examples=cases(80))
 @given(ANY, ANY, ANY, ANY, st.sampled_from(("human", "robot")))
 def test_no_number_does_harm(empty: World, forward, left, yaw, pitch, seat: str) -> None:
     begin(empty, MIDDLE, Pose(x=1.0, y=1.0), Pose(x=4.0, y=2.0))

@@ -17,6 +17,7 @@ import world_house as tiny
 from event_fakes import fields
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 from world_house import COFFEE, COUNTER, FRIDGE, TABLE, do, reason, task, wait
 
 from hthor import catalog, seeds
@@ -27,7 +28,7 @@ from hthor.world import World
 
 LOOSE = ("apple", "book", "remote_control", "mug", "lettuce", "bottle", "pan", "plate", "phone", "egg", "box", "pen")
 STORES = {"dresser|1": "drawer", "stove|1": "oven", "wardrobe|1": "shelf", "microwave|1": "inside", COUNTER: "cupboard"}
-quick = settings(max_examples=25, deadline=None, derandomize=True)
+quick = settings(max_examples=cases(25))
 kinds = st.sampled_from(LOOSE)
 
 

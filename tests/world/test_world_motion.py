@@ -9,6 +9,7 @@ import world_house as tiny
 from event_fakes import fields
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 from world_house import do, on, reason, task, wait
 
 from hthor.types import Move, Outcome, Pose, Rotate, Wait
@@ -141,7 +142,7 @@ def test_bodies_start_on_free_floor_clear_of_each_other() -> None:
 moves = st.tuples(st.sampled_from(["human", "robot"]), st.floats(-math.pi, math.pi), st.floats(0.0, 0.5))
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=cases(30))
 @given(st.lists(moves, min_size=1, max_size=40))
 def test_nobody_ever_enters_what_is_not_free(built: World, plan) -> None:
     built.reset(task(on(tiny.TABLE, "apple"), human=Pose(x=4.0, y=2.0), robots=(Pose(x=4.5, y=2.0),)))

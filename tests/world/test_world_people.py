@@ -11,6 +11,7 @@ import pytest
 import world_house as tiny
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 from world_house import COFFEE, TABLE, do, on, task, wait
 
 from hthor import plugins
@@ -59,7 +60,7 @@ def test_people_sit_before_robots(world: World) -> None:
 spots = st.tuples(st.floats(0.5, 9.5), st.floats(0.5, 3.5), st.floats(-3.0, 3.0))
 
 
-@settings(max_examples=40, deadline=None, derandomize=True)
+@settings(max_examples=cases(40))
 @given(spots, st.lists(spots, max_size=3), st.lists(spots, max_size=2))
 def test_everybody_begins_at_a_place_of_their_own(world: World, first, others, robots) -> None:
     human, *rest = (Pose(x=x, y=y, yaw=yaw) for x, y, yaw in (first, *others, *robots))
@@ -210,7 +211,7 @@ STEPS = st.lists(
 )
 
 
-@settings(max_examples=15, deadline=None, derandomize=True)
+@settings(max_examples=cases(15))
 @given(STEPS)
 def test_somebody_far_away_changes_nothing(alone: World, both: World, steps) -> None:
     given = task(on(TABLE, "apple"), human=Pose(x=4.0, y=2.0), robots=(Pose(x=3.0, y=1.2),))

@@ -12,6 +12,7 @@ import world_house as tiny
 from event_fakes import fields
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 from world_house import do, reason, wait
 
 from hthor import catalog, rules
@@ -325,7 +326,7 @@ MOVES = st.lists(
 )
 
 
-@settings(max_examples=12, derandomize=True, deadline=None)
+@settings(max_examples=cases(12))
 @given(MOVES, st.floats(-math.pi, math.pi))
 def test_wherever_it_is_carried_it_is_in_no_wall_in_nobody_and_in_reach(built: World, moves: Any, yaw: float) -> None:
     grip = (math.cos(yaw), math.sin(yaw))

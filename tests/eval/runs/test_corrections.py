@@ -11,6 +11,7 @@ import eval_fakes as fakes
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 from typer.testing import CliRunner
 
 from hthor import code_identity, jsonio, log_corrections
@@ -94,7 +95,7 @@ def asked(what: str) -> dict[str, object]:
     return {"void": True, "again": what == "again"} if what in ("void", "again") else {"adoption": what}
 
 
-@settings(max_examples=12, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=cases(12), suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(made=MADE, order=st.randoms(use_true_random=False))
 def test_withdrawing_all_corrections_gives_back_the_same_bytes(
     source: Path, tmp_path_factory: pytest.TempPathFactory, made: list[tuple[int, str]], order: object
@@ -117,7 +118,7 @@ def test_withdrawing_all_corrections_gives_back_the_same_bytes(
     assert len(RunFolder(folder).corrections.lines) == 2 * len(made), "nothing was deleted"
 
 
-@settings(max_examples=12, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=cases(12), suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(made=MADE, order=st.randoms(use_true_random=False))
 def test_the_order_of_corrections_of_different_trials_makes_no_difference(
     source: Path, tmp_path_factory: pytest.TempPathFactory, made: list[tuple[int, str]], order: object
@@ -257,7 +258,7 @@ def test_without_a_robot_there_is_no_adoption_to_correct(tmp_path: Path) -> None
         correct(alone.path, 5, adoption="yes")
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=cases(40))
 @given(data=st.data())
 def test_damage_is_found_and_named(data: st.DataObject, tmp_path_factory: pytest.TempPathFactory) -> None:
     folder, check, text = tmp_path_factory.mktemp("damage"), "", b""

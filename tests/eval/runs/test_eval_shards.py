@@ -10,7 +10,7 @@ from pathlib import Path
 import eval_fakes as fakes
 import msgspec
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from typer.testing import CliRunner, Result
 
@@ -55,7 +55,6 @@ def _result(folder: Path) -> dict[str, object]:
     return document
 
 
-@settings(deadline=None)
 @given(st.integers(1, 90), st.integers(1, 40), st.integers(1, 40))
 def test_shards_are_a_partition_and_know_their_size(tasks: int, people: int, of: int):
     plan, _ = fakes.run_of(10)

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 
 from benchmarks import bounded
 from hthor.eval.metrics import registry
@@ -32,7 +33,7 @@ def _trials(draw, least: int = 1, metrics=METRICS):
     return metric, limit, np.array(rows), np.arange(len(rows)) // draw(st.integers(1, 3)), np.arange(len(rows)) % people
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=cases(150))
 @given(_trials())
 def test_an_interval_lies_within_the_bounds_and_holds_the_estimate(trials):
     metric, limit, rows, tasks, people = trials
@@ -42,7 +43,7 @@ def test_an_interval_lies_within_the_bounds_and_holds_the_estimate(trials):
         assert low <= found.ci95[0] <= found.mean <= found.ci95[1] <= high + 1e-6
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=cases(150))
 @given(_trials(least=2))
 def test_so_does_that_of_a_difference(trials):
     metric, limit, rows, tasks, people = trials
@@ -54,7 +55,7 @@ def test_so_does_that_of_a_difference(trials):
     assert -room - 1e-6 <= least <= found.difference <= most <= room + 1e-6
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=cases(150))
 @given(_trials(least=2))
 def test_an_interval_leaves_out_zero_exactly_when_the_test_refuses_it(trials):
     metric, limit, rows, tasks, people = trials
@@ -69,7 +70,7 @@ def test_an_interval_leaves_out_zero_exactly_when_the_test_refuses_it(trials):
             assert (least > 0.0 or most < 0.0) == (found.p < 1.0 - level)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=cases(100))
 @given(_trials(least=2))
 def test_a_surer_interval_is_wider(trials):
     metric, limit, rows, tasks, people = trials
@@ -84,7 +85,7 @@ def test_a_surer_interval_is_wider(trials):
     assert narrow[1] <= wide[1] + 1e-6
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=cases(100))
 @given(_trials(least=2, metrics=("sr", "twsr", "trust", "time_s")))
 def test_turned_about_the_middle_it_is_the_same_interval_turned(trials):
     metric, limit, rows, tasks, people = trials
@@ -119,7 +120,7 @@ def test_two_people_who_take_nearly_all_their_time_cannot_take_more():
 
 
 @example([3, 0, 0, 1])
-@settings(max_examples=50, deadline=None)
+@settings(max_examples=cases(50))
 @given(st.lists(st.integers(0, 9), min_size=2, max_size=40))
 def test_counts_have_no_interval_below_nothing(values: list[int]):
     tasks, people = list(range(len(values))), [k // 10 for k in range(len(values))]

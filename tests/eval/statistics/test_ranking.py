@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 
 from hthor.eval.comparison import ranking
 from hthor.eval.metrics import registry
@@ -15,7 +16,7 @@ TRIALS = 80
 TASKS, PEOPLE = np.arange(TRIALS), np.arange(TRIALS) // 10
 BOARD = st.lists(st.tuples(st.floats(0.2, 0.9), st.integers(0, 3)), min_size=2, max_size=5)
 """Rates, and seeds: agents with the same seed fail at much the same trials."""
-few = settings(max_examples=15, deadline=None)
+few = settings(max_examples=cases(15))
 
 
 def _played(agents: list[tuple[float, int]]) -> np.ndarray:

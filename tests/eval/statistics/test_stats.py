@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 
 from hthor.eval.results import paired_difference
 from hthor.eval.statistics import intervals, variance_components
@@ -22,7 +23,7 @@ def _names(count: int) -> tuple[list[str], list[int]]:
     return [f"t{number}" for number in range(count)], [number % 6 for number in range(count)]
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=cases(25))
 @given(st.lists(st.floats(0, 1), min_size=1, max_size=40))
 def test_the_mean_lies_inside_its_interval_and_that_inside_the_bounds(values: list[float]):
     found = intervals.estimate(values, *_names(len(values)), within=intervals.SHARE)
@@ -31,7 +32,7 @@ def test_the_mean_lies_inside_its_interval_and_that_inside_the_bounds(values: li
     assert -1e-6 <= low <= found.mean <= high <= 1.0 + 1e-6
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=cases(25))
 @given(st.lists(st.floats(-1e3, 1e3), min_size=2, max_size=40))
 def test_without_bounds_too(values: list[float]):
     found = intervals.estimate(values, *_names(len(values)))

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 from msgspec.structs import replace
 
 from hthor.errors import UnknownName
@@ -205,7 +206,7 @@ def test_no_command_changes_what_stays_with_a_file_or_a_terminal(driven: bool, c
         assert answer == NO_TERMINAL
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=cases(60))
 @given(st.binary(min_size=24, max_size=24), st.integers(0, 191))
 def test_a_program_is_started_by_a_word_and_by_no_other(word: bytes, bit: int) -> None:
     spoken = struct.unpack("<3Q", word)

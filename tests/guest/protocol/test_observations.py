@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 from msgspec import inspect
 
 from hthor import houses
@@ -248,7 +249,7 @@ def test_whatever_a_local_agent_gets_a_guest_gets(briefing: Briefing, seen: list
     assert [mirror_agent.plain(one) for one in kept] == [mirror_agent.plain(one) for one in (briefing, *seen)]
 
 
-@settings(max_examples=50)
+@settings(max_examples=cases(50))
 @given(records(Send), records(Drive))
 def test_whatever_an_agent_says_a_guest_says(say: Send, motion: Drive) -> None:
     wanted = Action(motion=motion, say=say)

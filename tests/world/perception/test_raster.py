@@ -9,6 +9,7 @@ import pytest
 import world_house as tiny
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 from world_house import COFFEE, TABLE, on, task
 
 from hthor.types import Pose
@@ -54,7 +55,7 @@ def world() -> World:
     return world
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=cases(25))
 @given(x=st.floats(0.4, 9.6), y=st.floats(0.3, 3.7), yaw=st.floats(-3.14, 3.14), pitch=st.floats(-0.5, 0.5))
 def test_a_house_is_traced_as_the_engine_s_rays_see_it(
     world: World, x: float, y: float, yaw: float, pitch: float
@@ -83,7 +84,7 @@ SHAPES = """
 """
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=cases(40))
 @given(
     x=st.floats(-1.0, 0.9),
     y=st.floats(-0.4, 0.4),

@@ -7,6 +7,7 @@ import math
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 from random_solids import house, slowly
 
 from hthor.types import BodySpec, Pose
@@ -30,7 +31,7 @@ def still_targets(targets, own) -> tuple[np.ndarray, np.ndarray]:
     return balls, spots
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=cases(40))
 @given(st.integers(0, 10**6), st.lists(st.tuples(st.floats(-3.1, 3.1), st.floats(-0.8, 0.8)), min_size=1, max_size=4))
 def test_a_look_finds_what_ray_after_ray_finds(seed: int, turns: list[tuple[float, float]]) -> None:
     """Whatever the eye remembers of where it looked before, and though small things and loose solids move meanwhile."""
