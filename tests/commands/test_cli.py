@@ -282,6 +282,7 @@ def test_every_command_that_a_report_and_an_evaluation_print_can_be_typed(hthor,
 
 
 def test_a_report_without_a_control_names_the_command_that_plays_it(hthor, tmp_path: Path, monkeypatch):
+    fakes.play_here(monkeypatch)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(robot_team, "load_agent_info", lambda name, _: fakes.character(name, absent=name == "none"))
     assert hthor("eval", "--agent", "helper", "--suite", "fake", "--no-control", "--quiet").code == 0

@@ -179,7 +179,7 @@ def test_letters_in_a_figure_have_a_size_and_no_font_of_their_own(written: str) 
 
 
 @pytest.mark.skipif(shutil.which("chromium") is None, reason="Chromium is not installed")
-@pytest.mark.parametrize("width", [1280, 700])
+@pytest.mark.parametrize("width", [1280, pytest.param(700, marks=pytest.mark.nightly)])
 def test_four_runs_fit_a_page(written: str, tmp_path: Path, width: int) -> None:
     """At 1280 pixels nothing is wider than the page; at 700 tables that are slide within it, and the page does not."""
     (tmp_path / "page.html").write_text(written.replace("</body>", f"{PROBE}</body>"))
