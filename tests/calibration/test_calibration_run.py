@@ -29,7 +29,7 @@ from hthor.humans.population import parameter_registry, population_file
 from hthor.tasks.suite import make_suite
 
 PAPER = tasks.load_suite("paper")
-TINY = make_suite("tiny", 1, tuple(task for task in PAPER.tasks if task.house == PAPER.tasks[0].house)[:2])
+TINY = make_suite("tiny", 1, tuple(task for task in PAPER.tasks if task.house == "elder")[:2])
 
 
 # -------------------------------------------------------------------------------------------------------- real sessions
@@ -41,7 +41,7 @@ def _train(folder, count, jobs=1, suite=TINY):
 
 
 @pytest.fixture(scope="module")
-def trained(tmp_path_factory):
+def trained(tmp_path_factory, shared_worlds):
     folder = tmp_path_factory.mktemp("trained")
     with pytest.MonkeyPatch.context() as patch:  # in this process; that workers play the same has a test of its own
         eval_fakes.play_here(patch)
@@ -96,7 +96,7 @@ def test_a_changed_world_is_refused(trained, monkeypatch):
         _train(folder, 3)
 
 
-def test_a_session_is_what_an_evaluation_would_have_played():
+def test_a_session_is_what_an_evaluation_would_have_played(shared_worlds):
     """The same person out of the same population meets the same trials, whoever asks."""
     from hthor.episode import play
     from hthor.humans.models.proxy import Model
@@ -135,7 +135,7 @@ def test_every_condition_meets_hands_alike():
 def cheap():
     """As small as it can be: what is found is not looked at too closely."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(config, "QUICK", msgspec.structs.replace(config.QUICK, proposals=1 << 12, draws=200))
+        patch.setattr(config, "QUICK", msgspec.structs.replace(config.QUICK, members=2, proposals=1 << 12, draws=200))
         yield
 
 
