@@ -83,7 +83,7 @@ def met_at(log: EpisodeLog, minds: list[Witness]) -> float:
 
 
 @pytest.fixture(scope="module")
-def runner() -> TrialRunner:
+def runner(shared_worlds: None) -> TrialRunner:
     return TrialRunner()
 
 

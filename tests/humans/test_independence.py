@@ -14,7 +14,7 @@ from hthor.types import HUMAN, Action, Briefing, Move, Observation, Rotate
 
 PEOPLE = 2
 TRIALS = 5
-HOUSES = ("alder", "hazel", "maple")
+HOUSES = ("elder", "hazel")
 
 
 class Wanderer:
@@ -40,7 +40,7 @@ class Spinner:
 
 
 @pytest.fixture(scope="module")
-def stage() -> trial_runner.TrialRunner:
+def stage(shared_worlds: None) -> trial_runner.TrialRunner:
     return trial_runner.TrialRunner()
 
 
