@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import math
 from collections.abc import Sequence
@@ -232,6 +233,11 @@ def test_a_small_robot_waits_where_it_bars_no_passage_of_large_ones() -> None:
 # ---------------------------------------------------------------------------------------------- the house with one door
 
 
+@functools.cache
+def porters(count: int) -> World:
+    return World(tiny.house(), robots=["porter"] * count, objects=[("trunk", "trunk")])
+
+
 def carry(trunk: Placement, human: Pose, robots: Sequence[Pose], participant: int, seconds: float = 90.0) -> EpisodeLog:
     """A person and porters bring the trunk from the kitchen to the living room."""
     job = Job(target="trunk", relation="at", destinations=("room|2",), place=LIVING, hands=2)
@@ -257,9 +263,8 @@ def carry(trunk: Placement, human: Pose, robots: Sequence[Pose], participant: in
         rules_sha256="",
         code_sha256="",
     )
-    world = World(tiny.house(), robots=["porter"] * len(seats), objects=[("trunk", "trunk")])
     model = Model(Participant(seed=0, number=participant))
-    log = play(trial, world, {HUMAN: model}, {seat: oracle() for seat in seats})
+    log = play(trial, porters(len(seats)), {HUMAN: model}, {seat: oracle() for seat in seats})
     assert not log.faults
     return log
 

@@ -8,7 +8,7 @@ import eval_fakes as fakes
 import msgspec
 import pytest
 from episode_fakes import Mind, Stage, trial
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hthor import rules
@@ -69,6 +69,7 @@ def test_lock_step_waits_for_every_mind() -> None:
     assert not any(event.kind == "thought" for event in log.events)
 
 
+@settings(max_examples=30)
 @given(seconds=st.floats(0.0, 0.35), busy=st.integers(1, 4))
 def test_no_thinking_is_rounded_away(seconds: float, busy: int) -> None:
     clock, stage = Clock(), Stage(seen=200, busy=busy)
