@@ -13,7 +13,7 @@ from hthor.tasks.suite import make_suite
 from hthor.types import HUMAN, Action, Briefing, Move, Observation, Rotate
 
 PEOPLE = 2
-TRIALS = 5
+TRIALS = 4
 HOUSES = ("elder", "hazel")
 
 
