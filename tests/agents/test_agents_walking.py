@@ -10,7 +10,9 @@ from hthor.types import Pose
 from hthor.world.robots.scout import SPEC
 
 
-@pytest.mark.parametrize("house", ["alder", "elder", pytest.param("maple", marks=pytest.mark.nightly)])
+@pytest.mark.parametrize(
+    "house", ["elder", *(pytest.param(house, marks=pytest.mark.nightly) for house in ("alder", "maple"))]
+)
 @pytest.mark.parametrize("agent", ["frontier", "oracle"])
 def test_a_robot_walks_where_the_instruction_leads_and_stops(agent, house):
     task, log = walk(f"vln/{house}/02", agent)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 import math
 from collections.abc import Sequence
@@ -11,6 +12,7 @@ import pytest
 import world_house as tiny
 from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 
 from hthor import plugins
 from hthor.agents.skills.joint_carrying.handle_choice import HandleChoice
@@ -122,7 +124,7 @@ def test_a_stand_is_free_floor_nearer_to_its_own_handle() -> None:
     b=st.tuples(st.floats(0.5, 9.5), st.floats(0.5, 3.5)),
 )
 @example(x=1.03125, y=3.0, yaw=2.0, a=(1.0, 1.0), b=(2.0, 3.0))  # the shortest path has a bend beside the trunk
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=cases(60))
 def test_a_route_round_the_trunk_keeps_off_it(x: float, y: float, yaw: float, a: Vec2, b: Vec2) -> None:
     around = RoutesAround(routes(), outline((x, y, HEIGHT_M), yaw))
     here, spot = (routes().space.nearest_free(*point) for point in (a, b))
@@ -232,6 +234,11 @@ def test_a_small_robot_waits_where_it_bars_no_passage_of_large_ones() -> None:
 # ---------------------------------------------------------------------------------------------- the house with one door
 
 
+@functools.cache
+def porters(count: int) -> World:
+    return World(tiny.house(), robots=["porter"] * count, objects=[("trunk", "trunk")])
+
+
 def carry(trunk: Placement, human: Pose, robots: Sequence[Pose], participant: int, seconds: float = 90.0) -> EpisodeLog:
     """A person and porters bring the trunk from the kitchen to the living room."""
     job = Job(target="trunk", relation="at", destinations=("room|2",), place=LIVING, hands=2)
@@ -257,9 +264,8 @@ def carry(trunk: Placement, human: Pose, robots: Sequence[Pose], participant: in
         rules_sha256="",
         code_sha256="",
     )
-    world = World(tiny.house(), robots=["porter"] * len(seats), objects=[("trunk", "trunk")])
     model = Model(Participant(seed=0, number=participant))
-    log = play(trial, world, {HUMAN: model}, {seat: oracle() for seat in seats})
+    log = play(trial, porters(len(seats)), {HUMAN: model}, {seat: oracle() for seat in seats})
     assert not log.faults
     return log
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 
 import msgspec
@@ -105,6 +106,11 @@ def test_no_robot_keeps_anybody_waiting() -> None:
     assert mind.act(look(phase="")).signals == ()
 
 
+@functools.cache
+def world() -> World:
+    return World(TASK.house, robots=["tender"], objects=[(one.id, one.kind) for one in TASK.objects])
+
+
 def toured(kind: type, seconds: float) -> tuple[object, Episode]:
     """A robot's agent after its tour of the house, beside a person who stands still."""
     agent = AgentRef(name="a", source="", sha256="", privileges=kind.privileges)  # type: ignore[attr-defined]
@@ -120,8 +126,7 @@ def toured(kind: type, seconds: float) -> tuple[object, Episode]:
         rules_sha256="",
         code_sha256="",
     )
-    world = World(TASK.house, robots=["tender"], objects=[(one.id, one.kind) for one in TASK.objects])
-    episode, mind, person = Episode(spec, world), kind(), StillPerson()
+    episode, mind, person = Episode(spec, world()), kind(), StillPerson()
     episode.reset()
     mind.begin(episode.briefing("robot"))
     while not episode.done:

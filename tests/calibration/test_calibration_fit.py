@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 from scipy import stats
 
 from hthor.calibration import targets
@@ -108,7 +109,7 @@ def test_rates_are_integrals_of_chances():
 
 
 @given(seed=st.integers(0, 1000))
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=cases(25))
 def test_any_answers_give_possible_rates(seed):
     chance = np.random.Generator(np.random.Philox(seed))
     answers = chance.random((4, emulator.SUCCESS_QUESTIONS + len(emulator.TIME_LEVELS_S)))
@@ -125,10 +126,11 @@ def test_a_network_finds_a_known_law():
     truth = 1.0 / (1.0 + np.exp(-2.0 * told[:, 0] - 2.0 * told[:, 1] * told[:, 2]))
     came = np.stack([chance.random(6000) < truth, chance.random(6000) < 0.3], axis=1)
     said = mlp.fit_network(told, came, seed=1)(told)
+    again = mlp.fit_network(told, came, seed=1)
     assert np.sqrt(np.mean((said[:, 0] - truth) ** 2)) < 0.09
     assert np.sqrt(np.mean((said[:, 1] - 0.3) ** 2)) < 0.06
-    np.testing.assert_array_equal(mlp.fit_network(told, came, seed=1)(told), said)
-    np.testing.assert_allclose(mlp.fit_network(told, came, seed=1)(told, 1), said[:, :1], rtol=1e-5)
+    np.testing.assert_array_equal(again(told), said)
+    np.testing.assert_allclose(again(told, 1), said[:, :1], rtol=1e-5)
 
 
 # ------------------------------------------------------------------------------------------------------------ emulator
@@ -213,7 +215,7 @@ def test_too_few_studies_are_refused(studied):
 
 
 @given(st.floats(0.01, 0.99), st.floats(1.0, 4.0), st.integers(2, 60))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=cases(40))
 def test_counts_have_a_distribution(share, phi, trials):
     hits = np.arange(trials + 1.0)
     chance = np.exp([likelihood.log_beta_binomial(k, trials, np.array([share]), np.array([phi]))[0] for k in hits])
@@ -305,7 +307,7 @@ def test_weights_are_the_likelihood_of_a_grid():
 
 
 @given(st.lists(st.floats(0.0, 1.0), min_size=1, max_size=30), st.floats(0.0, 0.999))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=cases(60))
 def test_resampling_is_fair_to_within_one(raw, start):
     weight = np.array(raw) + 1e-3
     weight = weight / weight.sum()

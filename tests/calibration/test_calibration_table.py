@@ -10,6 +10,7 @@ import pytest
 from calibration_fakes import NAMES, sessions, whole
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 
 from hthor import jsonio, tasks
 from hthor.calibration import targets
@@ -94,7 +95,7 @@ def test_an_unknown_name_and_a_missing_file_are_told_apart(tmp_path):
 
 
 @given(st.integers(1, 60), st.integers(1, 60), st.integers(0, 5))
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=cases(20))
 def test_points_of_a_smaller_number_are_the_first_of_a_larger(few, many, seed):
     small, large = (design_points.sobol_points(count, 5, seed, "some") for count in sorted((few, many)))
     assert np.array_equal(small, large[: len(small)])

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 
 from benchmarks import recovery
 from hthor import seeds, tasks
@@ -211,7 +212,7 @@ def test_too_few_data_are_said_to_be_too_few() -> None:
     assert estimate.make_estimate(belief, belief.mean, belief.sd, 40, "").words == "little learnt"
 
 
-@settings(max_examples=50)
+@settings(max_examples=cases(50))
 @given(st.sampled_from(sorted(BELIEFS.keys() & estimate.NEEDS.keys())), st.floats(-3.0, 3.0), st.floats(0.01, 1.0))
 def test_an_estimate_lies_within_its_prior_and_its_interval(name: str, z: float, share: float) -> None:
     belief = BELIEFS[name]
@@ -260,25 +261,22 @@ def test_too_few_data_leave_a_population_as_it_was(rng: np.random.Generator) -> 
 
 @pytest.fixture(scope="module")
 def played() -> tuple[Parameters, list[TrialRecord]]:
-    """Six people of one population, some with robots, four trials each in two houses."""
+    """Six people of one population, some with robots, four trials each in one house."""
     smoke = tasks.load_suite("smoke")
-    few = make_suite("few", 1, tuple(task for task in smoke.tasks if task.house in ("alder", "hazel"))[:4])
+    few = make_suite("few", 1, tuple(task for task in smoke.tasks if task.house == "elder")[:4])
     population = Parameters(v_pace=0.45, omega=1.2, t_manip=1.6, t_read=4.2, sigma=0.1, a0=3.0)
     return population, recovery.simulate_logs(population, few, trial_runner.TrialRunner(), seed=5, people=6)
 
 
 def test_real_logs_tell_what_people_were_made_of(played: tuple[Parameters, list[TrialRecord]]) -> None:
     population, records = played
-    found = {one.name: one for one in estimate_all.estimate_parameters(trial_features.sessions_of(records), BELIEFS)}
+    sessions = trial_features.sessions_of(records)
+    found = {one.name: one for one in estimate_all.estimate_parameters(sessions, BELIEFS)}
     for name, off in (("v_pace", 0.1), ("omega", 0.1), ("t_manip", 0.35)):
         assert found[name].value == pytest.approx(getattr(population, name), rel=off), name
     assert found[estimate_all.READING].value == pytest.approx(population.t_notice + population.t_read, rel=0.35)
     assert found["t_on"].value == pytest.approx(population.t_on, abs=0.15)
-    again = {
-        one.name: one
-        for one in estimate_all.estimate_parameters(trial_features.sessions_of(list(reversed(records))), BELIEFS)
-    }
-    assert again == found, "the order of the records must not matter"
+    assert trial_features.sessions_of(reversed(records)) == sessions, "the order of the records must not matter"
 
 
 def test_logs_are_read_from_folders_and_files_each_trial_once(
@@ -345,6 +343,7 @@ def test_logs_become_a_population_the_same_every_time(
     log.write_bytes(b"".join(trial_record.encode(one) for one in played[1]))
     told: list[str] = []
     found, made = run.estimate_from_logs([log], "literature", tmp_path / "a" / "mine", told.append)
+    log.write_bytes(b"".join(trial_record.encode(one) for one in reversed(played[1])))
     run.estimate_from_logs([log], "literature", tmp_path / "b" / "mine", told.append)
     for name in ("population.json", "population.npz", "estimates.json"):
         one, other = ((tmp_path / folder / "mine" / name).read_bytes() for folder in ("a", "b"))

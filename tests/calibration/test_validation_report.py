@@ -15,6 +15,7 @@ import pytest
 import validation_fakes as fakes
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 from typer.testing import CliRunner
 
 from hthor.calibration import evidence, targets
@@ -121,7 +122,7 @@ def test_slopes() -> None:
 
 
 @given(st.floats(0.02, 0.98), st.floats(1.0, 4.0), st.integers(2, 60))
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=cases(60))
 def test_chances_of_all_counts_add_up_to_one(share: float, phi: float, n: int) -> None:
     chances = [math.exp(study_groups.log_count(k, n, share, phi)) for k in range(n + 1)]
     assert sum(chances) == pytest.approx(1.0, abs=1e-6)
@@ -216,7 +217,7 @@ def test_records_become_the_same_numbers() -> None:
 
 
 @given(st.integers(0, 8), st.integers(0, 8))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=cases(30))
 def test_the_verdict_counts(covered: int, close: int) -> None:
     base = whole()
     rows = tuple(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Iterator
 from typing import Any
@@ -23,6 +24,7 @@ from hthor.episode import play
 from hthor.errors import HthorError, TaskError, UnknownName
 from hthor.eval.config.sessions import make_sessions
 from hthor.eval.runner.trial_runner import TrialRunner
+from hthor.tasks.suite import make_suite
 from hthor.types import Action, Move, Observation, Pick, Pose, Rotate, Send, TrialSpec
 from hthor.world import World
 
@@ -36,6 +38,7 @@ def world() -> World:
     return _world()
 
 
+@functools.cache
 def _world() -> World:
     return World(tiny.house(), robots=("scout",))
 
@@ -259,7 +262,8 @@ def test_composers_hooks_and_delays_work_in_ticks(world: World) -> None:
     ("suite", "agent"), [("smoke", "frontier"), pytest.param("smoke", "oracle", marks=pytest.mark.nightly)]
 )
 def test_a_trial_in_steps_is_the_trial_of_the_batch(suite: str, agent: str) -> None:
-    session = make_sessions(tasks.load_suite(suite), agent=agent)[0]
+    few = make_suite("few", 1, tuple(task for task in tasks.load_suite(suite).tasks if task.house == "elder"))
+    session = make_sessions(few, agent=agent)[0]
     short = msgspec.structs.replace(session, trials=session.trials[:2])
     assert [alike for _, alike, _, _ in composer_trials.compare(short, TrialRunner())] == [True] * 2
 

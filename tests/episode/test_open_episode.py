@@ -13,6 +13,7 @@ import pytest
 from episode_fakes import TASK, trial
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 from walking_stage import SEATS, Chancy, WalkingStage, minds
 
 from hthor import tasks
@@ -66,7 +67,7 @@ def actors(root: int) -> dict[str, Any]:
     return {**people, **robots}
 
 
-@settings(max_examples=25)
+@settings(max_examples=cases(25))
 @given(roots, st.randoms(use_true_random=False))
 def test_the_order_of_calls_within_a_tick_never_matters(root: int, order: random.Random) -> None:
     episode = begun()
@@ -74,7 +75,7 @@ def test_the_order_of_calls_within_a_tick_never_matters(root: int, order: random
     assert ended(episode) == played(root)
 
 
-@settings(max_examples=25)
+@settings(max_examples=cases(25))
 @given(roots, st.integers(0, 119))
 def test_a_copy_has_the_same_future(root: int, ticks: int) -> None:
     episode = begun()
@@ -89,7 +90,7 @@ def test_a_copy_has_the_same_future(root: int, ticks: int) -> None:
     assert ended(copy) == ended(episode) == played(root)
 
 
-@settings(max_examples=25)
+@settings(max_examples=cases(25))
 @given(roots, st.sets(st.integers(0, 100), max_size=5))
 def test_pausing_changes_nothing(root: int, pauses: set[int]) -> None:
     episode, who = begun(), actors(root)
@@ -106,7 +107,7 @@ def test_pausing_changes_nothing(root: int, pauses: set[int]) -> None:
     assert len(log.events) - len(quiet) == 2 * len([tick for tick in pauses if tick < log.ticks])
 
 
-@settings(max_examples=25)
+@settings(max_examples=cases(25))
 @given(roots)
 def test_decisions_that_cost_nothing_are_those_of_lock_step(root: int) -> None:
     assert played(root, Charged(lambda: 0.0)) == played(root)
@@ -222,12 +223,12 @@ def test_a_body_that_drives_rests_only_while_it_stands() -> None:
 
 @pytest.fixture(scope="module")
 def house() -> World:
-    return World("hazel", robots=["scout"])
+    return World("elder", robots=["scout"])
 
 
 def driven(world: World, inputs: list[int], *, live: bool) -> EpisodeLog:
     """The log of a person who drives by these inputs, step by step as in a live session, or a tick at a time."""
-    task = next(task for task in tasks.load_suite("smoke").tasks if task.house == "hazel")
+    task = next(task for task in tasks.load_suite("smoke").tasks if task.house == "elder")
     brief = msgspec.structs.replace(trial(), task=msgspec.structs.replace(task, time_limit=9.0))
     episode, points = Episode(brief, world), iter(batched(inputs))
     episode.reset()
@@ -248,7 +249,7 @@ def batched(inputs: list[int]) -> Iterator[tuple[int, ...]]:
     return (tuple(inputs[k : k + 6]) for k in range(0, len(inputs), 6))
 
 
-@settings(max_examples=10)
+@settings(max_examples=cases(10))
 @given(st.data())
 def test_a_trial_is_repeated_from_the_inputs_in_its_log(house: World, data: st.DataObject) -> None:
     numbers = st.integers(-15_000, 15_000)

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 
 from hthor import houses
 from hthor.errors import HthorError
@@ -96,7 +97,7 @@ def places(space, picks):
 
 
 shares = st.floats(0.0, 0.999)
-laws = settings(max_examples=30, deadline=None)
+laws = settings(max_examples=cases(30))
 
 
 # ------------------------------------------------------------------------------------------------------------ the grid
@@ -290,7 +291,7 @@ def test_no_path_is_longer_than_over_the_grid(spec, p):
     assert all(length <= over[cell] + 1e-9 for length, cell in zip(exact, cells, strict=True))
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=cases(12))
 @given(cluttered(), shares, shares)
 def test_pruning_loses_no_path(spec, p, q):
     space = FreeSpace(spec, 0.25)

@@ -54,7 +54,9 @@ def test_there_are_ten_houses_of_many_sizes() -> None:
     assert max(areas) > 2 * min(areas)
 
 
-@pytest.mark.parametrize("name", OWN)
+@pytest.mark.parametrize(
+    "name", [name if name in ("elder", "hazel") else pytest.param(name, marks=pytest.mark.nightly) for name in OWN]
+)
 def test_a_house_of_our_own_is_proved_sound(name: str) -> None:
     """Every rule, the engine's among them: nothing floats, sticks in something or bars a door; all can be reached."""
     assert [str(finding) for finding in check_soundness(houses.load(name))] == []
@@ -407,7 +409,12 @@ def test_simple_and_crossed_polygons() -> None:
 
 
 @pytest.mark.parametrize(
-    "first", ["import hthor.houses.checks.house_checks", "from hthor.houses.checks.house_checks import Finding", "pass"]
+    "first",
+    [
+        "import hthor.houses.checks.house_checks",
+        pytest.param("from hthor.houses.checks.house_checks import Finding", marks=pytest.mark.nightly),
+        "pass",
+    ],
 )
 def test_check_is_the_function_in_whatever_order_things_are_imported(first: str) -> None:
     imports = "from hthor import houses\nfrom hthor.houses.checks.house_checks import check"

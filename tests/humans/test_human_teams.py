@@ -134,7 +134,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A small run: two different people, three trials in one house."""
     folder = tmp_path_factory.mktemp("two")
     smoke = tasks.load_suite("smoke")
-    few = make_suite("few", 1, tuple(task for task in smoke.tasks if task.house == "hazel")[:3])
+    few = make_suite("few", 1, tuple(task for task in smoke.tasks if task.house == "elder")[:3])
     (folder / "few.json").write_bytes(encode_suite(few))
     options = run_options.RunOptions(
         agents=("oracle",), humans=("greedy,proxy",), suite=str(folder / "few.json"), jobs=1, out=folder / "run"

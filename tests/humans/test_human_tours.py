@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 
 import msgspec
@@ -103,11 +104,15 @@ def trial(task: object, session: int = 0) -> TrialSpec:
     )
 
 
+@functools.cache
+def world() -> World:
+    return World(TASK.house, objects=[(one.id, one.kind) for one in TASK.objects])
+
+
 def played(model: type, number: int = 0) -> tuple[object, object]:
     person = model(Participant(seed=0, number=number, traits=Parameters()))
-    world = World(TASK.house, objects=[(one.id, one.kind) for one in TASK.objects])
     task = msgspec.structs.replace(TASK, time_limit=20.0)
-    return person, play(trial(task, number), world, {HUMAN: person}, {})
+    return person, play(trial(task, number), world(), {HUMAN: person}, {})
 
 
 def test_people_walk_the_tour_and_say_when_they_are_ready() -> None:

@@ -9,6 +9,7 @@ import pytest
 from fake_flat import BODY, DOORWAY, FURNITURE, Flat, play
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 
 from hthor import catalog, plugins, rules, seeds
 from hthor.humans.communication.trust import Experience, Trust, initial_trust
@@ -296,7 +297,7 @@ moment = st.fixed_dictionaries(
 )
 
 
-@settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=cases(15), suppress_health_check=[HealthCheck.too_slow])
 @given(st.sampled_from(("find", "on", "in")), st.lists(moment, min_size=1, max_size=40))
 def test_nothing_perceived_makes_a_person_fall_over(relation, moments):
     flat = Flat("Table|1")

@@ -12,6 +12,7 @@ import world_house as tiny
 from fake_flat import BODY, FURNITURE, Flat, play
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 from random_solids import house, slowly
 from world_house import COFFEE, FRIDGE, TABLE, do, on, task, wait
 
@@ -93,7 +94,7 @@ def test_people_know_how_large_things_are():
 # --------------------------------------------------------------------------------------------- what the world's eye has
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=cases(30))
 @given(st.integers(0, 10**6), st.floats(-3.1, 3.1), st.floats(-0.6, 0.4))
 def test_a_closer_look_finds_what_ray_after_ray_finds(seed, yaw, pitch):
     chance, scene = np.random.default_rng(seed + 5), house(seed, 60, 0.7)
@@ -245,7 +246,7 @@ def test_the_time_to_notice_is_exponential():
     assert 0.2 < missed < 0.8
 
 
-@settings(max_examples=10, deadline=None)
+@settings(max_examples=cases(10))
 @given(st.integers(0, 10**9), st.integers(1, 200))
 def test_what_is_hidden_is_never_noticed(root, glimpses):
     looker = Looker(root, share=0.0)
@@ -389,7 +390,7 @@ def exposures(looker):
     return [entry for entry in looker.me.journal if entry.kind == "exposure"]
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=cases(30))
 @given(st.integers(0, 10**9), st.lists(st.tuples(st.floats(0.6, 6.0), st.floats(-0.8, 0.8)), min_size=1, max_size=60))
 def test_the_journal_holds_all_that_led_to_noticing(root, glances):
     """The rates of what is written down add up to those that were gathered, nearly: alike glimpses are averaged."""

@@ -92,7 +92,7 @@ def test_what_was_written_down_stands() -> None:
 def played() -> list[TrialRecord]:
     """A few trials of one person with the oracle, in one house."""
     smoke = tasks.load_suite("smoke")
-    few = make_suite("few", 1, tuple(task for task in smoke.tasks if task.house == "alder"))
+    few = make_suite("few", 1, tuple(task for task in smoke.tasks if task.house == "elder"))
     whole = make_sessions(few, agent="oracle", seed=3)[0]
     return [done.record for done in trial_runner.make_runner()(Session(number=whole.number, trials=whole.trials[:4]))]
 

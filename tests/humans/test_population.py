@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 
 from hthor import seeds
 from hthor.errors import HthorError, PopulationError, UnknownName
@@ -103,7 +104,7 @@ def test_contraction_tells_what_was_learnt():
         max_size=len(parameter_registry.free_parameter_names()),
     )
 )
-@settings(deadline=None, max_examples=30)
+@settings(max_examples=cases(30))
 def test_the_cube_and_the_units_are_one_to_one(point: list[float]):
     values = parameter_registry.from_quantiles([point])
     assert parameter_registry.to_quantiles(values)[0] == pytest.approx(point, abs=1e-9)

@@ -12,6 +12,7 @@ import pytest
 from board_fakes import COUNT, board, code, committed, contents, entry_of, kept, replayed, runs, verified, whole  # noqa: F401
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 
 from benchmarks import forging
 from hthor import jsonio
@@ -366,7 +367,7 @@ def test_a_fall_is_seen_as_often_as_is_said_and_an_honest_agent_is_not_flagged()
     assert performance_drop.detectable_drop(np.zeros(60), entry_metrics.trial_participants(60, 6), 60) is None
 
 
-@settings(max_examples=25)
+@settings(max_examples=cases(25))
 @given(st.integers(0, 200), st.integers(0, 60))
 def test_the_better_it_went_the_less_of_a_fall(won: int, more: int):
     claimed = np.r_[np.ones(150), np.zeros(50)]

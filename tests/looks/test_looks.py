@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 
 from hthor import catalog, looks
 from hthor.catalog import colors
@@ -127,7 +128,7 @@ def test_a_look_fits_other_sizes(name: str, factors: Vec3) -> None:
 
 
 @given(st.sampled_from(NAMES), st.tuples(*[st.floats(0.4, 2.5)] * 3), st.integers(0, 9))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=cases(40))
 def test_a_look_fills_whatever_box_a_house_gives_it(name: str, factors: Vec3, variant: int) -> None:
     size = scaled(name, factors)
     pieces = looks.look(name, size, variant)
@@ -207,7 +208,7 @@ def test_solids_are_closed_and_face_outward(shape: str) -> None:
 
 
 @given(st.floats(-3, 3), st.sampled_from("xyz"), st.tuples(*[st.floats(0.3, 3)] * 3))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=cases(30))
 def test_turning_and_stretching_keep_a_mesh_sound(angle: float, axis: str, factors: Vec3) -> None:
     mesh = solids.ball((0.2, 0.1, 0.3), (1.0, 1.0, 1.0), 12)
     for changed in (shaping.turned(mesh, axis, angle), shaping.stretched(mesh, *factors)):

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 from matplotlib.colors import to_rgba
 from matplotlib.patches import Polygon
 from matplotlib.text import Text
@@ -41,7 +42,7 @@ def elder() -> World:
     return world(task("rearrange/elder/01"))
 
 
-@settings(max_examples=40)
+@settings(max_examples=cases(40))
 @given(st.sampled_from(houses.names()), st.floats(0.0, 2.0 * math.pi), st.sampled_from([SIZE, (300, 400), (320, 256)]))
 def test_a_whole_house_is_in_the_picture_and_fills_it(name: str, azimuth: float, size: tuple[int, int]) -> None:
     house = houses.load(name)

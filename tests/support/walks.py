@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import functools
+
 from hthor import houses, plugins, tasks
 from hthor.episode import play
 from hthor.humans.models.proxy import Model
@@ -12,6 +14,11 @@ from hthor.world import World
 PRIVILEGES = {"frontier": ("ideal_detector",), "oracle": ("house_map", "ideal_detector", "object_poses")}
 
 
+@functools.lru_cache(maxsize=4)
+def _world(house, robots, objects):
+    return World(houses.load(house), robots=robots, objects=objects)
+
+
 def walk(task_id, agent="", participant=0):
     """One trial of a task of the suite `vln`, with a scout if an agent is named: its task and its log."""
     task = next(task for task in tasks.load_suite("vln").tasks if task.id == task_id)
@@ -20,11 +27,7 @@ def walk(task_id, agent="", participant=0):
         ref = AgentRef(name=agent, source="", sha256="", privileges=PRIVILEGES[agent])
         robots = (RobotSeat(seat="robot", robot="scout", agent=ref),)
         minds = {"robot": plugins.load("agent", agent)()}
-    world = World(
-        houses.load(task.house),
-        robots=("scout",) if agent else (),
-        objects=tuple((one.id, one.kind) for one in task.objects),
-    )
+    world = _world(task.house, ("scout",) if agent else (), tuple((one.id, one.kind) for one in task.objects))
     trial = TrialSpec(
         task=task,
         robots=robots,

@@ -43,8 +43,10 @@ EXTENDED = {kind.short: kind for kind in KINDS.values() if isinstance(kind, JobK
 NIGHTLY = pytest.mark.nightly
 DRAWN_IN = (
     ("elder", 1),
-    ("willow", 1),
-    *(pytest.param(*pair, marks=NIGHTLY) for pair in (("elder", 2), ("willow", 2), ("hazel", 1), ("hazel", 2))),
+    *(
+        pytest.param(*pair, marks=NIGHTLY)
+        for pair in (("willow", 1), ("elder", 2), ("willow", 2), ("hazel", 1), ("hazel", 2))
+    ),
 )
 HOUSES = {name: houses.load(name) for name in houses.names()}
 _DRAWN: dict = {}
@@ -218,7 +220,7 @@ def test_impossible_goals_are_refused(change, says):
     assert says in kind.objection(goal, HOUSES["elder"])
 
 
-@pytest.mark.parametrize("short", ["collect", "tidy"])
+@pytest.mark.parametrize("short", ["collect", pytest.param("tidy", marks=NIGHTLY)])
 def test_t_star_is_no_more_than_a_person_alone_needs(short):
     """Who walks along exact paths between sampled places in reach, and does the jobs in any order, is never faster."""
     task, house = drawn(EXTENDED[short], "elder", 1), HOUSES["elder"]
@@ -241,7 +243,7 @@ def test_t_star_is_no_more_than_a_person_alone_needs(short):
         assert 0.0 < t_star <= walked / rules.PACE_M_S + len(stops) * rules.HANDLING_S
 
 
-@pytest.mark.parametrize("short", ["collect", "rearrange", pytest.param("tidy", marks=NIGHTLY)])
+@pytest.mark.parametrize("short", ["collect", *(pytest.param(short, marks=NIGHTLY) for short in ("rearrange", "tidy"))])
 def test_the_least_time_is_that_of_the_best_order(short):
     """It equals the shortest of the walks through all stops in each of the possible orders."""
     task, house = drawn(EXTENDED[short], "elder", 1), HOUSES["elder"]

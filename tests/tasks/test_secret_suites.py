@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import hashlib
 import json
 import os
@@ -54,6 +55,15 @@ def files(parts):
 def folder(files, tmp_path: Path) -> Path:
     secret_suites.write_suite(ORDER, SALT, tmp_path / "tiny", files, {"hthor": "1"})
     return tmp_path / "tiny"
+
+
+@pytest.fixture
+def documents(monkeypatch: pytest.MonkeyPatch):
+    """A house is built once from its root, whoever judges it."""
+    monkeypatch.setattr(secret_suites, "_document", _DOCUMENT)
+
+
+_DOCUMENT = functools.cache(secret_suites._document)
 
 
 def differences(folder: Path, parts, salt: Salt = SALT):
@@ -207,7 +217,8 @@ def test_starts_lie_on_the_grid_so_that_no_digit_tells_how_they_were_drawn(folde
             assert (round(pose.x, 4), round(pose.y, 4), round(pose.yaw, 4)) == (pose.x, pose.y, pose.yaw)
 
 
-def test_a_house_that_is_unsound_or_too_small_is_drawn_again(monkeypatch: pytest.MonkeyPatch):
+@pytest.mark.usefixtures("documents")
+def test_a_house_that_is_unsound_or_too_small_is_drawn_again():
     lot = secret_suites.house_orders(SuiteOrder(name="tiny", houses=1, tasks=1), SALT)[0]
     seen = []
 
@@ -227,6 +238,7 @@ def test_a_house_that_is_unsound_or_too_small_is_drawn_again(monkeypatch: pytest
         )
 
 
+@pytest.mark.usefixtures("documents")
 def test_a_task_that_cannot_be_done_is_drawn_again():
     lot = secret_suites.house_orders(SuiteOrder(name="tiny", houses=1, tasks=1), SALT)[0]
     seen = []

@@ -26,6 +26,9 @@ from hthor.types import Goal, Placement, Snapshot
 NAVIGATION, MANIPULATION, PAPER = (tasks.load_suite(name) for name in ("navigation", "manipulation", "paper"))
 EXACT = (NAVIGATION, MANIPULATION)
 SOME = [*NAVIGATION.tasks[::61], *MANIPULATION.tasks[::173]]
+PLAYED = [
+    task if number in (0, 3) else pytest.param(task, marks=pytest.mark.nightly) for number, task in enumerate(SOME[::4])
+]
 
 
 @pytest.fixture
@@ -105,7 +108,7 @@ def test_a_slice_is_valid_and_as_difficult_as_it_says(task):
     assert {one.id for one in task.objects} >= set(catalog.TARGETS)
 
 
-@pytest.mark.parametrize("task", SOME[::4], ids=lambda task: task.id)
+@pytest.mark.parametrize("task", PLAYED, ids=lambda task: getattr(task, "id", None))
 def test_a_slice_can_be_done(task):
     assert solvability.check_task(task).faults == ()
 
@@ -218,10 +221,10 @@ def test_list_counts_the_suites_and_their_tasks(hthor):
     assert code == 0
     found = {row["name"]: row["tasks"] for row in json.loads(out)}
     assert (found["navigation"], found["manipulation"], found["paper"], found["smoke"]) == (565, 1583, 30, 60)
-    assert len(json.loads(hthor("tasks", "list", "navigation", "--json")[1])) == 565
-    code, out, _ = hthor("tasks", "list", "manipulation")
+    assert len(json.loads(hthor("tasks", "list", "manipulation", "--json")[1])) == 1583
+    code, out, _ = hthor("tasks", "list", "navigation")
     assert code == 0
-    assert "1583 tasks" in out
+    assert "565 tasks" in out
 
 
 def test_list_narrows_down(hthor):

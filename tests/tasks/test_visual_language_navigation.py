@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import functools
 import math
 
 import msgspec
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from law_cases import cases
 
 from hthor import houses, plugins, tasks
 from hthor.geometry import plane
@@ -47,6 +49,11 @@ def room_of(house, x, y):
     return next((room for room in house.rooms if plane.inside((x, y), room.polygon)), None)
 
 
+@functools.cache
+def places_by(name, landmark):
+    return place_beside(HOUSES[name], next(thing for thing in HOUSES[name].things if thing.id == landmark))
+
+
 @st.composite
 def routes(draw):
     """A house, a start on its floor, a landmark, and the shortest route to it in another room."""
@@ -56,7 +63,7 @@ def routes(draw):
     start = Pose(x=float(x), y=float(y), yaw=draw(st.floats(-3.1, 3.1)))
     goal = draw(st.sampled_from(KIND.goals(house)))
     end = next(thing for thing in house.things if thing.kind == goal.destination and not thing.parent)
-    route = shortest_route(house, start, place_beside(house, end))
+    route = shortest_route(house, start, places_by(name, end.id))
     return house, start, end, route
 
 
@@ -68,7 +75,7 @@ def written(found):
 # ----------------------------------------------------------------------------------------------------- the instruction
 
 
-@settings(max_examples=40)
+@settings(max_examples=cases(40))
 @given(routes())
 def test_whoever_reads_the_words_literally_gets_to_the_end_of_the_route(found):
     house, start, end, route = found
@@ -82,7 +89,7 @@ def test_whoever_reads_the_words_literally_gets_to_the_end_of_the_route(found):
     assert room_of(house, *route.points[-1]).id == end.room
 
 
-@settings(max_examples=40)
+@settings(max_examples=cases(40))
 @given(routes())
 def test_every_side_and_room_that_is_named_is_true_of_the_route(found):
     house, _, _, route = found
@@ -101,7 +108,7 @@ def test_every_side_and_room_that_is_named_is_true_of_the_route(found):
             assert directions.off_side(step.side, bearing) <= literal_reader.OFF_RAD
 
 
-@settings(max_examples=40)
+@settings(max_examples=cases(40))
 @given(routes())
 def test_every_landmark_is_in_sight_where_it_is_mentioned_and_on_the_hand_that_is_named(found):
     house, _, _, route = found

@@ -232,7 +232,7 @@ def _field(field: inspect.Field) -> st.SearchStrategy[Any]:
     return values | st.just(msgspec.UNSET) if field.default is msgspec.UNSET else values
 
 
-@settings(suppress_health_check=[HealthCheck.too_slow, HealthCheck.large_base_example], max_examples=30)
+@settings(suppress_health_check=[HealthCheck.too_slow, HealthCheck.large_base_example], max_examples=cases(30))
 @given(records(Briefing), st.lists(records(Observation), max_size=3))
 def test_whatever_a_local_agent_gets_a_guest_gets(briefing: Briefing, seen: list[Observation]) -> None:
     kept: list[Any] = []
