@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # nightly.sh [PART...]: the checks that take longer than those of every commit, all or some.
-#   tests        the tests marked nightly, and the laws with other cases than every commit has
+#   tests        the tests marked nightly, and the laws with other and three times as many cases
 #   redteam      hostile agents at every level of isolation
 #   fuzz         random calls of a world, random actions among loose things, damaged files and made-up command lines
 #   determinism  the same run twice, byte for byte, with other numbers of jobs

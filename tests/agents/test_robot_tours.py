@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import math
 
 import msgspec
@@ -10,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from still_person import StillPerson
+from worlds import world_of
 
 from hthor import houses, tasks
 from hthor.agents import frontier, oracle, silent
@@ -30,7 +30,6 @@ from hthor.types import (
     Thing,
     TrialSpec,
 )
-from hthor.world import World
 from hthor.world.robots import tender
 
 TASK = next(task for task in tasks.load_suite("rearrange").tasks if task.id == "rearrange/cedar/01")
@@ -106,11 +105,6 @@ def test_no_robot_keeps_anybody_waiting() -> None:
     assert mind.act(look(phase="")).signals == ()
 
 
-@functools.cache
-def world() -> World:
-    return World(TASK.house, robots=["tender"], objects=[(one.id, one.kind) for one in TASK.objects])
-
-
 def toured(kind: type, seconds: float) -> tuple[object, Episode]:
     """A robot's agent after its tour of the house, beside a person who stands still."""
     agent = AgentRef(name="a", source="", sha256="", privileges=kind.privileges)  # type: ignore[attr-defined]
@@ -126,7 +120,7 @@ def toured(kind: type, seconds: float) -> tuple[object, Episode]:
         rules_sha256="",
         code_sha256="",
     )
-    episode, mind, person = Episode(spec, world()), kind(), StillPerson()
+    episode, mind, person = Episode(spec, world_of(TASK, ("tender",))), kind(), StillPerson()
     episode.reset()
     mind.begin(episode.briefing("robot"))
     while not episode.done:

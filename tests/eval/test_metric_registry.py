@@ -76,6 +76,7 @@ def _run(folder: Path, name: str, *, absent: bool = False) -> Path:
 
 
 def test_a_metric_is_added_by_one_file(tmp_path: Path) -> None:
+    # compiled files go along, which saves compiling all modules again
     ignored = shutil.ignore_patterns("data", "unseen", "suites.json")
     shutil.copytree(code_identity.PACKAGE, tmp_path / "hthor", ignore=ignored)
     (tmp_path / "hthor" / "eval" / "metrics" / "definitions" / "gestures.py").write_text(ADDED)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import functools
 import math
 
 import msgspec
 from hypothesis import given
 from hypothesis import strategies as st
+from worlds import world_of
 
 from hthor import tasks
 from hthor.episode import play, task_began
@@ -22,7 +22,6 @@ from hthor.humans.population.parameters import Parameters
 from hthor.humans.population.participant import Participant
 from hthor.types import HUMAN, Briefing, Detection, HumanSeat, Job, Observation, PhaseBriefing, TrialSpec
 from hthor.types.events import PhaseBegan, Picked, SaidReady
-from hthor.world import World
 from hthor.world.model.bodies import avatar
 
 NAMES = ("apple", "book", "mug")
@@ -104,15 +103,10 @@ def trial(task: object, session: int = 0) -> TrialSpec:
     )
 
 
-@functools.cache
-def world() -> World:
-    return World(TASK.house, objects=[(one.id, one.kind) for one in TASK.objects])
-
-
 def played(model: type, number: int = 0) -> tuple[object, object]:
     person = model(Participant(seed=0, number=number, traits=Parameters()))
     task = msgspec.structs.replace(TASK, time_limit=20.0)
-    return person, play(trial(task, number), world(), {HUMAN: person}, {})
+    return person, play(trial(task, number), world_of(TASK), {HUMAN: person}, {})
 
 
 def test_people_walk_the_tour_and_say_when_they_are_ready() -> None:

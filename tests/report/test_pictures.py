@@ -96,16 +96,19 @@ def test_knowledge_of_beliefs_has_a_row_where_a_robot_predicted_them(spec: Trial
         assert ("beliefs known" in [text.get_text() for text in sheet.findobj(Text)]) == drawn
 
 
-SHORT = 61
-"""Ticks of the trial that is filmed."""
+FILMED_TICKS = 61
+"""How much of the trial is filmed."""
 
 
 @pytest.fixture(scope="module")
 def film(spec: TrialSpec, log: EpisodeLog, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("film") / "film.webm"
-    first = tuple(event for event in log.events if event.tick <= SHORT)
+    first = tuple(event for event in log.events if event.tick <= FILMED_TICKS)
     short = msgspec.structs.replace(
-        log, events=first, ticks=SHORT, paths={seat: way[: SHORT // 2 + 1] for seat, way in log.paths.items()}
+        log,
+        events=first,
+        ticks=FILMED_TICKS,
+        paths={seat: way[: FILMED_TICKS // 2 + 1] for seat, way in log.paths.items()},
     )
     trial_video.write_video(path, spec, short, houses.load(TASK.house))
     return path
@@ -114,7 +117,7 @@ def film(spec: TrialSpec, log: EpisodeLog, tmp_path_factory: pytest.TempPathFact
 def test_a_film_lasts_as_long_as_the_trial(film: Path) -> None:
     opened = cv2.VideoCapture(str(film))
     seconds = opened.get(cv2.CAP_PROP_FRAME_COUNT) / opened.get(cv2.CAP_PROP_FPS)
-    assert seconds == pytest.approx(SHORT / 10.0 / trial_video.SPEED + webm_file.HOLD_S, abs=0.1)
+    assert seconds == pytest.approx(FILMED_TICKS / 10.0 / trial_video.SPEED + webm_file.HOLD_S, abs=0.1)
 
 
 HOSTILE = r"$\frac{1}{$ <b>x</b> & a_b^2 $x$ 😀 \u202e"

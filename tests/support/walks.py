@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-import functools
+from worlds import world_of
 
-from hthor import houses, plugins, tasks
+from hthor import plugins, tasks
 from hthor.episode import play
 from hthor.humans.models.proxy import Model
 from hthor.humans.population.participant import Participant
 from hthor.types import AgentRef, HumanSeat, RobotSeat, TrialSpec
-from hthor.world import World
 
 PRIVILEGES = {"frontier": ("ideal_detector",), "oracle": ("house_map", "ideal_detector", "object_poses")}
-
-
-@functools.lru_cache(maxsize=4)
-def _world(house, robots, objects):
-    return World(houses.load(house), robots=robots, objects=objects)
 
 
 def walk(task_id, agent="", participant=0):
@@ -27,7 +21,6 @@ def walk(task_id, agent="", participant=0):
         ref = AgentRef(name=agent, source="", sha256="", privileges=PRIVILEGES[agent])
         robots = (RobotSeat(seat="robot", robot="scout", agent=ref),)
         minds = {"robot": plugins.load("agent", agent)()}
-    world = _world(task.house, ("scout",) if agent else (), tuple((one.id, one.kind) for one in task.objects))
     trial = TrialSpec(
         task=task,
         robots=robots,
@@ -39,6 +32,11 @@ def walk(task_id, agent="", participant=0):
         rules_sha256="",
         code_sha256="",
     )
-    log = play(trial, world, {"human": Model(Participant(seed=0, number=participant))}, minds)
+    log = play(
+        trial,
+        world_of(task, ("scout",) if agent else ()),
+        {"human": Model(Participant(seed=0, number=participant))},
+        minds,
+    )
     assert not log.faults
     return task, log

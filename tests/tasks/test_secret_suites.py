@@ -57,13 +57,13 @@ def folder(files, tmp_path: Path) -> Path:
     return tmp_path / "tiny"
 
 
+_document = functools.cache(secret_suites._document)
+
+
 @pytest.fixture
 def documents(monkeypatch: pytest.MonkeyPatch):
     """A house is built once from its root, whoever judges it."""
-    monkeypatch.setattr(secret_suites, "_document", _DOCUMENT)
-
-
-_DOCUMENT = functools.cache(secret_suites._document)
+    monkeypatch.setattr(secret_suites, "_document", _document)
 
 
 def differences(folder: Path, parts, salt: Salt = SALT):

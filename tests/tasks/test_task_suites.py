@@ -29,6 +29,7 @@ SOME = [*NAVIGATION.tasks[::61], *MANIPULATION.tasks[::173]]
 PLAYED = [
     task if number in (0, 3) else pytest.param(task, marks=pytest.mark.nightly) for number, task in enumerate(SOME[::4])
 ]
+"""At each commit a task of each of both suites is solved."""
 
 
 @pytest.fixture
@@ -108,7 +109,7 @@ def test_a_slice_is_valid_and_as_difficult_as_it_says(task):
     assert {one.id for one in task.objects} >= set(catalog.TARGETS)
 
 
-@pytest.mark.parametrize("task", PLAYED, ids=lambda task: getattr(task, "id", None))
+@pytest.mark.parametrize("task", PLAYED, ids=lambda task: task.id)
 def test_a_slice_can_be_done(task):
     assert solvability.check_task(task).faults == ()
 
