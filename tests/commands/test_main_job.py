@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import functools
+import itertools
 import json
 import os
 import shlex
@@ -35,6 +36,9 @@ from hthor.eval.runner import trial_runner
 from hthor.eval.runner.trial_runner import Sources
 from hthor.leaderboard import enter
 from hthor.leaderboard.entries import entry_metrics, files, trial_outcomes
+from hthor.leaderboard.entries.entry import Entry
+from hthor.leaderboard.entries.trial_outcomes import outcome_bytes
+from hthor.leaderboard.verify.verify import draw_sample
 from hthor.tasks.suite import encode_suite, make_suite
 from hthor.tasks.suites.commitment import Commitment
 from hthor.types import HUMAN
@@ -45,7 +49,7 @@ FOLDER = Path(tempfile.mkdtemp(prefix="hthor-tests-"))
 SUITE, FEW_TASKS = FOLDER / "brief.json", FOLDER / "few.json"
 EVAL = ("eval", "--agent", "frontier", "--humans", "proxy", "--suite", str(SUITE), "--participants", "2", "--quiet")
 EVAL += ("--no-control",)
-TRIALS, FEW = 12, 3
+TRIALS, FEW, SAMPLE = 12, 3, 3
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -505,6 +509,14 @@ def board(reference: Path, brief: tasks.Suite, say: Callable[..., Said], tmp_pat
     return tmp_path / "board"
 
 
+def revealing_word(claim: Entry, true: Entry, lie: Entry) -> str:
+    """A word whose draw has a trial with a forged outcome; which words do depends on the platform."""
+    outcomes = [[outcome_bytes(row) for row in trial_outcomes.unpack(one.trials).rows] for one in (true, lie)]
+    forged = {place for place, pair in enumerate(zip(*outcomes, strict=True)) if pair[0] != pair[1]}
+    words = map(str, itertools.count())
+    return next(word for word in words if forged.intersection(draw_sample(word, claim.digest, TRIALS, SAMPLE)))
+
+
 def test_leaderboard(board: Path, reference: Path, brief: tasks.Suite, say: Callable[..., Said]):
     """Put on the board, verified by real physics on this platform and as on another; a forged copy is caught."""
     here = board
@@ -517,13 +529,12 @@ def test_leaderboard(board: Path, reference: Path, brief: tasks.Suite, say: Call
     whole = json.loads((reference / "result.json").read_bytes())["metrics"]
     assert metrics == {name: whole[name] for name in metrics}
 
-    verify = ("leaderboard", "verify", entry, "--suite", SUITE, "--json")
-    verify += ("--sample", "3", "--draw", "0123abcd", "--fresh", "0")
-    said = say(*verify, "--by", "a test", "--date", "2027-01-01", "--write")
+    verify = ("leaderboard", "verify", entry, "--suite", SUITE, "--json", "--sample", str(SAMPLE), "--fresh", "0")
+    said = say(*verify, "--draw", "0123abcd", "--by", "a test", "--date", "2027-01-01", "--write")
     assert said.code == 0, said.err
     found = json.loads(said.out)
     for part in (found["trials"], found["control"]):
-        assert (part["tier"], part["drawn"], part["passed"]) == ("V1", 3, True)
+        assert (part["tier"], part["drawn"], part["passed"]) == ("V1", SAMPLE, True)
         assert part["compared"] == part["equal"] == part["same_bytes"] >= 3
         assert 0.0 < part["caught"] <= 1.0
     assert json.loads((here / "verifications" / entry.name).read_bytes()) == found
@@ -535,17 +546,19 @@ def test_leaderboard(board: Path, reference: Path, brief: tasks.Suite, say: Call
     lie = forging.forged(true, 1.0, control, brief)
     elsewhere = ({**lie.platforms[0], "libc": "another"},)
     for platforms, tier in ((lie.platforms, "V1"), (elsewhere, "V2")):
-        files.write_document(entry, msgspec.structs.replace(lie, platforms=platforms))
+        claim = msgspec.structs.replace(lie, platforms=platforms)
+        files.write_document(entry, claim)
         assert say("leaderboard", "validate", *on).code == 0  # all of it follows from its trials, which never were
-        said = say(*verify)
+        said = say(*verify, "--draw", revealing_word(claim, true, lie))
         assert (said.code, json.loads(said.out)["trials"]["tier"]) == (5, tier)
     worse = forging.forged(control, 1.0, None, brief)
     uplift = entry_metrics.entry_uplift(
         true, trial_outcomes.unpack(true.trials), worse, trial_outcomes.unpack(worse.trials)
     )
+    claim = msgspec.structs.replace(true, uplift=uplift)
     files.write_document(alone, worse)
-    files.write_document(entry, msgspec.structs.replace(true, uplift=uplift))
-    said = say(*verify, "--write")
+    files.write_document(entry, claim)
+    said = say(*verify, "--draw", revealing_word(claim, control, worse), "--write")
     parts = json.loads(said.out)
     assert (said.code, parts["trials"]["passed"], parts["control"]["passed"]) == (5, True, False)
     listed = json.loads((here / "leaderboard.json").read_bytes())
@@ -555,7 +568,7 @@ def test_leaderboard(board: Path, reference: Path, brief: tasks.Suite, say: Call
 
     text = entry.read_text().replace('"seed": 0', '"seed": 1')
     entry.write_text(text)
-    said = say(*verify)
+    said = say(*verify, "--draw", "0123abcd")
     assert said.code == 2
     assert f"{entry}: hashes.run" in said.err
 
