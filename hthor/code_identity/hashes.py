@@ -92,6 +92,12 @@ def compiled() -> Path:
     return installation.cache() / f"compiled-{kernels[:16]}"
 
 
+def is_compiled() -> bool:
+    """Whether an earlier process of exactly this code has compiled functions, so that those to come start at once."""
+    folder = Path(os.environ.get("NUMBA_CACHE_DIR") or compiled())
+    return folder.is_dir() and any(folder.iterdir())
+
+
 def keep_compiled() -> None:
     """Make this process and its children cache compiled functions in `compiled`, unless the user chose a folder.
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import fcntl
 import functools
+import io
 import json
 import os
 import signal
@@ -21,13 +22,14 @@ from unittest import mock
 import eval_fakes as fakes
 import pytest
 from command_line import Said, run, start
+from rich.console import Console
 from typer.testing import CliRunner
 
 from hthor import code_identity, houses, plugins, tasks
 from hthor.cli import app
 from hthor.console import completion, exit_status
 from hthor.eval.config import human_populations, robot_team
-from hthor.eval.runner import engines, trial_runner
+from hthor.eval.runner import engines, progress, trial_runner
 from hthor.guest.confinement import LEVELS
 from hthor.humans.population import kinds, population_file
 from scripts import cli_reference
@@ -247,6 +249,27 @@ def test_every_command_keeps_compiled_code_in_one_place(words: list[str], monkey
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
     CliRunner().invoke(app, words)
     assert os.environ["NUMBA_CACHE_DIR"] == str(code_identity.compiled())
+
+
+@pytest.mark.parametrize("live", [False, True])
+def test_a_run_says_that_it_compiles_only_if_it_will(
+    live: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "compiled"))
+
+    def begun(kept: int) -> str:
+        heard = io.StringIO()
+        watcher = progress.make_watcher(
+            Console(file=heard, width=120, force_terminal=live), "frontier", quiet=False, live=live
+        )
+        watcher.begin(60, kept)
+        watcher.close()
+        return heard.getvalue()
+
+    assert "the first run compiles" in begun(0)
+    assert "the first run compiles" not in begun(60)
+    (tmp_path / "compiled" / "navigation").mkdir(parents=True)
+    assert "the first run compiles" not in begun(0)
 
 
 @pytest.mark.parametrize("within", [False, True])

@@ -5,12 +5,14 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING, Any
 
+from hthor import code_identity
 from hthor.console import progress_bar
 
 if TYPE_CHECKING:
     from rich.console import Console
 
 _LINE_EVERY_S = 30.0
+_COMPILING = "the first run compiles for up to half a minute"
 
 
 class Watcher:
@@ -89,7 +91,8 @@ class Plain(Watcher):
     def begin(self, total: int, kept: int) -> None:
         self._tally = Tally(total, kept)
         self._tenth = 10 * kept // max(1, total)
-        self._say(f"{total} trials" + (f", {kept} of them played before" if kept else ""))
+        words = f"{total} trials" + (f", {kept} of them played before" if kept else "")
+        self._say(words if kept == total or code_identity.is_compiled() else f"{words}; {_COMPILING}")
 
     def played(self, met: bool, faulty: bool) -> None:
         self._tally.count(met, faulty)
@@ -122,7 +125,8 @@ class Live(Watcher):
     def begin(self, total: int, kept: int) -> None:
         self._tally = Tally(total, kept)
         self._bar = progress_bar.make_progress(self._console)
-        words = f"{kept}/{total} trials, starting the workers" if kept < total else self._tally.words
+        starting = "starting the workers" if code_identity.is_compiled() else _COMPILING
+        words = f"{kept}/{total} trials, {starting}" if kept < total else self._tally.words
         self._task = self._bar.add_task(self._name, total=total, completed=kept, words=words)
         self._bar.start()
 
