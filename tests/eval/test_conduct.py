@@ -75,6 +75,12 @@ def test_the_share_of_thinking_is_of_the_trials_time():
     assert criteria.check_speed(msgspec.structs.replace(NOTES, thought_s=(0.2,) * 300)).status == "warning"
 
 
+def test_slow_loading_and_a_slow_begin_are_warned_of():
+    assert [criteria.check_loading(seconds, _Character()).status for seconds in (4.9, 5.1)] == ["ok", "warning"]
+    slow = msgspec.structs.replace(NOTES, begin_s=1.1)
+    assert [criteria.check_trial(one, "agent.py")[0].status for one in (NOTES, slow)] == ["ok", "warning"]
+
+
 class _Character:
     """As much of a submitted agent as warnings look at."""
 
