@@ -95,7 +95,7 @@ def compiled() -> Path:
 def is_compiled() -> bool:
     """Whether an earlier process of exactly this code has compiled functions, so that those to come start at once."""
     folder = Path(os.environ.get("NUMBA_CACHE_DIR") or compiled())
-    return folder.is_dir() and any(folder.iterdir())
+    return any(folder.rglob("*.nbi"))  # numba's index files; it makes folders before it compiles
 
 
 def keep_compiled() -> None:

@@ -12,7 +12,6 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 _LINE_EVERY_S = 30.0
-_COMPILING = "the first run compiles for up to half a minute"
 
 
 class Watcher:
@@ -91,8 +90,8 @@ class Plain(Watcher):
     def begin(self, total: int, kept: int) -> None:
         self._tally = Tally(total, kept)
         self._tenth = 10 * kept // max(1, total)
-        words = f"{total} trials" + (f", {kept} of them played before" if kept else "")
-        self._say(words if kept == total or code_identity.is_compiled() else f"{words}; {_COMPILING}")
+        played = f", {kept} of them played before" if kept else ""
+        self._say(f"{total} trials{played}" + (f", {_starting()}" if kept < total else ""))
 
     def played(self, met: bool, faulty: bool) -> None:
         self._tally.count(met, faulty)
@@ -125,8 +124,7 @@ class Live(Watcher):
     def begin(self, total: int, kept: int) -> None:
         self._tally = Tally(total, kept)
         self._bar = progress_bar.make_progress(self._console)
-        starting = "starting the workers" if code_identity.is_compiled() else _COMPILING
-        words = f"{kept}/{total} trials, {starting}" if kept < total else self._tally.words
+        words = f"{kept}/{total} trials, {_starting()}" if kept < total else self._tally.words
         self._task = self._bar.add_task(self._name, total=total, completed=kept, words=words)
         self._bar.start()
 
@@ -147,6 +145,11 @@ def make_watcher(console: Console, name: str, *, quiet: bool, live: bool) -> Wat
     if quiet:
         return Silent()
     return Live(console, name) if live else Plain(console, name)
+
+
+def _starting() -> str:
+    """What the first trial waits for."""
+    return "starting the workers" if code_identity.is_compiled() else "compiling for the first run, about 30 s"
 
 
 def _clock(seconds: float) -> str:
