@@ -11,7 +11,7 @@ JOBS ?= $(shell nproc 2>/dev/null || echo 1)
 # compiled files save each of the thousands of processes that tests start most of its start
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test check nightly fmt lint docs bench install clean python
+.PHONY: demo test check nightly fmt lint docs bench install torch clean python
 
 demo: .venv/.installed
 	$(BIN)/hthor eval --agent none --agent frontier --agent oracle --humans proxy --suite smoke
@@ -47,6 +47,9 @@ bench: .venv/.installed-dev
 
 install: .venv/.installed
 
+# what robots that learn need, and the tests of them, which skip without it
+torch: .venv/.installed-torch
+
 python:
 	@$(if $(PYTHON),$(PYTHON),false) -c 'import sys; sys.exit(not (3, 11) <= sys.version_info[:2] <= (3, 12))' 2>/dev/null \
 	  || { echo "hthor needs Python 3.11 or 3.12, and $(if $(PYTHON),$(PYTHON) is neither,none is on the PATH): install one, or name it: make demo PYTHON=/path/to/python3.12" >&2; exit 2; }
@@ -62,6 +65,10 @@ python:
 .venv/.installed-dev: pyproject.toml constraints.txt | .venv/bin/python
 	@$(BIN)/python scripts/install.py dev calibration
 	@touch .venv/.installed $@
+
+.venv/.installed-torch: pyproject.toml constraints.txt | .venv/bin/python
+	@$(BIN)/python scripts/install.py dev calibration torch
+	@touch .venv/.installed .venv/.installed-dev $@
 
 .venv/.installed-docs: pyproject.toml constraints.txt | .venv/bin/python
 	@$(BIN)/python scripts/install.py docs

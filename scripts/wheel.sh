@@ -68,16 +68,22 @@ here = pathlib.Path(hthor.__file__).resolve()
 sys.exit(None if pathlib.Path(sys.argv[1]).resolve() in here.parents else f"hthor came from {here}, not from the wheel")
 PY
 
-echo "-- every module can be imported with what the wheel requires, without any extra"
+echo "-- every module can be imported with what the wheel requires, or names the extra that it needs"
 "$work/env/bin/python" - <<'PY'
 import importlib
 import pkgutil
 
 import hthor
+from hthor.errors import MissingExtra
 
 names = [module.name for module in pkgutil.walk_packages(hthor.__path__, "hthor.")]
+without = []
 for name in names:
     if not name.endswith("__main__"):
-        importlib.import_module(name)
-print(len(names), "modules")
+        try:
+            importlib.import_module(name)
+        except MissingExtra as error:
+            without.append(f"{name}: {error}")
+print(len(names) - len(without), "modules")
+print(*without, sep="\n")
 PY

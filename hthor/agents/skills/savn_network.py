@@ -1,0 +1,290 @@
+"""The network of SAVN: an actor-critic that adapts its weights within an episode by the gradient of a learned loss.
+
+Self-adaptive visual navigation (Wortsman et al., CVPR 2019): after every few actions the policy takes one step down the
+gradient of a loss that is itself learned, computed from nothing but the policy's own hidden states and action
+probabilities. Training goes through those steps, so that the weights which an episode starts with, and the loss, make
+the adapted policy good. With ``updates=0`` the same network is the ordinary actor-critic of that paper.
+
+A batch of episodes runs in lock-step, each with weights of its own; see `FastWeights`. Needs the extra ``torch``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Literal, NamedTuple
+
+from msgspec import Struct
+
+from hthor.errors import MissingExtra
+
+try:
+    import torch
+    from torch import Tensor, nn
+    from torch.nn import functional as F  # noqa: N812
+except ModuleNotFoundError as error:
+    raise MissingExtra("SAVN", "torch") from error
+
+ACTIONS = ("ahead", "left", "right", "up", "down", "done")
+"""The published action set: 0.25 m ahead, 45 degrees to a side, the camera 30 degrees up or down, "here it is"."""
+GRID = 7
+"""Cells of the features along each side of the picture."""
+CELLS = GRID * GRID
+RANGES = 2
+"""Numbers that describe how far a cell of the slim features is; see `SlimEncoder`."""
+
+
+class NetworkConfig(Struct, frozen=True, kw_only=True):
+    """The sizes of a network and how it adapts; the defaults are those of the profile "slim".
+
+    Attributes:
+        profile: "slim" reads a class and a range per cell, "paper" a vector of image features per cell.
+        words: length of a word vector. classes: of things that a cell can show, the empty cell included.
+        embedding: numbers that stand for a cell's class. channels: of the image features, for "paper".
+        image, goal, action: channels of the three inputs after their first layer. fused: channels after the second.
+        hidden: size of the recurrent state. dropout: share of fused and image channels dropped in training.
+        window: actions between two adaptations. updates: how often an episode adapts at most, 0 for never.
+        rate: step size of an adaptation.
+    """
+
+    profile: Literal["slim", "paper"] = "slim"
+    words: int = 50
+    classes: int = 1
+    embedding: int = 8
+    channels: int = 512
+    image: int = 16
+    goal: int = 16
+    action: int = 10
+    fused: int = 8
+    hidden: int = 128
+    dropout: float = 0.0
+    window: int = 6
+    updates: int = 4
+    rate: float = 0.01
+
+
+PAPER = NetworkConfig(profile="paper", image=64, goal=64, fused=64, hidden=512, dropout=0.25, rate=1e-4)
+"""The published constants (Wortsman et al. 2019, and the code released with it), but for word vectors of length 50."""
+
+
+class Memory(NamedTuple):
+    """What a network carries from one action to the next: hidden and cell state (B, hidden), and the probabilities of
+    the last action (B, 6), zero before the first.
+    """
+
+    hidden: Tensor
+    cell: Tensor
+    action: Tensor
+
+
+class FastWeights:
+    """The weights of each episode of a batch, as what its adaptations added to the weights that all share.
+
+    For an affine layer ``y = W x + b`` the gradient of a loss is the sum over its uses ``j`` of ``d_j x_j^T`` for the
+    weights and of ``d_j`` for the bias, where ``d_j`` is the gradient with respect to ``y_j``. So after a step of size
+    ``rate`` the layer computes ``W x + b - rate * sum_j d_j (x_j . x + 1)``. Keeping the pairs (x_j, d_j) of each
+    episode is exact, can be differentiated again, and needs no copy of the weights per episode. A layer that is used at
+    every cell of a picture has many uses in one step, so for it the sum is kept as a matrix per episode.
+
+    Args:
+        rate: step size.
+        again: whether the steps are to be differentiated too, as training does.
+    """
+
+    def __init__(self, rate: float, again: bool) -> None:
+        self._rate, self._again = rate, again
+        self._added: dict[str, tuple[Tensor, Tensor]] = {}
+        self._used: list[tuple[str, Tensor, Tensor]] = []
+        self.notes_uses = True
+        """Whether another adaptation will follow, for which the layers' uses have to be kept."""
+
+    def __call__(self, name: str, layer: nn.Linear, x: Tensor) -> Tensor:
+        """What a layer computes in each episode.
+
+        Args:
+            x: (B, in), or (B, cells, in) for a layer that is used at every cell.
+        """
+        y: Tensor = layer(x)
+        added = self._added.get(name)
+        if added is not None and x.dim() == 3:
+            y = y - self._rate * torch.baddbmm(added[1].unsqueeze(1), x, added[0].mT)
+        elif added is not None:
+            match = torch.bmm(added[0], x.unsqueeze(2)) + 1.0
+            y = y - self._rate * torch.bmm(added[1].mT, match).squeeze(2)
+        if self.notes_uses:
+            self._used.append((name, x, y))
+        return y
+
+    def step(self, loss: Tensor) -> None:
+        """Adapt every episode to its own loss.
+
+        Args:
+            loss: the sum over the episodes. They share nothing but the first weights, so the gradient with respect to
+                an episode's outputs is that of its own loss.
+        """
+        outputs = [y for _, _, y in self._used]
+        gradients = torch.autograd.grad(loss, outputs, create_graph=self._again, allow_unused=True)
+        fresh: dict[str, list[tuple[Tensor, Tensor]]] = {}
+        for (name, x, _), gradient in zip(self._used, gradients, strict=True):
+            if gradient is not None:
+                fresh.setdefault(name, []).append((x, gradient))
+        for name, uses in fresh.items():
+            self._add(name, uses)
+        self._used = []
+
+    def _add(self, name: str, uses: Sequence[tuple[Tensor, Tensor]]) -> None:
+        old = self._added.get(name)
+        if uses[0][0].dim() == 3:
+            x, d = torch.cat([x for x, _ in uses], 1), torch.cat([d for _, d in uses], 1)
+            new = (torch.bmm(d.mT, x), d.sum(1))
+            if old is not None:
+                new = (old[0] + new[0], old[1] + new[1])
+        else:
+            new = (torch.stack([x for x, _ in uses], 1), torch.stack([d for _, d in uses], 1))
+            if old is not None:
+                new = (torch.cat((old[0], new[0]), 1), torch.cat((old[1], new[1]), 1))
+        self._added[name] = new if self._again else (new[0].detach(), new[1].detach())
+
+
+class SlimEncoder(nn.Module):
+    """Turns the class and the range of each cell into numbers: what it is, how like the goal in meaning, and how far.
+
+    The table of classes is learned in training and does not adapt; everything after it does.
+    """
+
+    words: Tensor
+    likeness: Tensor
+
+    def __init__(self, config: NetworkConfig) -> None:
+        super().__init__()
+        self.table = nn.Embedding(config.classes, config.embedding)
+        self.register_buffer("words", torch.zeros(config.classes, config.words))
+        self.channels = config.embedding + 1 + RANGES
+
+    def forward(self, classes: Tensor, ranges: Tensor, goal: Tensor) -> Tensor:
+        """(B, cells, channels) from classes (B, cells) int64, ranges (B, cells) from 0 to 1, goals (B,) int64."""
+        word = self.words[goal].unsqueeze(2)
+        likeness = torch.bmm(self.words[classes], word)
+        ranges = ranges.unsqueeze(2)
+        return torch.cat((self.table(classes), likeness, ranges, torch.exp(-6.0 * ranges)), 2)
+
+
+class PaperEncoder(nn.Module):
+    """Passes image features (B, cells, channels) on as they are."""
+
+    words: Tensor
+
+    def __init__(self, config: NetworkConfig) -> None:
+        super().__init__()
+        self.register_buffer("words", torch.zeros(config.classes, config.words))
+        self.channels = config.channels
+
+    def forward(self, features: Tensor, goal: Tensor) -> Tensor:  # noqa: ARG002 - both encoders take the goal
+        return features
+
+
+class Network(nn.Module):
+    """The policy, its critic and its learned loss.
+
+    The policy's layers adapt within an episode; the critic, the learned loss and the tables of words and classes do
+    not. ``words`` in the encoder holds a word vector of unit length for each class, with which goals are named too.
+    """
+
+    def __init__(self, config: NetworkConfig) -> None:
+        super().__init__()
+        self.config = config
+        self.encoder = SlimEncoder(config) if config.profile == "slim" else PaperEncoder(config)
+        self.image = nn.Linear(self.encoder.channels, config.image)
+        self.goal = nn.Linear(config.words, config.goal)
+        self.action = nn.Linear(len(ACTIONS), config.action)
+        self.fused = nn.Linear(config.image + config.goal + config.action, config.fused)
+        self.input = nn.Linear(config.fused * CELLS, 4 * config.hidden)
+        self.recurrent = nn.Linear(config.hidden, 4 * config.hidden)
+        self.actor = nn.Linear(config.hidden, len(ACTIONS))
+        self.critic = nn.Linear(config.hidden, 1)
+        self.loss_1 = nn.Conv1d(config.window, 10, 2)
+        self.loss_2 = nn.Conv1d(10, 1, 2, dilation=2)
+
+    def begin(self, batch: int) -> Memory:
+        """The memory before the first action of ``batch`` episodes."""
+        like = self.critic.weight
+        return Memory(*(like.new_zeros(batch, n) for n in (self.config.hidden, self.config.hidden, len(ACTIONS))))
+
+    def forward(
+        self, features: Sequence[Tensor], goal: Tensor, memory: Memory, fast: FastWeights
+    ) -> tuple[Tensor, Tensor, Memory]:
+        """Logits of the actions (B, 6), the value (B,) and the new memory.
+
+        Args:
+            features: for "slim" the classes (B, cells) and the ranges (B, cells), for "paper" image features
+                (B, cells, channels). goal: (B,) int64, classes. fast: the episodes' own weights.
+        """
+        drop = self.config.dropout if self.training else 0.0
+        image = F.relu(fast("image", self.image, self.encoder(*features, goal)))
+        image = F.dropout(image, drop) if drop else image
+        aim = F.relu(fast("goal", self.goal, self.encoder.words[goal]))
+        last = F.relu(fast("action", self.action, memory.action))
+        spread = torch.cat((aim, last), 1).unsqueeze(1).expand(-1, CELLS, -1)
+        fused = F.relu(fast("fused", self.fused, torch.cat((image, spread), 2)))
+        fused = F.dropout(fused, drop) if drop else fused
+        gates = fast("input", self.input, fused.flatten(1)) + fast("recurrent", self.recurrent, memory.hidden)
+        write, keep, new, show = gates.chunk(4, 1)  # by hand: the library's cell cannot be differentiated twice
+        cell = torch.sigmoid(keep) * memory.cell + torch.sigmoid(write) * torch.tanh(new)
+        hidden = torch.sigmoid(show) * torch.tanh(cell)
+        logits = fast("actor", self.actor, hidden)
+        return logits, self.critic(hidden).squeeze(1), Memory(hidden, cell, logits.softmax(1))
+
+    def learned_loss(self, window: Tensor) -> Tensor:
+        """(B,) from the hidden states and action probabilities of a window, (B, window, hidden + 6).
+
+        Two convolutions slide over the numbers of a state, with the window's actions as their channels, as in the
+        released code; the loss is the length of what comes out.
+        """
+        x = F.leaky_relu(self.loss_1(F.pad(window, (1, 0))))
+        x = F.leaky_relu(self.loss_2(F.pad(x, (2, 0)))).flatten(1)
+        return torch.sqrt(x.square().sum(1) + 1e-8)  # the square root of exactly zero has no gradient
+
+
+class AdaptiveRun:
+    """Runs a network through a batch of episodes in lock-step and adapts its weights to each of them.
+
+    Attributes:
+        memory: what the network carries to the next action. fast: what each episode's adaptations added.
+        adaptations: how many there were.
+
+    Args:
+        goal: (B,) int64, the class that each episode looks for.
+        learning: whether the run is to be differentiated, adaptations included; if not, nothing is kept that the next
+            adaptation does not need.
+    """
+
+    def __init__(self, network: Network, goal: Tensor, learning: bool) -> None:
+        self.network, self._goal, self._learning = network, goal, learning
+        self.memory = network.begin(len(goal))
+        self.fast = FastWeights(network.config.rate, learning)
+        self.fast.notes_uses = network.config.updates > 0
+        self.adaptations = 0
+        self._window: list[Tensor] = []
+
+    def step(self, features: Sequence[Tensor], alive: Tensor | None = None) -> tuple[Tensor, Tensor]:
+        """Logits (B, 6) and values (B,) for the next action; adapts after the last action of a window.
+
+        Args:
+            features: see `Network.forward`. alive: (B,) 1 for episodes that go on, 0 for those that have ended, which
+                do not adapt any more; None if all go on.
+        """
+        with torch.set_grad_enabled(self._learning or self.fast.notes_uses):
+            logits, value, self.memory = self.network(features, self._goal, self.memory, self.fast)
+            if self.fast.notes_uses:
+                self._window.append(torch.cat((self.memory.hidden, self.memory.action), 1))
+                if len(self._window) == self.network.config.window:
+                    self._adapt(alive)
+        return logits, value
+
+    def _adapt(self, alive: Tensor | None) -> None:
+        loss = self.network.learned_loss(torch.stack(self._window, 1))
+        self.fast.step((loss if alive is None else loss * alive).sum())
+        self._window = []
+        self.adaptations += 1
+        self.fast.notes_uses = self.adaptations < self.network.config.updates
+        if not self._learning:
+            self.memory = Memory(*(part.detach() for part in self.memory))
