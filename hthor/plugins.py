@@ -64,6 +64,11 @@ def package(sort: str) -> str:
     return _PACKAGES[sort][0]
 
 
+def file(sort: str, name: str) -> Path:
+    """The file of a plug-in that ships with hthor."""
+    return _folder(sort) / f"{file_stem(sort, name)}{_SUFFIX}"
+
+
 def _folder(sort: str) -> Path:
     return Path(__file__).parent.joinpath(*package(sort).split(".")[1:])
 
@@ -112,8 +117,8 @@ def loaded(sort: str, name: str) -> ModuleType | None:
 @functools.cache
 def summary(sort: str, name: str) -> str:
     """The first sentence of a plug-in's file (by its name or path), up to a semicolon; read without importing it."""
-    file = Path(name) if name.endswith(_SUFFIX) else _folder(sort) / f"{file_stem(sort, name)}{_SUFFIX}"
-    text = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
+    path = Path(name) if name.endswith(_SUFFIX) else file(sort, name)
+    text = ast.get_docstring(ast.parse(path.read_text(encoding="utf-8"))) or ""
     return " ".join(text.split("\n\n")[0].split()).split("; ")[0].rstrip(".")
 
 

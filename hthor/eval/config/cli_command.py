@@ -69,6 +69,8 @@ def _title(config: RunConfig) -> str:
 def _listed_files(agent: Manifest) -> set[str]:
     """Files outside an agent's folder that need no --readable, as arguments or the words of a command name them."""
     words = shlex.split(agent.source[len("cmd:") :]) if agent.source.startswith("cmd:") else []
+    head, _, own = agent.source.partition(":")
+    words += [own] if plugins.is_built_in("agent", head) else []
     return {*(value.removeprefix("../") for value in agent.args.values()), *words}
 
 

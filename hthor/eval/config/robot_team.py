@@ -1,5 +1,6 @@
 """The robots of a run: bodies and agents, resolved from the user's options."""
 
+import inspect
 import re
 from collections.abc import Sequence
 from pathlib import Path
@@ -7,9 +8,9 @@ from pathlib import Path
 import msgspec
 from msgspec import Struct
 
-from hthor import code_identity, plugins
-from hthor.errors import HthorError, UnknownName
-from hthor.guest.agent.manifest import Manifest
+from hthor import code_identity, jsonio, plugins
+from hthor.errors import AgentError, HthorError, UnknownName
+from hthor.guest.agent.manifest import Manifest, file_sha256
 from hthor.guest.host.info import GuestConfig
 from hthor.types import AgentRef, RobotSeat, cameras
 from hthor.types.detector_specs import OWN
@@ -237,7 +238,11 @@ def load_agent_info(agent: str, guests: GuestConfig | None = None) -> AgentInfo:
         AgentError: when the agent does not load.
     """
     name = plugins.plugin_name("agent", agent)
-    return _built_in_agent(name) if name in plugins.names("agent") else _submitted_agent(agent, guests)
+    if name not in plugins.names("agent"):
+        return _submitted_agent(agent, guests)
+    if guests is not None and guests.inputs.args and inspect.signature(plugins.load("agent", name)).parameters:
+        return _submitted_agent(f"{name}:", guests)
+    return _built_in_agent(name)
 
 
 def display_name(name: str, robots: Sequence[RobotSeat]) -> str:
@@ -252,13 +257,22 @@ def _built_in_agent(name: str) -> AgentInfo:
         ref=AgentRef(
             name=name,
             source=plugins.module_name("agent", name),
-            sha256=code_identity.agent_sha256(name),
+            sha256=_built_in_sha256(name, getattr(agent, "ingredients", ())),
             privileges=tuple(getattr(agent, "privileges", ())),
         ),
         robots=tuple(getattr(agent, "robots", ())),
         absent=bool(getattr(agent, "absent", False)),
         gpus=float(getattr(agent, "gpus", 0.0)),
     )
+
+
+def _built_in_sha256(name: str, ingredients: Sequence[str]) -> str:
+    """The identity of a built-in agent: of its code, and of the files beside it that it is made of, such as weights."""
+    code = code_identity.agent_sha256(name)
+    if not ingredients:
+        return code
+    folder = plugins.file("agent", name).parent
+    return jsonio.sha256([code, {one: file_sha256(folder / one) for one in sorted(ingredients)}])
 
 
 def _submitted_agent(text: str, config: GuestConfig | None) -> AgentInfo:
@@ -268,6 +282,8 @@ def _submitted_agent(text: str, config: GuestConfig | None) -> AgentInfo:
     with Guest(text, config=config) as guest:
         info = guest.load()
         args = guest.inputs.args.items()
+        if guest.reference.built_in and not guest.inputs.arguments(guest.reference):
+            raise AgentError(f"agent '{text}' names no checkpoint. Write {text}CHECKPOINT, or {text[:-1]} for its own.")
         words = (f"{key}-{Path(value).name if Path(value).is_absolute() else value}" for key, value in args)
         name = re.sub(r"[^A-Za-z0-9_+-]+", "-", "-".join([info.name, *words])).strip("-")[:60] or "agent"
         manifest = snapshot.take_manifest(guest, name)

@@ -105,6 +105,10 @@ class AgentInputs(Struct, frozen=True, kw_only=True):
     args: dict[str, str] = {}
     readable: tuple[str, ...] = ()
 
+    def arguments(self, agent: AgentReference) -> dict[str, str]:
+        """The constructor's arguments: these, and those that the agent's own reference gives."""
+        return {**self.args, **agent.args}
+
     def extra_paths(self, agent: AgentReference) -> tuple[str, ...]:
         """Files and folders outside its own folder that this agent may read.
 
@@ -114,11 +118,11 @@ class AgentInputs(Struct, frozen=True, kw_only=True):
         if agent.url and (self.args or self.readable):
             option = "--agent-args" if self.args else "--readable"
             raise HthorError(f"{agent.text} is served elsewhere, so {option} is for 'hthor agent serve' there.")
-        found = list(self.readable)
+        found = [*self.readable, *(value for value in agent.args.values() if os.path.exists(value))]
         for key, value in self.args.items():
             if not os.path.isabs(value) or _within(value, [agent.root, *found]):
                 continue
-            if os.path.isfile(value):
+            if os.path.isfile(value) or (agent.built_in and os.path.isdir(value)):
                 found.append(value)
             elif os.path.isdir(value):
                 raise HthorError(f"--agent-args {key}={value}: that folder is not the agent's own. {_HINT}")

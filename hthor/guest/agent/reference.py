@@ -22,6 +22,8 @@ from hthor.guest.agent import manifest
 
 FORMS = ("my_agent.py", "my_agent.py:Class", "package.module:Class", "cmd:PROGRAM ARGS", "ws://HOST:PORT[/PATH]")
 """The ways to name an agent that is not built in."""
+CHECKPOINT = "checkpoint"
+"""The argument of a built-in agent that a path behind its name stands for: ``savn:runs/savn/best``."""
 HINT = f"An agent of your own is {', '.join(FORMS)} or wss://...; see docs/agents.md."
 _MODULE = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*:[A-Za-z_]\w*")
 _COMMANDS = ("cmd", "command", "exec", "run", "program", "process", "shell")
@@ -41,6 +43,7 @@ class AgentReference(Struct, frozen=True, kw_only=True):
         root: its own folder, which it may read; empty if it has none.
         cls: the class to use, empty for the only one. module: the module's name if it is imported by name.
         words: the program and its arguments. url: the server's address.
+        args: arguments of the constructor that the text itself gives.
     """
 
     form: str
@@ -53,6 +56,12 @@ class AgentReference(Struct, frozen=True, kw_only=True):
     module: str = ""
     words: tuple[str, ...] = ()
     url: str = ""
+    args: dict[str, str] = {}
+
+    @property
+    def built_in(self) -> bool:
+        """Whether it is a built-in agent, which runs as a submitted agent because of its arguments."""
+        return plugins.is_built_in("agent", self.source.partition(":")[0])
 
     @property
     def sha256(self) -> str:
@@ -87,6 +96,9 @@ def parse_reference(text: str, cls: str | None = None) -> AgentReference:
     file, colon, named = text.rpartition(":") if ".py:" in text else (text, "", "")
     if file.endswith(".py"):
         return _file(Path(file), cls or named, colon)
+    name, colon, own = text.partition(":")
+    if colon and plugins.is_built_in("agent", name):
+        return _with_own_files(plugins.plugin_name("agent", name), own)
     if _MODULE.fullmatch(text):
         return _module(text)
     raise UnknownName("agent", text, plugins.names("agent"), _guess(text) + HINT)
@@ -106,6 +118,27 @@ def _file(file: Path, cls: str, colon: str) -> AgentReference:
         path=str(path),
         root=str(path.parent),
         cls=cls,
+    )
+
+
+def _with_own_files(name: str, path: str) -> AgentReference:
+    """A built-in agent with the user's own checkpoint, a file or a folder; it runs as submitted agents do.
+
+    Without a path it is the built-in agent with arguments that come from elsewhere.
+    """
+    place = Path(os.path.realpath(path)) if path else None
+    if place is not None and not place.exists():
+        raise AgentError(f"agent '{name}:{path}': there is no file or folder '{path}'. Write {name}:CHECKPOINT.")
+    file = plugins.file("agent", name)
+    return AgentReference(
+        form="file",
+        text=f"{name}:{place or ''}",
+        source=f"{name}:{place.name if place else ''}",
+        name=f"{name}-{place.stem}" if place else name,
+        path=str(file),
+        root=str(file.parent),
+        cls="Agent",
+        args={CHECKPOINT: str(place)} if place else {},
     )
 
 

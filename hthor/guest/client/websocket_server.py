@@ -88,7 +88,7 @@ def serve(text: str, host: str, port: int, given: AgentInputs | None = None) -> 
             policy=_NO_POLICY,
             module=agent.module,
             root=agent.root,
-            args=more.args,
+            args=more.arguments(agent),
             paths=ground,
         )
         cls, ready = loading.load_agent(order)
@@ -97,7 +97,7 @@ def serve(text: str, host: str, port: int, given: AgentInputs | None = None) -> 
     ready = msgspec.structs.replace(ready, name=agent.name, version=version, persistent=True)
 
     opened = recorder.take()
-    make = inputs.make_factory(cls, more.args)
+    make = inputs.make_factory(cls, more.arguments(agent))
 
     def talk(connection: ServerConnection) -> None:
         files = agent_files.list_files(agent, more, ground, opened)

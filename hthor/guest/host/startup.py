@@ -165,7 +165,7 @@ class GuestStartup:
         """How a process that has just started is confined, or the reason why it is not."""
         self._channel.open(started)
         self.policy = started.policy
-        agent, args = self._agent, self._config.inputs.args
+        agent, args = self._agent, self._config.inputs.arguments(self._agent)
         load = wire.Load(
             path=agent.path,
             cls=agent.cls,
