@@ -63,7 +63,7 @@ class NetworkConfig(Struct, frozen=True, kw_only=True):
 
 
 PAPER = NetworkConfig(profile="paper", image=64, goal=64, fused=64, hidden=512, dropout=0.25, rate=1e-4)
-"""The published constants (Wortsman et al. 2019 and the code released with it), with word vectors of length 50, not 300."""
+"""The published constants (Wortsman et al. 2019 and its released code), but word vectors have length 50, not 300."""
 
 
 class Memory(NamedTuple):
