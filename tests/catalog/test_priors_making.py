@@ -184,6 +184,6 @@ def test_showing_loads_no_encoder() -> None:
         "except SystemExit: pass\n"
         "sys.exit(str({'torch', 'transformers', 'numpy'} & set(sys.modules) or ''))"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=900)
     assert done.stderr.strip() == ""
     assert json.loads(done.stdout)["triplets"]

@@ -125,12 +125,12 @@ def test_75_is_a_run_that_another_process_writes(both: Path, here: Hthor) -> Non
 def test_130_is_an_interruption_and_the_same_command_resumes(here: Hthor, tmp_path: Path) -> None:
     words = ("eval", "--agent", "none", "--suite", "fake", "--out", str(tmp_path / "a"), "--jobs", "1")
     process = start(*words, "--json", play="slow_player:0.2")
-    until = time.monotonic() + 60.0
+    until = time.monotonic() + 900.0
     while not (log := tmp_path / "a" / "trials.jsonl").exists() or not log.stat().st_size:
         assert time.monotonic() < until
         time.sleep(0.05)
     process.send_signal(signal.SIGINT)
-    out, _ = process.communicate(timeout=60)
+    out, _ = process.communicate(timeout=900)
     assert process.returncode == 130
     assert json.loads(out)["exit_code"] == 130
     assert here(*words)[0] == 0

@@ -24,7 +24,7 @@ def examined(tmp_path_factory: pytest.TempPathFactory) -> tuple[DoctorReport, su
     """What the command says of this machine."""
     folder = tmp_path_factory.mktemp("here")
     words = ["-m", "hthor", "doctor", "--json", "--out", str(folder / "runs")]
-    done = subprocess.run([sys.executable, *words], capture_output=True, text=True, timeout=280, cwd=folder)
+    done = subprocess.run([sys.executable, *words], capture_output=True, text=True, timeout=900, cwd=folder)
     return msgspec.json.decode(done.stdout.encode(), type=DoctorReport), done, folder
 
 

@@ -149,7 +149,7 @@ def test_it_ends_with_the_evaluation_though_a_thread_started_it(how: str, level:
     path = tmp_path / "my_agent.py"
     path.write_text(HEAD + agent(SLEEPS))
     words = [sys.executable, "-c", HOST, str(path), level, how]
-    found = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, timeout=60, check=False)
+    found = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, timeout=900, check=False)
     pids = [int(word) for word in found.stdout.split()]
     assert len(pids) >= 3, found.stderr
     expect_gone(pids)

@@ -295,7 +295,7 @@ def test_the_page_says_what_the_list_says_and_needs_nothing_else(whole: Path):
 def test_a_browser_shows_the_page_without_complaint(whole: Path, tmp_path: Path):
     options = ["--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--enable-logging=stderr"]
     options += [f"--user-data-dir={tmp_path / 'browser'}", "--dump-dom", f"file://{whole / 'index.html'}"]
-    done = subprocess.run(["chromium", *options], capture_output=True, text=True, timeout=180, check=True)
+    done = subprocess.run(["chromium", *options], capture_output=True, text=True, timeout=900, check=True)
     assert ":CONSOLE" not in done.stderr
     assert 'tabindex="0"' in done.stdout  # the script that sorts has run
 

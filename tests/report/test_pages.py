@@ -264,7 +264,7 @@ def _browsed(file: Path, folder: Path) -> tuple[int, int]:
     options = ["--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--disable-background-networking"]
     options += [f"--log-net-log={log}", "--enable-logging=stderr", f"--user-data-dir={folder / 'browser'}"]
     done = subprocess.run(
-        ["chromium", *options, "--dump-dom", f"file://{file}"], capture_output=True, text=True, timeout=180, check=True
+        ["chromium", *options, "--dump-dom", f"file://{file}"], capture_output=True, text=True, timeout=900, check=True
     )
     events = [event.get("params", {}) for event in msgspec.json.decode(log.read_bytes())["events"]]
     by_page = [one["url"] for one in events if one.get("initiator", "not an origin") != "not an origin"]  # not its own

@@ -255,7 +255,7 @@ def test_a_browser_plays_a_film(film: Path, tmp_path: Path) -> None:
     (tmp_path / "page.html").write_text(PAGE)
     options = ["--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=20000"]
     options += [f"--user-data-dir={tmp_path / 'browser'}", "--dump-dom", f"file://{tmp_path / 'page.html'}"]
-    done = subprocess.run(["chromium", *options], capture_output=True, text=True, timeout=180, check=True)
+    done = subprocess.run(["chromium", *options], capture_output=True, text=True, timeout=900, check=True)
     assert "shows 1212 x 800" in done.stdout, "the plan, and the person's display beside it"
 
 

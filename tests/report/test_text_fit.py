@@ -191,7 +191,7 @@ def test_four_runs_fit_a_page(written: str, tmp_path: Path, width: int) -> None:
         f"--window-size={width},900",
     ]
     options += [f"--user-data-dir={tmp_path / 'browser'}", "--dump-dom", f"file://{tmp_path / 'page.html'}"]
-    done = subprocess.run(["chromium", *options], capture_output=True, text=True, timeout=180, check=True)
+    done = subprocess.run(["chromium", *options], capture_output=True, text=True, timeout=900, check=True)
     told = re.search(r'<pre id="told">(.*?)</pre>', done.stdout, re.DOTALL)
     assert told is not None
     lines = unescape(told.group(1)).splitlines()

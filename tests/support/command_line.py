@@ -28,5 +28,5 @@ def start(*words: str, play: str = "player") -> subprocess.Popen[str]:
 def run(*words: str, play: str = "player") -> tuple[int, object, str]:
     """Exit code, the one document on standard output, and what is said to people."""
     process = start(*words, "--json", play=play)
-    out, err = process.communicate(timeout=100)
+    out, err = process.communicate(timeout=900)
     return process.returncode, json.loads(out), err

@@ -348,5 +348,5 @@ def test_the_same_doings_give_the_same_states_in_another_process() -> None:
     code = "import test_world_laws as laws; print(laws.busy(laws.world()))"
     paths = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
     command = [sys.executable, "-c", code]
-    done = subprocess.run(command, cwd=here, env=paths, capture_output=True, text=True, timeout=120, check=False)
+    done = subprocess.run(command, cwd=here, env=paths, capture_output=True, text=True, timeout=900, check=False)
     assert done.stdout.strip() == busy(world()), done.stderr

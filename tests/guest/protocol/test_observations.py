@@ -157,7 +157,7 @@ class InMemory:
         self.to_guest.put(body)
 
     def read(self, most: int, end: float) -> tuple[bool, bytes | int]:
-        return False, self.to_host.get(timeout=20)
+        return False, self.to_host.get(timeout=900)
 
     def end_reason(self) -> tuple[str, str]:
         return "died", "gone"
@@ -166,7 +166,7 @@ class InMemory:
         self.to_guest.put(wire.encode(wire.End()))
 
     def receive(self) -> wire.ToGuest:
-        message: wire.ToGuest = msgspec.msgpack.decode(self.to_guest.get(timeout=20), type=wire.ToGuest)
+        message: wire.ToGuest = msgspec.msgpack.decode(self.to_guest.get(timeout=900), type=wire.ToGuest)
         return message
 
     def send(self, message: object) -> None:
