@@ -24,7 +24,7 @@ def _network(config: Any, seed: int = 2) -> Any:
     torch.manual_seed(seed)
     network = savn.Network(config).double()
     with torch.no_grad():
-        network.encoder.words.copy_(torch.nn.functional.normalize(torch.randn(config.classes, config.words)))
+        network.words.copy_(torch.nn.functional.normalize(torch.randn(config.classes, config.words)))
     return network
 
 
@@ -52,11 +52,11 @@ def _objective(logits: list[Any], values: list[Any], alive: list[Any]) -> Any:
     return torch.stack(terms).sum()
 
 
-def _low_rank(network: Any, config: Any) -> tuple[Any, Any]:
-    features, goal, alive = _episodes(config)
+def _low_rank(network: Any) -> tuple[Any, Any]:
+    features, goal, alive = _episodes(network.config)
     run = savn.AdaptiveRun(network, goal, learning=True)
     outputs = [run.step(one, on) for one, on in zip(features, alive, strict=True)]
-    assert run.adaptations == config.updates
+    assert run.adaptations == network.config.updates
     logits, values = [row for row, _ in outputs], [value for _, value in outputs]
     return torch.stack(logits, 1), _objective(logits, values, alive)
 
@@ -69,10 +69,11 @@ class _Plain(savn.FastWeights):
         self.notes_uses = False
 
 
-def _explicit(network: Any, config: Any) -> tuple[Any, Any]:
+def _explicit(network: Any) -> tuple[Any, Any]:
     """The same with a set of weights for each episode, adapted by gradient steps on the weights themselves."""
+    config = network.config
     features, goal, alive = _episodes(config)
-    adapted = [name for name, _ in network.named_parameters() if not name.startswith(("loss_", "critic", "encoder"))]
+    adapted = [name for name, _ in network.named_parameters() if not name.startswith(("loss_", "critic", "table"))]
     all_logits, terms = [], []
     for b in range(BATCH):
         weights = dict(network.named_parameters())
@@ -105,8 +106,8 @@ def _explicit(network: Any, config: Any) -> tuple[Any, Any]:
 def test_low_rank_fast_weights_equal_explicit_ones_in_value_and_in_every_meta_gradient(config: Any) -> None:
     network = _network(config)
     parameters = dict(network.named_parameters())
-    found, objective = _low_rank(network, config)
-    expected, same = _explicit(network, config)
+    found, objective = _low_rank(network)
+    expected, same = _explicit(network)
     torch.testing.assert_close(found, expected, rtol=0.0, atol=1e-10)
     torch.testing.assert_close(objective, same, rtol=1e-10, atol=0.0)
     one = torch.autograd.grad(objective, list(parameters.values()))
@@ -121,14 +122,14 @@ def test_low_rank_fast_weights_equal_explicit_ones_in_value_and_in_every_meta_gr
 def test_the_gradient_of_the_learned_loss_is_that_of_a_finite_difference(config: Any) -> None:
     network = _network(config)
     weight = network.loss_1.weight
-    (gradient,) = torch.autograd.grad(_low_rank(network, config)[1], [weight])
+    (gradient,) = torch.autograd.grad(_low_rank(network)[1], [weight])
     where = divmod(int(gradient.abs().flatten().argmax()), weight[0].numel())
     index = (where[0], *divmod(where[1], weight.shape[2]))
     values, step = [], 1e-5
     for sign in (1.0, -1.0):
         with torch.no_grad():
             weight[index] += sign * step
-        values.append(float(_low_rank(network, config)[1].detach()))
+        values.append(float(_low_rank(network)[1].detach()))
         with torch.no_grad():
             weight[index] -= sign * step
     assert (values[0] - values[1]) / (2.0 * step) == pytest.approx(float(gradient[index]), rel=1e-5)
@@ -163,9 +164,8 @@ def test_a_run_that_is_not_differentiated_gives_the_same_outputs_and_keeps_no_gr
 
 def test_an_ended_episode_does_not_adapt() -> None:
     network, (features, goal, _) = _network(SLIM), _episodes(SLIM)
-    run, still = savn.AdaptiveRun(network, goal, learning=False), _network(SLIM)
+    run, plain = (savn.AdaptiveRun(one, goal, learning=False) for one in (network, _frozen(network)))
     over = torch.tensor([1.0, 0.0, 1.0], dtype=torch.float64)
-    plain = savn.AdaptiveRun(_frozen(still), goal, learning=False)
     for one in features[:20]:
         logits, _ = run.step(one, over)
         unchanged, _ = plain.step(one)

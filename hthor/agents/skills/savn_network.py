@@ -29,8 +29,6 @@ ACTIONS = ("ahead", "left", "right", "up", "down", "done")
 GRID = 7
 """Cells of the features along each side of the picture."""
 CELLS = GRID * GRID
-RANGES = 2
-"""Numbers that describe how far a cell of the slim features is; see `SlimEncoder`."""
 
 
 class NetworkConfig(Struct, frozen=True, kw_only=True):
@@ -145,55 +143,27 @@ class FastWeights:
         self._added[name] = new if self._again else (new[0].detach(), new[1].detach())
 
 
-class SlimEncoder(nn.Module):
-    """Turns the class and the range of each cell into numbers: what it is, how like the goal in meaning, and how far.
-
-    The table of classes is learned in training and does not adapt; everything after it does.
-    """
-
-    words: Tensor
-    likeness: Tensor
-
-    def __init__(self, config: NetworkConfig) -> None:
-        super().__init__()
-        self.table = nn.Embedding(config.classes, config.embedding)
-        self.register_buffer("words", torch.zeros(config.classes, config.words))
-        self.channels = config.embedding + 1 + RANGES
-
-    def forward(self, classes: Tensor, ranges: Tensor, goal: Tensor) -> Tensor:
-        """(B, cells, channels) from classes (B, cells) int64, ranges (B, cells) from 0 to 1, goals (B,) int64."""
-        word = self.words[goal].unsqueeze(2)
-        likeness = torch.bmm(self.words[classes], word)
-        ranges = ranges.unsqueeze(2)
-        return torch.cat((self.table(classes), likeness, ranges, torch.exp(-6.0 * ranges)), 2)
-
-
-class PaperEncoder(nn.Module):
-    """Passes image features (B, cells, channels) on as they are."""
-
-    words: Tensor
-
-    def __init__(self, config: NetworkConfig) -> None:
-        super().__init__()
-        self.register_buffer("words", torch.zeros(config.classes, config.words))
-        self.channels = config.channels
-
-    def forward(self, features: Tensor, goal: Tensor) -> Tensor:  # noqa: ARG002 - both encoders take the goal
-        return features
-
-
 class Network(nn.Module):
     """The policy, its critic and its learned loss.
 
-    The policy's layers adapt within an episode; the critic, the learned loss and the tables of words and classes do
-    not. ``words`` in the encoder holds a word vector of unit length for each class, with which goals are named too.
+    The policy's layers adapt within an episode; the critic, the learned loss and the table of classes do not.
+
+    Attributes:
+        words: (classes, words), a vector of length 1 for each class; goals are named by them too.
+        table: for "slim", numbers that stand for each class.
     """
+
+    words: Tensor
 
     def __init__(self, config: NetworkConfig) -> None:
         super().__init__()
         self.config = config
-        self.encoder = SlimEncoder(config) if config.profile == "slim" else PaperEncoder(config)
-        self.image = nn.Linear(self.encoder.channels, config.image)
+        self.register_buffer("words", torch.zeros(config.classes, config.words))
+        channels = config.channels
+        if config.profile == "slim":
+            self.table = nn.Embedding(config.classes, config.embedding)
+            channels = config.embedding + 3  # see `_cells`
+        self.image = nn.Linear(channels, config.image)
         self.goal = nn.Linear(config.words, config.goal)
         self.action = nn.Linear(len(ACTIONS), config.action)
         self.fused = nn.Linear(config.image + config.goal + config.action, config.fused)
@@ -219,9 +189,9 @@ class Network(nn.Module):
                 (B, cells, channels). goal: (B,) int64, classes. fast: the episodes' own weights.
         """
         drop = self.config.dropout if self.training else 0.0
-        image = F.relu(fast("image", self.image, self.encoder(*features, goal)))
+        image = F.relu(fast("image", self.image, self._cells(features, goal)))
         image = F.dropout(image, drop) if drop else image
-        aim = F.relu(fast("goal", self.goal, self.encoder.words[goal]))
+        aim = F.relu(fast("goal", self.goal, self.words[goal]))
         last = F.relu(fast("action", self.action, memory.action))
         spread = torch.cat((aim, last), 1).unsqueeze(1).expand(-1, CELLS, -1)
         fused = F.relu(fast("fused", self.fused, torch.cat((image, spread), 2)))
@@ -232,6 +202,16 @@ class Network(nn.Module):
         hidden = torch.sigmoid(show) * torch.tanh(cell)
         logits = fast("actor", self.actor, hidden)
         return logits, self.critic(hidden).squeeze(1), Memory(hidden, cell, logits.softmax(1))
+
+    def _cells(self, features: Sequence[Tensor], goal: Tensor) -> Tensor:
+        """(B, cells, channels) of what the image layer reads: of a slim cell what it is, how like the goal in meaning,
+        and how far, near distances also on a finer scale.
+        """
+        if self.config.profile == "paper":
+            return features[0]
+        classes, ranges = features[0], features[1].unsqueeze(2)
+        likeness = torch.bmm(self.words[classes], self.words[goal].unsqueeze(2))
+        return torch.cat((self.table(classes), likeness, ranges, torch.exp(-6.0 * ranges)), 2)
 
     def learned_loss(self, window: Tensor) -> Tensor:
         """(B,) from the hidden states and action probabilities of a window, (B, window, hidden + 6).

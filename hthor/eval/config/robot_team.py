@@ -10,7 +10,7 @@ from msgspec import Struct
 
 from hthor import code_identity, jsonio, plugins
 from hthor.errors import AgentError, HthorError, UnknownName
-from hthor.guest.agent.manifest import Manifest, file_sha256
+from hthor.guest.agent.manifest import Manifest, hash_file
 from hthor.guest.host.info import GuestConfig
 from hthor.types import AgentRef, RobotSeat, cameras
 from hthor.types.detector_specs import OWN
@@ -267,12 +267,20 @@ def _built_in_agent(name: str) -> AgentInfo:
 
 
 def _built_in_sha256(name: str, ingredients: Sequence[str]) -> str:
-    """The identity of a built-in agent: of its code, and of the files beside it that it is made of, such as weights."""
+    """The identity of a built-in agent: of its code, and of the files beside it that it is made of, such as weights.
+
+    Raises:
+        AgentError: when a file is missing.
+    """
     code = code_identity.agent_sha256(name)
     if not ingredients:
         return code
     folder = plugins.file("agent", name).parent
-    return jsonio.sha256([code, {one: file_sha256(folder / one) for one in sorted(ingredients)}])
+    try:
+        return jsonio.sha256([code, {one: hash_file(folder / one)[0] for one in sorted(ingredients)}])
+    except OSError as error:
+        reason = f"{error.filename} of the built-in agent '{name}' cannot be read: {error.strerror}"
+        raise AgentError(f"{reason}. Install hthor again.") from None
 
 
 def _submitted_agent(text: str, config: GuestConfig | None) -> AgentInfo:
