@@ -1,11 +1,11 @@
 """Built-in agents, one file each, and the template for a new one. Begin with `frontier`.
 
 An agent file defines ``class Agent`` with ``begin(briefing)`` and ``act(observation) -> Action``, see
-`hthor.types.Mind`. Optional class attributes: ``privileges`` (some of "ideal_detector", "object_poses", "house_map";
-they are printed with every result), ``robots`` (names of the bodies it is made for; empty: any), ``absent`` (True:
-there is no robot at all), ``ingredients`` (names of files beside the agent's own that it is made of, such as weights:
-they ship with hthor and count in the agent's identity). A constructor may take arguments that all have defaults; an
-argument ``checkpoint`` is a file or folder, which users can name as in ``savn:runs/mine/best``.
+`hthor.types.Mind`. Optional class attributes: ``privileges`` (some of "ideal_detector", "object_poses", "house_map",
+"pixel_labels"; they are printed with every result), ``robots`` (names of the bodies it is made for; empty: any),
+``absent`` (True: there is no robot at all), ``ingredients`` (names of files beside the agent's own that it is made of,
+such as weights: they ship with hthor and count in the agent's identity). A constructor may take arguments that all have
+defaults; an argument ``checkpoint`` is a file or folder, which users can name as in ``savn:runs/mine/best``.
 """
 
 from pathlib import Path

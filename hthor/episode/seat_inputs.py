@@ -36,6 +36,7 @@ def make_briefing(
             PhaseBriefing(name=phase.name, instruction=phase.instruction, time_limit=phase.time_limit)
             for phase in task.phases
         ),
+        labels=tuple(world.label_kinds) if "pixel_labels" in privileges else (),
     )
 
 

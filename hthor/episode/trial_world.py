@@ -40,6 +40,10 @@ class TrialWorld(Protocol):
         """The house's floor plan."""
 
     @property
+    def label_kinds(self) -> Sequence[str]:
+        """The kinds of what the numbers of a segmentation stand for in this episode, for ``pixel_labels``."""
+
+    @property
     def tick(self) -> int:
         """Ticks since `reset`."""
 

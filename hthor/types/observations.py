@@ -187,6 +187,9 @@ class Briefing(Struct, frozen=True, kw_only=True):
         phases: what comes before the task itself, in order; empty for most tasks. A phase ends early when every seat
             has sent the signal `Ready`.
         privileges: declared and granted. house: the floor plan, only with the privilege ``house_map``.
+        labels: the kind of what each number of a segmentation stands for, only with the privilege ``pixel_labels``:
+            of things and objects as in detections, "floor", "ceiling", "wall", "door", "window", "person", a robot's
+            name; "ground", "outdoors" and "roof".
     """
 
     seat: str
@@ -204,6 +207,7 @@ class Briefing(Struct, frozen=True, kw_only=True):
     jobs: tuple[Job, ...] = ()
     crew: dict[str, BodySpec] = {}
     phases: tuple[PhaseBriefing, ...] = ()
+    labels: tuple[str, ...] = ()
 
     @property
     def todo(self) -> tuple[Job, ...]:

@@ -1,7 +1,8 @@
 """A simulation with sensors: detections, range scans and pictures for every seat."""
 
-from collections.abc import Callable, Iterable
-from typing import Any
+import itertools
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,12 +16,14 @@ from hthor.types import (
     Detection,
     DetectorSpec,
     HouseSpec,
+    Pose,
     RobotSpec,
     Scan,
     Senses,
     Sighting,
     Vec3,
     View,
+    is_person,
 )
 from hthor.types import cameras as hthor_cameras
 from hthor.world import numbers
@@ -30,6 +33,16 @@ from hthor.world.perception import view_frustum
 from hthor.world.rendering.lazy_images import LazyImages, Size
 from hthor.world.rendering.viewpoint import Viewpoint
 from hthor.world.seat_senses import FrozenSenses, SeatSenses
+
+_OUT_OF_SIGHT = Pose(x=-1e3, y=-1e3)
+
+
+class SurveyReading(NamedTuple):
+    """What a seat senses from one pose: detections, depth (H, W) float32 [m] and segmentation (H, W) int32."""
+
+    detections: tuple[Detection, ...]
+    depth: NDArray[np.float32]
+    segmentation: NDArray[np.int32]
 
 
 class SensingSimulation(EditableSimulation):
@@ -66,6 +79,9 @@ class SensingSimulation(EditableSimulation):
         self._pictures = LazyImages(
             self.house, self._env, self._geoms, self._seats, self._studio, profile, self.cameras
         )
+        self._kinds = {wall.id: "wall" for wall in self.house.walls}
+        self._kinds |= {one.id: one.kind for one in (*self.house.openings, *self.house.things, *self._objects)}
+        self._kinds |= {seat: "person" if is_person(seat) else body.name for seat, body in self.bodies.items()}
 
     # -------------------------------------------------------------------------------------------------------- senses
 
@@ -109,6 +125,26 @@ class SensingSimulation(EditableSimulation):
         body = self._seats[seat]
         return self._scanners[seat].scan(body.pose, body.space)
 
+    def survey(self, seat: str, poses: Iterable[Pose]) -> Iterator[SurveyReading]:
+        """What the seat would sense from each of these poses if no other body were in the house.
+
+        For data sets: no time passes, nothing is pushed, and the poses need not be free. The detector is ideal and the
+        camera the body's own. Afterwards all bodies are where they were.
+        """
+        body, kept = self._seats[seat], self.poses()
+        try:
+            for other in self._seats.values():
+                other.pose = _OUT_OF_SIGHT
+            self._mocap.rewrite()
+            first, second = itertools.tee(poses)
+            pictures = self._pictures.survey(seat, second, self._seed)
+            for body.pose, (depth, segmentation) in zip(first, pictures, strict=True):
+                yield SurveyReading(self._visibility.detections(body), depth, segmentation)
+        finally:
+            for name, pose in kept.items():
+                self._seats[name].pose = pose
+            self._mocap.rewrite()
+
     # ------------------------------------------------------------------------------------------------------ pictures
 
     @property
@@ -118,6 +154,15 @@ class SensingSimulation(EditableSimulation):
         Every episode shuffles the numbers by its seed.
         """
         return self._pictures.names(self._seed)
+
+    @property
+    def label_kinds(self) -> tuple[str, ...]:
+        """The kind of what each number of a segmentation stands for, in the order of `names`.
+
+        For things and objects the kind that detections report; else "floor", "ceiling", "wall", "door", "window",
+        "person", a robot's name, "ground", "outdoors" or "roof".
+        """
+        return tuple(self._kinds.get(name, name.partition(" of ")[0]) for name in self.names)
 
     @property
     def profile(self) -> str:

@@ -10,6 +10,7 @@ import pytest
 torch = pytest.importorskip("torch", reason="needs torch: pip install 'hthor[torch]'", exc_type=ImportError)
 
 from hthor.agents.skills import savn_network as savn  # noqa: E402
+from hthor.agents.skills.semantic_cells import CELLS  # noqa: E402
 
 torch.set_num_threads(1)  # two threads wait for each other longer than they compute
 STEPS, BATCH = 30, 3
@@ -34,10 +35,10 @@ def _episodes(config: Any, seed: int = 1) -> tuple[list[tuple[Any, ...]], Any, l
     features: list[tuple[Any, ...]] = []
     for _ in range(STEPS):
         if config.profile == "slim":
-            classes = torch.randint(0, config.classes, (BATCH, savn.CELLS), generator=g)
-            features.append((classes, torch.rand(BATCH, savn.CELLS, generator=g, dtype=torch.float64)))
+            classes = torch.randint(0, config.classes, (BATCH, CELLS), generator=g)
+            features.append((classes, torch.rand(BATCH, CELLS, generator=g, dtype=torch.float64)))
         else:
-            features.append((torch.randn(BATCH, savn.CELLS, config.channels, generator=g, dtype=torch.float64),))
+            features.append((torch.randn(BATCH, CELLS, config.channels, generator=g, dtype=torch.float64),))
     goal = torch.randint(0, config.classes, (BATCH,), generator=g)
     alive = [torch.tensor([1.0, float(step < 15), 1.0], dtype=torch.float64) for step in range(STEPS)]
     return features, goal, alive

@@ -82,11 +82,14 @@ def test_truth_and_the_house_are_for_the_privileged() -> None:
     run(Stage(seen=3), Mind(), plain)
     assert not plain.observed[0].truth
     assert plain.briefing.house is None
-    human = Mind()
-    run(Stage(seen=3), human, knowing, "object_poses", "house_map")
+    assert plain.briefing.labels == ()
+    human, stage = Mind(), Stage(seen=3)
+    run(stage, human, knowing, "object_poses", "house_map", "pixel_labels")
     assert knowing.observed[0].truth
     assert knowing.briefing.house is not None
+    assert knowing.briefing.labels == stage.label_kinds
     assert not human.observed[0].truth
+    assert human.briefing.labels == ()
 
 
 @pytest.mark.parametrize("where", ["begin", "act", "answer"])

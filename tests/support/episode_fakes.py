@@ -49,6 +49,7 @@ class Stage:
     def __init__(self, seats: tuple[str, ...] = (HUMAN, "robot"), *, seen: int = 10**9, busy: int = 1) -> None:
         self.seats, self.bodies = seats, dict.fromkeys(seats, BODY)
         self.house = houses.load(TASK.house)
+        self.label_kinds = ("wall", "apple", "floor")
         self.seen, self.busy = seen, busy
         self.started: list[tuple[int, str, Motion]] = []
         self.frames, self.carrying = 0, False

@@ -21,7 +21,7 @@ DRIVE = Drive(forward=0.4, left=-0.1, yaw=2.5, pitch=0.2)
 class Agent:
     """Drives, and says what it got, as JSON: as an answer when it was asked, else as a question."""
 
-    privileges = ("object_poses", "house_map", "ideal_detector")
+    privileges = ("object_poses", "house_map", "ideal_detector", "pixel_labels")
 
     def begin(self, briefing: Briefing) -> None:
         self.briefing = {name: short(plain(getattr(briefing, name))) for name in briefing.__struct_fields__}

@@ -15,6 +15,7 @@ from typing import Literal, NamedTuple
 
 from msgspec import Struct
 
+from hthor.agents.skills.semantic_cells import CELLS
 from hthor.errors import MissingExtra
 
 try:
@@ -26,9 +27,6 @@ except ModuleNotFoundError as error:
 
 ACTIONS = ("ahead", "left", "right", "up", "down", "done")
 """The published action set: 0.25 m ahead, 45 degrees to a side, the camera 30 degrees up or down, "here it is"."""
-GRID = 7
-"""Cells of the features along each side of the picture."""
-CELLS = GRID * GRID
 
 
 class NetworkConfig(Struct, frozen=True, kw_only=True):

@@ -28,7 +28,7 @@ SIGNALS_MAX = 8
 """Most signals in one action."""
 TEXT_MAX = 8000
 """Longest description of an agent or of a failure, in characters."""
-PRIVILEGES = ("house_map", "ideal_detector", "object_poses")
+PRIVILEGES = ("house_map", "ideal_detector", "object_poses", "pixel_labels")
 """Privileges that an agent may declare to get more information than its robot senses."""
 FAULTS = ("raised", "timeout", "died", KILLED, "memory", "disk", "garbage", "wrong_type", "oversized", "not_finite")
 """Kinds of failure during a trial."""

@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import functools
 import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hthor import seeds
-from hthor.types import Camera, CameraSpec, HouseSpec, Vec2, View
+from hthor.types import Camera, CameraSpec, HouseSpec, Pose, Vec2, View
 from hthor.world import numbers
 from hthor.world.model.composer_env import LazyComposerEnv
 from hthor.world.model.geom_index import GeomIndex
@@ -137,6 +137,14 @@ class LazyImages:
                 return drawn[mode]
 
         return draw
+
+    def survey(
+        self, seat: str, poses: Iterable[Pose], seed: int
+    ) -> Iterator[tuple[NDArray[np.float32], NDArray[np.int32]]]:
+        """Depth [m] and segmentation from each of these poses of the seat; nothing else moves. Always "fast"."""
+        size = camera.image_size(self._seats[seat].spec)
+        for depth, found in self._fast().survey(self._moment(), seat, poses, size):
+            yield depth, self._labelled(found, seed)
 
     def top_view(self, pixels_per_metre: float, profile: str | None) -> NDArray[np.uint8]:
         """The house from above now, (H, W, 3) uint8."""

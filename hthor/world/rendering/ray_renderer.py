@@ -4,7 +4,7 @@ It draws copied poses with a copy of the model, so a picture never changes the w
 """
 
 import copy
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,7 @@ from msgspec import UNSET
 from numpy.typing import NDArray
 
 from hthor.looks import finishes
-from hthor.types import CameraSpec, HouseSpec
+from hthor.types import CameraSpec, HouseSpec, Pose
 from hthor.world.model import geoms
 from hthor.world.model.bodies import bodies
 from hthor.world.model.bodies.primitives import HEAD
@@ -74,6 +74,18 @@ class RayRenderer:
         if mode == "rgb":
             return self._shade(view, w, hit)
         return _depth(w) if mode == "depth" else self._numbers(hit)
+
+    def survey(
+        self, moment: PoseSnapshot, seat: str, poses: Iterable[Pose], size: tuple[int, int]
+    ) -> Iterator[tuple[NDArray[np.float32], NDArray[np.int32]]]:
+        """Depth and numbers of owners, as in `look`, from each of these poses of ``seat``; nothing else moves."""
+        self._pose(moment, seat)
+        spec = moment.seats[seat][1]
+        for pose in poses:
+            view = camera.projection_vector(pose, spec, size)
+            w, hit = _blank(view, size)
+            self._draw(view, self._solid, w, hit)
+            yield _depth(w), self._numbers(hit)
 
     def top_view(self, moment: PoseSnapshot, bounds: tuple[float, float, float, float], pixels_per_metre: float) -> Any:
         """The area x0, y0, x1, y1 [m] from straight above without ceilings, (H, W, 3) uint8."""

@@ -91,6 +91,7 @@ def trial() -> tuple[Briefing, list[Observation]]:
         kind="collect",
         jobs=(Job(target="apple", relation="on", destinations=("table", "desk")), Job(target="mug", relation="back")),
         phases=(PhaseBriefing(name="tour", instruction="Look around.", time_limit=60.0),),
+        labels=("wall", "apple", "floor"),
     )
     question = Message(id=4, sender="human2", tick=3, text="Where is the mug?", object="mug", to="robot", question=True)
     answer = Message(id=5, sender="human", tick=4, text="In the kitchen.", position=(1.0, 2.0, 0.8), answers=1)

@@ -1,0 +1,164 @@
+"""Pose grids, against the live world and against their own laws; houses for training; word vectors."""
+
+from __future__ import annotations
+
+import math
+from itertools import count, islice
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hthor import catalog, houses, tasks
+from hthor.agents.skills.semantic_cells import CELLS, CLASSES, GOALS, CellReader
+from hthor.errors import HthorError, UnknownName
+from hthor.train import grid_data, pose_grid
+from hthor.train import houses as train_houses
+from hthor.train.pose_grid import HEADINGS, TILTS_RAD, UNREACHABLE, PoseGrid
+from hthor.train.words import word_vectors
+from hthor.types import HouseSpec, Pose
+from hthor.world import World
+
+POSES = 1_000
+
+
+@pytest.fixture(scope="module")
+def world() -> World:
+    house = houses.load("hazel")
+    objects = next(task for task in tasks.load_suite("smoke").tasks if task.house == "hazel").objects
+    made = World(house, robots=["scout"], objects=[(one.id, one.kind) for one in objects])
+    made.rearrange((), objects)
+    return made
+
+
+def test_a_grid_s_readings_are_those_of_the_live_world_from_a_thousand_poses(world: World) -> None:
+    places, _ = pose_grid.lattice(world.house, world.space["robot"])
+    person = world.pose("human")
+    rng = np.random.default_rng(0)
+    far = places[np.hypot(places[:, 0] - person.x, places[:, 1] - person.y) > 0.6]
+    draws = (
+        pose_grid.make_pose(*map(float, far[rng.integers(len(far))]), int(rng.integers(8)), int(rng.integers(2)))
+        for _ in count()
+    )
+    person_number = world.names.index("human")
+    reader = CellReader(world.label_kinds, world.camera("robot").size)
+    poses: list[Pose] = []
+    live = []
+    for pose in draws:
+        world.teleport("robot", pose)
+        segmentation = world.picture("robot", "segmentation")
+        if (segmentation == person_number).any():  # nobody else is in a grid's house
+            continue
+        cells = reader.read(segmentation, world.picture("robot", "depth"))
+        live.append((cells, pose_grid.goal_bits(world.detections("robot"))))
+        poses.append(pose)
+        if len(poses) == POSES:
+            break
+    before = world.poses()
+    cells, visible = pose_grid.survey(world, poses)
+    assert world.poses() == before
+    assert visible.tolist() == [bits for _, bits in live]
+    assert np.count_nonzero(visible) > 50
+    for number, name in enumerate(cells._fields):
+        assert np.array_equal(cells[number], np.stack([one[number] for one, _ in live])), name
+
+
+def test_each_step_of_the_lattice_is_a_move_that_the_world_allows(world: World) -> None:
+    places, ahead = pose_grid.lattice(world.house, world.space["robot"])
+    space = world.space["robot"]
+    steps = {(round(math.cos(h * math.pi / 4)), round(math.sin(h * math.pi / 4))): h for h in range(HEADINGS)}
+    where = {tuple(np.rint((place - places[0]) / pose_grid.STEP_M).astype(int)): n for n, place in enumerate(places)}
+    for (i, j), number in where.items():
+        for (across, along), heading in steps.items():
+            other = where.get((i + across, j + along), number)
+            free = space.segment_free(tuple(places[number]), tuple(places[other]))
+            assert ahead[number, heading] == (other if free else number)
+            assert number == other or not free or ahead[other, (heading + 4) % HEADINGS] == number
+
+
+def _next_by_hand(grid_ahead: np.ndarray, pose: int) -> list[int]:
+    place, heading, tilt = pose // 16, pose // 2 % 8, pose % 2
+    return [
+        int(grid_ahead[place, heading]) * 16 + heading * 2 + tilt,
+        place * 16 + (heading + 1) % 8 * 2 + tilt,
+        place * 16 + (heading - 1) % 8 * 2 + tilt,
+        place * 16 + heading * 2,
+        place * 16 + heading * 2 + 1,
+    ]
+
+
+def test_distances_are_those_of_a_shortest_path() -> None:
+    rng = np.random.default_rng(1)
+    ahead = rng.integers(0, 12, (12, HEADINGS)).astype(np.int32)
+    ahead[9:] = np.arange(9, 12)[:, None]  # these places lead nowhere
+    following = pose_grid.next_poses(ahead)
+    assert following.tolist() == [_next_by_hand(ahead, pose) for pose in range(len(following))]
+    visible = np.zeros(len(following), np.uint16)
+    visible[[3, 40]] = 0b100
+    length = pose_grid.distances(following, visible, 2)
+    best = np.minimum(length[following].min(axis=1) + 1, UNREACHABLE)
+    assert np.array_equal(length, np.where(visible == 0b100, 0, best))
+    assert (pose_grid.distances(following, visible, 1) == UNREACHABLE).all()
+    assert (length[9 * 16 :] == UNREACHABLE).all()
+
+
+def test_a_grid_is_built_once_and_then_read(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    built = []
+
+    def build(house: HouseSpec, objects: object, robot: str) -> PoseGrid:
+        built.append(house.id)
+        cells = np.zeros((2 * HEADINGS * len(TILTS_RAD), CELLS), np.uint8)
+        return PoseGrid(
+            places=np.zeros((2, 2)),
+            rooms=np.zeros(2, np.int32),
+            ahead=np.zeros((2, HEADINGS), np.int32),
+            shown=cells + 3,
+            behind=cells,
+            depth=cells,
+            visible=np.zeros(len(cells), np.uint16),
+        )
+
+    monkeypatch.setattr(pose_grid, "build_grid", build)
+    house = houses.load("elder")
+    grids = [pose_grid.load_grid(house, ()) for _ in range(2)]
+    assert built == ["elder"]
+    for name in PoseGrid.__struct_fields__:
+        assert np.array_equal(getattr(grids[0], name), getattr(grids[1], name))
+    pose_grid.load_grid(house, (), "puck")
+    assert built == ["elder", "elder"]
+
+
+def test_the_same_number_gives_the_same_house_and_splits_share_none() -> None:
+    made = [train_houses.make_house(split, 0) for split in train_houses.SPLITS]
+    assert len({house.sha256 for house in made}) == len(made)
+    shipped = {houses.load(name).sha256 for group in ("scenes", "unseen") for name in houses.names(group)}  # type: ignore[arg-type]
+    assert shipped.isdisjoint(house.sha256 for house in made)
+    train_houses.make_house.cache_clear()
+    assert train_houses.make_house("train", 0) == made[0]
+    with pytest.raises(UnknownName, match=r"unknown split 'tests'\. Did you mean 'test'"):
+        train_houses.make_house("tests", 0)
+    with pytest.raises(HthorError, match="0 to 99999, got 100000"):
+        train_houses.make_house("train", train_houses.MOST)
+
+
+def test_every_class_has_a_word_vector_of_length_one() -> None:
+    vectors = word_vectors(CLASSES)
+    assert vectors.shape == (len(CLASSES), 50)
+    np.testing.assert_allclose(np.linalg.norm(vectors, axis=1), 1.0, rtol=1e-6)
+    like = vectors @ vectors.T
+    nearest = {name: CLASSES[int(np.argsort(like[CLASSES.index(name)])[-2])] for name in ("tomato", "tv_stand", "bed")}
+    assert nearest == {"tomato": "lettuce", "tv_stand": "television", "bed": "dog_bed"}
+    assert set(GOALS) == {*catalog.TARGETS, *catalog.RECEPTACLES}
+
+
+@pytest.mark.nightly
+def test_grids_of_houses_are_built_in_parallel_in_order(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    told: list[tuple[int, int]] = []
+    grids = grid_data.load_grids("validation", 2, 1, jobs=2, progress=lambda *numbers: told.append(numbers))
+    assert told == [(1, 2), (2, 2)]
+    first = train_houses.make_house("validation", 0)
+    alone = pose_grid.build_grid(first, train_houses.make_arrangement(first, 0))
+    assert np.array_equal(grids[0].shown, alone.shown)
+    assert len(list(islice(tmp_path.rglob("*.npz"), 3))) == 2
