@@ -33,8 +33,6 @@ HEADINGS = 8
 """Headings of 45 degrees, counter-clockwise from +x."""
 TILTS_RAD = (0.0, -math.radians(30.0))
 """[rad] The camera is level or looks down, as in the published training."""
-MOVES = 5
-"""Actions that lead to another pose: ahead, left, right, up, down, as in `savn_network.ACTIONS`."""
 UNREACHABLE = 10_000
 """A number of actions for "never"."""
 _SEAT = "robot"
@@ -46,7 +44,7 @@ class PoseGrid(Struct, frozen=True, kw_only=True, eq=False):
     Pose ``(place * 8 + heading) * 2 + tilt`` is at ``places[place]`` with heading ``heading`` * 45 degrees.
 
     Attributes:
-        places: (N, 2) float64 [m]. rooms: (N,) int32, index of the place's room in the house.
+        places: (N, 2) float64 [m]. rooms: (N,) int32, index of the place's room in the house, -1 between rooms.
         ahead: (N, 8) int32, the place that a step ahead leads to; the place itself where the way is not free.
         shown, behind, depth: (P, 49) uint8, see `hthor.agents.skills.semantic_cells.Cells`.
         visible: (P,) uint16, bit g is set if the robot's detector reports a thing of kind ``GOALS[g]``.
@@ -64,13 +62,6 @@ class PoseGrid(Struct, frozen=True, kw_only=True, eq=False):
     def next(self) -> Ints:
         """(P, 5) int32, the pose that each action leads to."""
         return next_poses(self.ahead)
-
-    def pose(self, number: int) -> Pose:
-        """The pose with this number."""
-        rest, tilt = divmod(number, len(TILTS_RAD))
-        place, heading = divmod(rest, HEADINGS)
-        x, y = self.places[place]
-        return make_pose(float(x), float(y), heading, tilt)
 
 
 def make_pose(x: float, y: float, heading: int, tilt: int) -> Pose:
@@ -197,8 +188,8 @@ def _poses(places: NDArray[np.float64]) -> Iterator[Pose]:
 
 
 def _rooms(house: HouseSpec, places: NDArray[np.float64]) -> Ints:
-    """(N,) index of the room in which each place is; places in doorways belong to the room before them."""
-    found = np.zeros(len(places), np.int32)
+    """(N,) index of the room in which each place is, -1 for places between rooms."""
+    found = np.full(len(places), -1, np.int32)
     for number, room in enumerate(house.rooms):
         found[[inside((x, y), room.polygon) for x, y in places.tolist()]] = number
     return found
