@@ -13,7 +13,20 @@ from typing import Annotated
 import typer
 
 from hthor import __version__, activity
-from hthor.commands import assets, calibrate, compare, correct, doctor, houses, priors, replay, report, score, suite
+from hthor.commands import (
+    assets,
+    calibrate,
+    compare,
+    correct,
+    doctor,
+    houses,
+    priors,
+    replay,
+    report,
+    score,
+    suite,
+    train,
+)
 from hthor.commands.agent import agent, serve
 from hthor.commands.eval import evaluate
 from hthor.commands.humans import humans
@@ -54,6 +67,7 @@ tasks.app.command("check")(make.check_tasks)
 app.add_typer(tasks.app, name="tasks")
 app.add_typer(suite.app, name="suite")
 app.add_typer(priors.app, name="priors")
+app.add_typer(train.app, name="train")
 app.add_typer(humans.app, name="humans")
 agent.agent.command("serve")(serve.serve)
 for _name, _group in agent.GROUPS.items():

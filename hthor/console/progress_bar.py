@@ -66,3 +66,12 @@ def watched(items: Iterable[_Item], name: str, total: int, unit: str, *, shown: 
         for item in items:
             yield item
             advance()
+
+
+def duration(seconds: float) -> str:
+    """A time in words, such as "2 min 05 s"."""
+    minutes, rest = divmod(round(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    if hours:
+        return f"{hours} h {minutes:02d} min"
+    return f"{minutes} min {rest:02d} s" if minutes else f"{rest} s"

@@ -1,1 +1,11 @@
-"""Data for training robots that learn: houses from seeds, and what a robot sees from every pose in them."""
+"""Training of robots that learn, and its data: what a robot sees from every pose in houses made from seeds.
+
+Needs the extra ``torch``.
+"""
+
+import importlib.util
+
+from hthor.errors import MissingExtra
+
+if importlib.util.find_spec("torch") is None:
+    raise MissingExtra("training", "torch")

@@ -7,17 +7,14 @@ sees is computed by the simulator itself, so that the detections of a grid are t
 
 from __future__ import annotations
 
-import io
 import math
 from collections.abc import Iterable, Iterator, Sequence
-from pathlib import Path
 from typing import TypeAlias
 
 import numpy as np
 from msgspec import Struct
 from numpy.typing import NDArray
 
-from hthor import code_identity, installation, jsonio
 from hthor.agents.skills.semantic_cells import CELLS, GOALS, CellReader, Cells
 from hthor.geometry.plane import inside
 from hthor.houses.space.free_space import FreeSpace
@@ -193,22 +190,3 @@ def _rooms(house: HouseSpec, places: NDArray[np.float64]) -> Ints:
     for number, room in enumerate(house.rooms):
         found[[inside((x, y), room.polygon) for x, y in places.tolist()]] = number
     return found
-
-
-def load_grid(house: HouseSpec, objects: Sequence[Placement], robot: str = "scout") -> PoseGrid:
-    """The same as `build_grid`, kept in the user's cache under the hash of everything that it depends on."""
-    place = _place(house, objects, robot)
-    if place.is_file():
-        with np.load(io.BytesIO(place.read_bytes())) as held:
-            return PoseGrid(**{name: held[name] for name in PoseGrid.__struct_fields__})
-    grid = build_grid(house, objects, robot)
-    out = io.BytesIO()
-    np.savez_compressed(out, **{name: getattr(grid, name) for name in PoseGrid.__struct_fields__})
-    jsonio.write(place, out.getvalue())
-    return grid
-
-
-def _place(house: HouseSpec, objects: Sequence[Placement], robot: str) -> Path:
-    code = code_identity.modules_sha256([__name__], (code_identity.SIMULATION, code_identity.PICTURES))
-    key = jsonio.sha256([house.sha256, list(objects), robot, code_identity.robot_sha256(robot), code])
-    return installation.cache() / "pose_grids" / f"{key}.npz"

@@ -9,6 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+pytest.importorskip("torch", reason="needs torch: pip install 'hthor[torch]'", exc_type=ImportError)
+
 from hthor import catalog, houses, tasks
 from hthor.agents.skills.semantic_cells import CELLS, CLASSES, GOALS, CellReader
 from hthor.errors import HthorError, UnknownName
@@ -102,31 +104,50 @@ def test_distances_are_those_of_a_shortest_path() -> None:
     assert (length[9 * 16 :] == UNREACHABLE).all()
 
 
-def test_a_grid_is_built_once_and_then_read(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def _small_grid() -> PoseGrid:
+    cells = np.zeros((2 * HEADINGS * len(TILTS_RAD), CELLS), np.uint8)
+    return PoseGrid(
+        places=np.zeros((2, 2)),
+        rooms=np.zeros(2, np.int32),
+        ahead=np.zeros((2, HEADINGS), np.int32),
+        shown=cells + 3,
+        behind=cells,
+        depth=cells,
+        visible=np.zeros(len(cells), np.uint16),
+    )
+
+
+def test_a_grid_is_kept_and_a_house_without_room_for_its_objects_is_left_out(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     built = []
 
     def build(house: HouseSpec, objects: object, robot: str) -> PoseGrid:
-        built.append(house.id)
-        cells = np.zeros((2 * HEADINGS * len(TILTS_RAD), CELLS), np.uint8)
-        return PoseGrid(
-            places=np.zeros((2, 2)),
-            rooms=np.zeros(2, np.int32),
-            ahead=np.zeros((2, HEADINGS), np.int32),
-            shown=cells + 3,
-            behind=cells,
-            depth=cells,
-            visible=np.zeros(len(cells), np.uint16),
-        )
+        built.append((house.id, robot))
+        return _small_grid()
 
-    monkeypatch.setattr(pose_grid, "build_grid", build)
-    house = houses.load("elder")
-    grids = [pose_grid.load_grid(house, ()) for _ in range(2)]
-    assert built == ["elder"]
+    monkeypatch.setattr(grid_data, "build_grid", build)
+    monkeypatch.setattr(grid_data.houses, "make_house", lambda split, number: houses.load(("elder", "hazel")[number]))
+
+    def arrangement(house: HouseSpec, number: int) -> tuple[()]:
+        if house.id == "hazel" or number:
+            raise HthorError("no place")
+        return ()
+
+    monkeypatch.setattr(grid_data.houses, "make_arrangement", arrangement)
+    for house in range(2):
+        for one in range(2):
+            grid_data._write("train", house, one)
+    found = grid_data.load_grids("train", 2, 2)  # all are there, so no process is started
+    assert built == [("elder", "scout")]
     for name in PoseGrid.__struct_fields__:
-        assert np.array_equal(getattr(grids[0], name), getattr(grids[1], name))
-    pose_grid.load_grid(house, (), "puck")
-    assert built == ["elder", "elder"]
+        assert np.array_equal(getattr(found[0], name), getattr(_small_grid(), name))
+    assert len(found) == 1
+    monkeypatch.setattr(grid_data.houses, "make_house", lambda *_: houses.load("hazel"))
+    grid_data._write("test", 0, 0)
+    with pytest.raises(HthorError, match="none of the first 1 houses of the split 'test'"):
+        grid_data.load_grids("test", 1, 1)
 
 
 def test_the_same_number_gives_the_same_house_and_splits_share_none() -> None:

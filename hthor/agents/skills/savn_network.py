@@ -77,9 +77,10 @@ class FastWeights:
 
     For an affine layer ``y = W x + b`` the gradient of a loss is the sum over its uses ``j`` of ``d_j x_j^T`` for the
     weights and of ``d_j`` for the bias, where ``d_j`` is the gradient with respect to ``y_j``. So after a step of size
-    ``rate`` the layer computes ``W x + b - rate * sum_j d_j (x_j . x + 1)``. Keeping the pairs (x_j, d_j) of each
-    episode is exact, can be differentiated again, and needs no copy of the weights per episode. A layer that is used at
-    every cell of a picture has many uses in one step, so for it the sum is kept as a matrix per episode.
+    ``rate`` the layer computes ``W x + b - rate * sum_j d_j (x_j . x + 1)``, without the 1 if it has no bias. Keeping
+    the pairs (x_j, d_j) of each episode is exact, can be differentiated again, and needs no copy of the weights per
+    episode. A layer that is used at every cell of a picture has many uses in one step, so for it the sum is kept as a
+    matrix per episode.
 
     Args:
         rate: step size.
@@ -104,8 +105,8 @@ class FastWeights:
         if added is not None and x.dim() == 3:
             y = y - self._rate * torch.baddbmm(added[1].unsqueeze(1), x, added[0].mT)
         elif added is not None:
-            match = torch.bmm(added[0], x.unsqueeze(2)) + 1.0
-            y = y - self._rate * torch.bmm(added[1].mT, match).squeeze(2)
+            match = torch.bmm(added[0], x.unsqueeze(2))
+            y = y - self._rate * torch.bmm(added[1].mT, match if layer.bias is None else match + 1.0).squeeze(2)
         if self.notes_uses:
             self._used.append((name, x, y))
         return y
@@ -160,13 +161,13 @@ class Network(nn.Module):
         channels = config.channels
         if config.profile == "slim":
             self.table = nn.Embedding(config.classes, config.embedding)
-            channels = config.embedding + 3  # see `_cells`
+            channels = config.embedding + 6  # see `_cells`
         self.image = nn.Linear(channels, config.image)
         self.goal = nn.Linear(config.words, config.goal)
         self.action = nn.Linear(len(ACTIONS), config.action)
-        self.fused = nn.Linear(config.image + config.goal + config.action, config.fused)
-        self.input = nn.Linear(config.fused * CELLS, 4 * config.hidden)
-        self.recurrent = nn.Linear(config.hidden, 4 * config.hidden)
+        self.fused = nn.Linear(config.image, config.fused)
+        self.aim = nn.Linear(config.goal + config.action, config.fused, bias=False)
+        self.gates = nn.Linear(config.fused * CELLS + config.hidden, 4 * config.hidden)
         self.actor = nn.Linear(config.hidden, len(ACTIONS))
         self.critic = nn.Linear(config.hidden, 1)
         self.loss_1 = nn.Conv1d(config.window, 10, 2)
@@ -189,27 +190,33 @@ class Network(nn.Module):
         drop = self.config.dropout if self.training else 0.0
         image = F.relu(fast("image", self.image, self._cells(features, goal)))
         image = F.dropout(image, drop) if drop else image
-        aim = F.relu(fast("goal", self.goal, self.words[goal]))
+        wanted = F.relu(fast("goal", self.goal, self.words[goal]))
         last = F.relu(fast("action", self.action, memory.action))
-        spread = torch.cat((aim, last), 1).unsqueeze(1).expand(-1, CELLS, -1)
-        fused = F.relu(fast("fused", self.fused, torch.cat((image, spread), 2)))
+        # One layer over an image's cells with goal and action at each of them, which are the same at all.
+        aim = fast("aim", self.aim, torch.cat((wanted, last), 1))
+        fused = F.relu(fast("fused", self.fused, image) + aim.unsqueeze(1))
         fused = F.dropout(fused, drop) if drop else fused
-        gates = fast("input", self.input, fused.flatten(1)) + fast("recurrent", self.recurrent, memory.hidden)
-        write, keep, new, show = gates.chunk(4, 1)  # by hand: the library's cell cannot be differentiated twice
-        cell = torch.sigmoid(keep) * memory.cell + torch.sigmoid(write) * torch.tanh(new)
-        hidden = torch.sigmoid(show) * torch.tanh(cell)
+        gates = fast("gates", self.gates, torch.cat((fused.flatten(1), memory.hidden), 1))
+        n = self.config.hidden  # the cell by hand: the library's cannot be differentiated twice
+        write, keep, show = torch.sigmoid(gates[:, : 3 * n]).chunk(3, 1)
+        cell = keep * memory.cell + write * torch.tanh(gates[:, 3 * n :])
+        hidden = show * torch.tanh(cell)
         logits = fast("actor", self.actor, hidden)
         return logits, self.critic(hidden).squeeze(1), Memory(hidden, cell, logits.softmax(1))
 
     def _cells(self, features: Sequence[Tensor], goal: Tensor) -> Tensor:
         """(B, cells, channels) of what the image layer reads: of a slim cell what it is, how like the goal in meaning,
-        and how far, near distances also on a finer scale.
+        whether it is the goal, and how far, near distances also on a finer scale.
         """
         if self.config.profile == "paper":
             return features[0]
-        classes, ranges = features[0], features[1].unsqueeze(2)
-        likeness = torch.bmm(self.words[classes], self.words[goal].unsqueeze(2))
-        return torch.cat((self.table(classes), likeness, ranges, torch.exp(-6.0 * ranges)), 2)
+        classes, ranges = features
+        likeness = (self.words[goal] @ self.words.T).gather(1, classes)
+        near = torch.exp(-6.0 * ranges)
+        same = (classes == goal.unsqueeze(1)).to(ranges.dtype)
+        return torch.cat(
+            (self.table(classes), torch.stack((likeness, ranges, near, same, same * ranges, same * near), 2)), 2
+        )
 
     def learned_loss(self, window: Tensor) -> Tensor:
         """(B,) from the hidden states and action probabilities of a window, (B, window, hidden + 6).
@@ -236,7 +243,7 @@ class AdaptiveRun:
     """
 
     def __init__(self, network: Network, goal: Tensor, learning: bool) -> None:
-        self.network, self._goal, self._learning = network, goal, learning
+        self.network, self.goal, self._learning = network, goal, learning
         self.memory = network.begin(len(goal))
         self.fast = FastWeights(network.config.rate, learning)
         self.fast.notes_uses = network.config.updates > 0
@@ -251,7 +258,7 @@ class AdaptiveRun:
                 do not adapt any more; None if all go on.
         """
         with torch.set_grad_enabled(self._learning or self.fast.notes_uses):
-            logits, value, self.memory = self.network(features, self._goal, self.memory, self.fast)
+            logits, value, self.memory = self.network(features, self.goal, self.memory, self.fast)
             if self.fast.notes_uses:
                 self._window.append(torch.cat((self.memory.hidden, self.memory.action), 1))
                 if len(self._window) == self.network.config.window:

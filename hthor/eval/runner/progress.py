@@ -75,7 +75,7 @@ class Tally:
         if self.pace:
             parts.append(f"{self.pace:.1f} trials/s")
             if self.done < self.total:
-                parts.append(f"{_clock((self.total - self.done) / self.pace)} left")
+                parts.append(f"{progress_bar.duration((self.total - self.done) / self.pace)} left")
         return ", ".join(parts)
 
 
@@ -150,11 +150,3 @@ def make_watcher(console: Console, name: str, *, quiet: bool, live: bool) -> Wat
 def _starting() -> str:
     """What the first trial waits for."""
     return "starting the workers" if code_identity.is_compiled() else "compiling for the first run, about 30 s"
-
-
-def _clock(seconds: float) -> str:
-    minutes, rest = divmod(round(seconds), 60)
-    hours, minutes = divmod(minutes, 60)
-    if hours:
-        return f"{hours} h {minutes:02d} min"
-    return f"{minutes} min {rest:02d} s" if minutes else f"{rest} s"

@@ -1,0 +1,131 @@
+"""`hthor train`: robots that learn, by themselves or from an expert."""
+
+from __future__ import annotations
+
+import shlex
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from hthor.commands.options import Json
+from hthor.console import output
+
+app = typer.Typer(no_args_is_help=True, help="Train robots that learn to find things (needs the extra torch).")
+
+_UNITS = {"k": 1_000, "M": 1_000_000}
+
+
+def _count(text: str) -> int:
+    """A number such as 500k or 10M."""
+    number, unit = (text[:-1], _UNITS[text[-1]]) if text[-1:] in _UNITS else (text, 1)
+    try:
+        count = round(float(number) * unit)
+    except ValueError:
+        count = 0
+    if count < 1:
+        raise typer.BadParameter(f"{text!r} is not a number such as 250000, 500k or 10M.")
+    return count
+
+
+Out = Annotated[Path | None, typer.Option(help="Folder of the training.", show_default="training/ALGORITHM-SEED")]
+Frames = Annotated[int, typer.Option(parser=_count, metavar="NUMBER", help="Actions to train on, such as 500k or 10M.")]
+Seed = Annotated[int, typer.Option(help="The same seed gives the same network on the same kind of processor.")]
+Houses = Annotated[int, typer.Option(min=1, help="Number of houses to train in.")]
+Arrangements = Annotated[int, typer.Option(min=1, help="Number of arrangements of the objects in each house.")]
+Zones = Annotated[
+    Literal["rooms", "houses", "both"],
+    typer.Option(help="Whether the robot searches a single room, the whole house, or half of the time each."),
+]
+Batch = Annotated[int, typer.Option(min=1, help="Number of episodes at once.")]
+Begin = Annotated[
+    Path | None,
+    typer.Option(metavar="CHECKPOINT", help="Start from this checkpoint.", show_default="random weights"),
+]
+Set = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        help="Another value for a setting in train_config.json, such as entropy=0.02 or network.hidden=256. Repeat the "
+        "option for several.",
+        show_default=False,
+    ),
+]
+Every = Annotated[int, typer.Option(parser=_count, metavar="NUMBER", help="Actions between two validations.")]
+Device = Annotated[str, typer.Option(help="auto, cpu or cuda; auto is cuda where there is one.")]
+Jobs = Annotated[int | None, typer.Option(min=1, help="Processes that prepare the houses.", show_default="one per CPU")]
+Quiet = Annotated[bool, typer.Option("--quiet", help="Print the result only, no progress.")]
+
+_FRAMES, _SEED, _HOUSES, _ARRANGEMENTS, _BATCH, _EVERY = "10M", 0, 96, 2, 128, "500k"
+
+
+_RESUMES = (
+    "Stopped by Ctrl-C or SIGTERM, the same command goes on where it was. 'hthor eval --agent savn:FOLDER' evaluates "
+    "the result beside people."
+)
+
+
+def train(
+    context: typer.Context,
+    out: Out = None,
+    frames: Frames = "10M",  # type: ignore[assignment]  # parsed
+    seed: Seed = 0,
+    houses: Houses = 96,
+    arrangements: Arrangements = 2,
+    zones: Zones = "both",
+    batch: Batch = 128,
+    begin: Begin = None,
+    settings: Set = None,
+    every: Every = "500k",  # type: ignore[assignment]
+    device: Device = "auto",
+    jobs: Jobs = None,
+    quiet: Quiet = False,
+    json: Json = False,
+) -> None:
+    """Train a network by the algorithm that the command is named after."""
+    from hthor.train import algorithms, session, training_display
+
+    name = context.info_name or ""
+    learner, config = algorithms.make(name, settings or (), seed=seed, frames=frames, batch=batch)
+    setup = session.Setup(
+        algorithm=name,
+        out=out or Path("training") / f"{name}-{seed}",
+        houses=houses,
+        arrangements=arrangements,
+        zones=zones,
+        every=every,
+        device=device,
+        jobs=jobs,
+        begin=begin,
+    )
+    with training_display.watch(name, shown=not quiet) as watcher:
+        row = session.run(learner, config, setup, watcher)
+    if row is None:
+        raise KeyboardInterrupt
+    if json:
+        output.put_json({"folder": str(setup.out), **row})
+        return
+    output.put_table(_HEADINGS, [_cells(zone, row[zone]) for zone in ("rooms", "houses") if zone in row])
+    output.say(f"files: {setup.out}/model.safetensors, config.json, train_config.json, metrics.jsonl")
+    output.say(f"next:  hthor eval --agent none --agent savn:{shlex.quote(str(setup.out))} --humans proxy")
+
+
+_SHARES = ("success", "spl", "success_long", "spl_long")
+_HEADINGS = ("validation", "success", "SPL", "success, 5 actions or more", "SPL, 5 or more", "actions")
+
+
+def _cells(zone: str, found: dict[str, float]) -> tuple[str, ...]:
+    return (
+        zone,
+        *(f"{100.0 * found[name]:.1f} %" if "success" in name else f"{found[name]:.3f}" for name in _SHARES),
+        f"{found['actions']:.0f}",
+    )
+
+
+for _name, _words in {
+    "savn": "Train SAVN: an actor-critic that adapts to each episode, by a loss that is learned too.",
+    "a2c": "Train the same actor-critic without adaptation.",
+    "bc": "Train the same network to imitate an expert who knows the shortest path.",
+}.items():
+    app.command(_name, help=f"{_words}\n\n{_RESUMES}")(train)

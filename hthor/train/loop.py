@@ -1,0 +1,138 @@
+"""The loop of every training: batches of episodes, the optimizer, the learning rate, and a state to go on from."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Protocol, TypeVar
+
+import torch
+from msgspec import Struct, structs
+from torch import Tensor
+
+from hthor.agents.skills import savn_checkpoint
+from hthor.agents.skills.savn_checkpoint import Checkpoint
+from hthor.agents.skills.savn_network import Network, NetworkConfig
+from hthor.agents.skills.semantic_cells import CLASSES, GOALS
+from hthor.train.grid_worlds import DONE, GridWorlds
+from hthor.train.training_state import TrainingState, load_state, save_state
+from hthor.train.words import word_vectors
+
+
+class LoopConfig(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """What every training depends on.
+
+    Attributes:
+        network: sizes of the network, and how it adapts. seed: of the first weights and of every draw.
+        frames: actions to train on. batch: episodes at once. horizon: actions of an episode in training.
+        learning_rate: of Adam; falls evenly to a tenth. clip: largest norm of a gradient.
+        late: added to the first weights, so that untrained networks seldom say "here it is".
+        close: share of the episodes that begin near their goal, where there is most to learn at first.
+    """
+
+    network: NetworkConfig = NetworkConfig()
+    seed: int = 0
+    frames: int = 10_000_000
+    batch: int = 128
+    horizon: int = 40
+    learning_rate: float = 1e-3
+    clip: float = 10.0
+    late: float = -3.0
+    close: float = 0.5
+
+
+_Config = TypeVar("_Config", bound=LoopConfig, contravariant=True)
+
+
+class Learner(Protocol[_Config]):
+    """Plays a batch of episodes and says what is to be made smaller."""
+
+    def __call__(
+        self, network: Network, worlds: GridWorlds, config: _Config, generator: torch.Generator
+    ) -> tuple[Tensor, int, dict[str, float]]:
+        """The loss, the number of actions in the batch, and what was measured."""
+        ...
+
+
+Report = Callable[[int, Network, dict[str, float] | None], None]
+"""Is called after each batch with the number of actions so far, and every so often with means of what was measured."""
+
+
+def make_network(config: LoopConfig) -> Network:
+    """A network before training."""
+    torch.manual_seed(config.seed)
+    network = Network(structs.replace(config.network, classes=len(CLASSES)))
+    with torch.no_grad():
+        network.words.copy_(torch.from_numpy(word_vectors(CLASSES)))
+        hidden = config.network.hidden
+        network.gates.bias[hidden : 2 * hidden] += 1.0  # so that it remembers at first
+        network.actor.bias[DONE] += config.late
+    return network
+
+
+def goal_classes(device: torch.device) -> Tensor:
+    """(goals,) int64, the class of each goal."""
+    return torch.tensor([CLASSES.index(name) for name in GOALS], device=device)
+
+
+def draw(chance: Tensor, generator: torch.Generator) -> Tensor:
+    """(B,) an action for each row of probabilities (B, actions)."""
+    return (chance / torch.empty_like(chance).exponential_(generator=generator)).argmax(1)
+
+
+def train(
+    learner: Learner[_Config],
+    config: _Config,
+    worlds: Sequence[GridWorlds],
+    folder: Path,
+    report: Report,
+    *,
+    begin: Checkpoint | None = None,
+    stops: Callable[[], bool] = lambda: False,
+    every: int = 500_000,
+) -> Network | None:
+    """Train a network, going on from where a training in the same folder stopped.
+
+    Args:
+        worlds: the batches come from each of them in turn. folder: of the checkpoint and the training's state.
+        begin: a checkpoint to start with instead of random weights. stops: whether to stop after this batch, as after
+            a signal. every: actions between two reports of means.
+
+    Returns:
+        The network, or None when it stopped before the end; the state is kept either way.
+
+    Raises:
+        HthorError: when the folder holds another training. FloatingPointError: when the loss is not finite.
+    """
+    device = worlds[0].device
+    network: Network = make_network(config).to(device)
+    if begin is not None:
+        network.load_state_dict(begin.network.state_dict())
+    optimizer = torch.optim.Adam(network.parameters(), lr=config.learning_rate, amsgrad=True)
+    generator = torch.Generator(device).manual_seed(config.seed)
+    state = TrainingState(config=config, network=network, optimizer=optimizer, generator=generator)
+    load_state(folder, state)
+    while state.frames < config.frames:
+        if stops():
+            save_state(folder, state)
+            return None
+        for group in optimizer.param_groups:
+            group["lr"] = config.learning_rate * (1.0 - 0.9 * state.frames / config.frames)
+        loss, played, measured = learner(network, worlds[state.batches % len(worlds)], config, generator)
+        optimizer.zero_grad()
+        loss.backward()
+        measured["gradient"] = float(torch.nn.utils.clip_grad_norm_(network.parameters(), config.clip))
+        optimizer.step()
+        measured["loss"] = float(loss.detach())
+        if not math.isfinite(measured["loss"]):
+            raise FloatingPointError(f"the loss is {measured['loss']} after {state.frames} actions")
+        before, state.frames, state.batches = state.frames, state.frames + played, state.batches + 1
+        state.add(measured)
+        if state.frames // every > before // every or state.frames >= config.frames:
+            report(state.frames, network, state.take_means())
+            save_state(folder, state)
+        else:
+            report(state.frames, network, None)
+    savn_checkpoint.save(folder, Checkpoint(network=network, classes=CLASSES))
+    return network

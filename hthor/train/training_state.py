@@ -1,0 +1,108 @@
+"""The state of a training, in one file, so that a training which was stopped goes on as if it had not been."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import torch
+from msgspec import Struct
+from safetensors import SafetensorError, safe_open
+from safetensors import torch as tensors
+from torch import nn
+
+from hthor import jsonio
+from hthor.errors import HthorError
+
+STATE = "state.safetensors"
+
+
+class TrainingState(Struct, kw_only=True, eq=False):
+    """Everything that changes in a training, and its configuration, which does not.
+
+    Attributes:
+        frames: actions so far. batches: of them. sums: of what was measured since the last means. summed: over how many
+            batches.
+    """
+
+    config: Struct
+    network: nn.Module
+    optimizer: torch.optim.Optimizer
+    generator: torch.Generator
+    frames: int = 0
+    batches: int = 0
+    sums: dict[str, float] = {}
+    summed: int = 0
+
+    def add(self, measured: dict[str, float]) -> None:
+        """Count what was measured in a batch."""
+        self.sums = {name: self.sums.get(name, 0.0) + value for name, value in measured.items()}
+        self.summed += 1
+
+    def take_means(self) -> dict[str, float]:
+        """The means of what was measured since they were taken last."""
+        means = {name: value / self.summed for name, value in self.sums.items()}
+        self.sums, self.summed = {}, 0
+        return means
+
+
+_NUMBERS = ("frames", "batches", "sums", "summed")
+
+
+def save_state(folder: Path, state: TrainingState) -> None:
+    """Write the state; the file is replaced in one step."""
+    parts = {f"network.{name}": value for name, value in state.network.state_dict().items()}
+    for index, one in state.optimizer.state_dict()["state"].items():
+        parts |= {f"optimizer.{index}.{name}": torch.as_tensor(value) for name, value in one.items()}
+    parts |= {"generator": state.generator.get_state(), "torch": torch.get_rng_state()}
+    numbers = {name: getattr(state, name) for name in _NUMBERS}
+    note = {"config": jsonio.canonical(state.config).decode(), "numbers": jsonio.canonical(numbers).decode()}
+    held = {name: value.detach().cpu().contiguous() for name, value in parts.items()}
+    jsonio.write(folder / STATE, tensors.save(held, note))
+
+
+def load_state(folder: Path, state: TrainingState) -> None:
+    """Bring a training to where its folder says that it was; one without a state is left as it is.
+
+    Raises:
+        HthorError: when the file is damaged, or of a training with another configuration.
+    """
+    found = _read(folder / STATE)
+    if found is None:
+        return
+    note, held = found
+    wanted = msgspec.to_builtins(state.config)
+    if note["config"] != wanted:
+        other = ", ".join(sorted(name for name in wanted if note["config"].get(name) != wanted[name]))
+        raise HthorError(f"{folder} holds a training with other settings ({other}); give another --out")
+    network = {name.removeprefix("network."): value for name, value in held.items() if name.startswith("network.")}
+    state.network.load_state_dict(network)
+    steps: dict[int, dict[str, Any]] = {}
+    for name, value in held.items():
+        if name.startswith("optimizer."):
+            _, index, key = name.split(".")
+            steps.setdefault(int(index), {})[key] = value
+    state.optimizer.load_state_dict({**state.optimizer.state_dict(), "state": steps})
+    state.generator.set_state(held["generator"])
+    torch.set_rng_state(held["torch"])
+    for name in _NUMBERS:
+        setattr(state, name, note["numbers"][name])
+
+
+def load_frames(folder: Path) -> int:
+    """How many actions the training in a folder has seen, 0 if it holds none."""
+    found = _read(folder / STATE)
+    return 0 if found is None else int(found[0]["numbers"]["frames"])
+
+
+def _read(path: Path) -> tuple[dict[str, Any], dict[str, torch.Tensor]] | None:
+    if not path.exists():
+        return None
+    try:
+        with safe_open(path, "pt") as file:
+            note = {name: json.loads(file.metadata()[name]) for name in ("config", "numbers")}
+            return note, {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118
+    except (SafetensorError, OSError, KeyError, TypeError, ValueError) as error:
+        raise HthorError(f"{path} is not the state of a training ({error}); remove it to begin again") from None

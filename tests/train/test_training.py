@@ -1,0 +1,190 @@
+"""Trainings from beginning to end on small grids, their resuming, and what stops them."""
+
+from __future__ import annotations
+
+import json
+import signal
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import pytest
+
+torch = pytest.importorskip("torch", reason="needs torch: pip install 'hthor[torch]'", exc_type=ImportError)
+
+from small_grids import make_grid  # noqa: E402
+
+from hthor.agents.skills import savn_checkpoint  # noqa: E402
+from hthor.agents.skills.savn_network import NetworkConfig  # noqa: E402
+from hthor.errors import HthorError, UnknownName  # noqa: E402
+from hthor.train import algorithms, bc, loop, savn, session  # noqa: E402
+from hthor.train.grid_worlds import DONE, GridWorlds  # noqa: E402
+from hthor.train.training_display import Silence  # noqa: E402
+
+TINY = NetworkConfig(embedding=3, image=4, goal=4, action=3, fused=2, hidden=8, window=3, updates=2)
+ALGORITHMS = ("savn", "a2c", "bc")
+SETTINGS = ["frames=1200", "batch=16", "horizon=8"]
+
+
+@pytest.fixture(autouse=True)
+def small_grids(monkeypatch: pytest.MonkeyPatch) -> None:
+    grids = {"train": [make_grid(0), make_grid(1)], "validation": [make_grid(2)]}
+    monkeypatch.setattr(session, "load_grids", lambda split, *_, **__: grids[split])
+    monkeypatch.setattr(session, "VALIDATION_EPISODES", 10)
+    monkeypatch.setattr(session, "MOST_ACTIONS", {"rooms": 8, "houses": 8})
+
+
+class StopsAfter(Silence):
+    """Sends a signal to this process after so many batches."""
+
+    def __init__(self, batches: int) -> None:
+        self.left = batches
+
+    def training(self, frames: int, total: int) -> None:
+        del frames, total
+        self.left -= 1
+        if self.left == 0:
+            signal.raise_signal(signal.SIGTERM)
+
+
+def make(name: str, *settings: str) -> tuple[Any, Any]:
+    learner, config = algorithms.make(name, [*SETTINGS, *settings])
+    updates = config.network.updates and TINY.updates
+    return learner, msgspec.structs.replace(config, network=msgspec.structs.replace(TINY, updates=updates))
+
+
+def train(name: str, out: Path, watcher: Any = None, **more: Any) -> dict[str, Any] | None:
+    setup = session.Setup(algorithm=name, out=out, every=400, device="cpu", **more)
+    return session.run(*make(name), setup, watcher or Silence())
+
+
+def files(folder: Path) -> dict[str, bytes]:
+    return {path.name: path.read_bytes() for path in sorted(folder.iterdir()) if path.is_file()}
+
+
+@pytest.mark.parametrize("name", ALGORITHMS)
+def test_a_training_that_was_stopped_ends_like_one_that_was_not(name: str, tmp_path: Path) -> None:
+    handlers = [signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)]
+    row = train(name, tmp_path / "whole")
+    assert row is not None
+    assert row["frames"] >= 1200
+    assert train(name, tmp_path / "parts", StopsAfter(2)) is None
+    assert not (tmp_path / "parts" / "model.safetensors").exists()
+    assert train(name, tmp_path / "parts", StopsAfter(7)) is None
+    assert train(name, tmp_path / "parts") == row
+    assert files(tmp_path / "parts") == files(tmp_path / "whole")
+    assert train(name, tmp_path / "parts") == row  # nothing is left to do
+    assert handlers == [signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)]
+    rows = [json.loads(line) for line in (tmp_path / "whole" / "metrics.jsonl").read_text().splitlines()]
+    assert [one["frames"] // 400 for one in rows] == [1, 2, 3]
+    assert all(set(one) == {"frames", "train", "rooms", "houses"} for one in rows)
+
+
+def test_a_checkpoint_is_read_as_it_was_written_and_another_training_starts_from_it(tmp_path: Path) -> None:
+    train("bc", tmp_path / "bc")
+    begin = savn_checkpoint.load(tmp_path / "bc")
+    setup = session.Setup(algorithm="a2c", out=tmp_path / "next", begin=tmp_path / "bc", device="cpu", zones="rooms")
+    learner, config = make("a2c", "learning_rate=0")
+    config = msgspec.structs.replace(config, learning_rate=0.0, network=begin.network.config)
+    row = session.run(learner, config, setup, Silence())
+    assert row is not None
+    assert set(row) == {"frames", "train", "rooms"}
+    after = savn_checkpoint.load(tmp_path / "next")
+    assert after.classes == begin.classes
+    for name, value in begin.network.state_dict().items():
+        assert torch.equal(value, after.network.state_dict()[name]), name
+
+
+def test_a_folder_with_another_training_or_a_damaged_one_is_refused(tmp_path: Path) -> None:
+    out = tmp_path / "one"
+    train("a2c", out, StopsAfter(2))
+    with pytest.raises(HthorError, match=r"another training|other settings \(algorithm, training\)"):
+        train("bc", out)
+    with pytest.raises(HthorError, match=r"other settings \(zones\)"):
+        train("a2c", out, zones="rooms")
+    state = out / "state.safetensors"
+    state.write_bytes(state.read_bytes()[:1000])
+    with pytest.raises(HthorError, match=r"state\.safetensors is not the state of a training"):
+        train("a2c", out)
+
+
+def test_a_damaged_checkpoint_is_named(tmp_path: Path) -> None:
+    train("a2c", tmp_path)
+    whole = files(tmp_path)
+    with pytest.raises(HthorError, match=r"config\.json cannot be read .* a checkpoint is a folder with"):
+        savn_checkpoint.load(tmp_path / "nowhere")
+    config = json.loads(whole["config.json"])
+    for document, words in (
+        ("{", "is not the configuration of a checkpoint"),
+        (json.dumps({**config, "classes": config["classes"][1:]}), "names 109 classes, but its network is for 110"),
+        (json.dumps({**config, "network": {**config["network"], "hidden": 9}}), "does not hold the weights"),
+    ):
+        (tmp_path / "config.json").write_text(document)
+        with pytest.raises(HthorError, match=words):
+            savn_checkpoint.load(tmp_path)
+    (tmp_path / "config.json").write_bytes(whole["config.json"])
+    (tmp_path / "model.safetensors").write_bytes(whole["model.safetensors"][:500])
+    with pytest.raises(HthorError, match=r"model\.safetensors does not hold the weights"):
+        savn_checkpoint.load(tmp_path)
+
+
+def test_settings_are_checked() -> None:
+    _, config = algorithms.make("savn", ["network.rate=0.5", "entropy=0.02", "wrong_ends=true"], seed=3)
+    assert (config.network.rate, config.entropy, config.wrong_ends, config.seed) == (0.5, 0.02, True, 3)  # type: ignore[attr-defined]
+    assert algorithms.make("a2c")[1].network.updates == 0
+    with pytest.raises(UnknownName, match="Did you mean 'entropy'"):
+        algorithms.make("savn", ["entropi=1"])
+    with pytest.raises(UnknownName, match="unknown setting 'network'"):
+        algorithms.make("savn", ["network=1"])
+    with pytest.raises(HthorError, match=r"batch=many: Expected `int`"):
+        algorithms.make("savn", ["batch=many"])
+    with pytest.raises(HthorError, match="written KEY=VALUE"):
+        algorithms.make("savn", ["batch"])
+    with pytest.raises(UnknownName, match="Did you mean 'savn'"):
+        algorithms.make("savm")
+    with pytest.raises(HthorError, match="the device 'abacus' cannot be used here"):
+        session.choose_device("abacus")
+
+
+def test_advantages_are_those_of_the_definition() -> None:
+    config = savn.Config(batch=2)
+    g = torch.Generator().manual_seed(0)
+    steps, gamma, trace = 5, config.gamma, config.trace
+    value, reward = (torch.randn(steps, 2, generator=g, dtype=torch.float64) for _ in range(2))
+    alive = torch.ones(steps, 2, dtype=torch.float64)
+    alive[3:, 1] = 0.0
+    chosen = torch.randn(steps, 2, generator=g, dtype=torch.float64, requires_grad=True)
+    after = torch.tensor([0.7, 0.0], dtype=torch.float64)
+    rollout = savn.Rollout(chosen, torch.zeros_like(value), value, reward * alive, alive, after, alive[0] > 0)
+    savn.loss_of(rollout, config).backward()
+    for episode, length in ((0, 5), (1, 3)):
+        values = [*value[:length, episode].tolist(), float(after[episode]) if length == steps else 0.0]
+        for t in range(length):
+            surprises = [reward[k, episode] + gamma * values[k + 1] - values[k] for k in range(t, length)]
+            advantage = sum((gamma * trace) ** k * one for k, one in enumerate(surprises))
+            assert float(chosen.grad[t, episode]) == pytest.approx(-float(advantage) / 2)
+    assert not chosen.grad[3:, 1].any()
+
+
+def test_the_expert_s_way_is_a_shortest_one() -> None:
+    worlds = GridWorlds([make_grid(0)], "houses")
+    pose, goal, least = worlds.draw(64, torch.Generator().manual_seed(4))
+    for step in range(1, int(least.max()) + 1):
+        action = bc.expert_action(worlds, pose, goal)
+        assert torch.equal(action == DONE, least <= step)
+        pose = worlds.go(pose, action)
+
+
+def test_learning_finds_what_is_to_be_found(tmp_path: Path) -> None:
+    """On one small house, after a hundredth of a real training, much better than chance."""
+    worlds = [GridWorlds([make_grid(0)], "houses")]
+    found: list[float] = []
+    config = savn.Config(network=msgspec.structs.replace(TINY, hidden=32, fused=8, updates=0), frames=60_000, batch=32)
+
+    def report(frames: int, network: Any, means: dict[str, float] | None) -> None:
+        del frames, network
+        if means is not None:
+            found.append(means["success"])
+
+    loop.train(savn.learn, config, worlds, tmp_path, report, every=10_000)
+    assert found[-1] > 2.0 * found[0]
