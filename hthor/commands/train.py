@@ -74,7 +74,7 @@ def train(
     houses: Houses = 96,
     arrangements: Arrangements = 2,
     zones: Zones = "both",
-    batch: Batch = 128,
+    batch: Batch = 64,
     begin: Begin = None,
     settings: Set = None,
     every: Every = "500k",  # type: ignore[assignment]

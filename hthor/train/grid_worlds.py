@@ -14,8 +14,8 @@ import torch
 from numpy.typing import NDArray
 from torch import Tensor
 
-from hthor import catalog
-from hthor.agents.skills.semantic_cells import CLASSES, FAR_M, GOALS, LEVELS
+from hthor.agents.skills.detector_noise import DetectorNoise
+from hthor.agents.skills.semantic_cells import CLASSES, GOALS, LEVELS
 from hthor.train.grid_paths import UNREACHABLE, path_lengths
 from hthor.train.pose_grid import HEADINGS, TILTS_RAD, PoseGrid, next_poses
 
@@ -27,9 +27,6 @@ LEAST_PLACES = 12
 """A room with fewer places is no zone of its own."""
 CLOSE = 8
 """A number of actions to a goal that is near."""
-MISS, MISS_PER_M, FALSE_ALARM = 0.03, 0.06, 0.001
-"""Detector noise: the chance to miss a small thing in a cell, at no distance and per metre, and the chance that a cell
-shows one that is not there. Real detectors lose small things with distance; the sizes are assumptions."""
 
 
 class Episodes(NamedTuple):
@@ -76,9 +73,7 @@ class GridWorlds:
         self.next, self.length = following.to(self.device).long(), length.to(self.device)
         self.shown, self.behind, self.depth = (part.to(self.device) for part in (shown, behind, depth))
         self.house, self.first = torch.tensor(house), torch.tensor(first, device=self.device)
-        small = [name in catalog.TARGETS for name in CLASSES]
-        self.small = torch.tensor(small, device=self.device)
-        self.small_classes = torch.tensor([i for i, one in enumerate(small) if one], device=self.device)
+        self.noise = DetectorNoise(CLASSES, self.device)
 
     def draw(self, batch: int, generator: torch.Generator, close: float = 0.0) -> Episodes:
         """Episodes whose zone, start and goal are drawn evenly among those where the goal is not in view.
@@ -109,14 +104,8 @@ class GridWorlds:
             generator: draws the detector's noise; None for a detector without any.
         """
         shown, ranges = self.shown[pose].long(), self.depth[pose].float() / LEVELS
-        if generator is None:
-            return shown, ranges
-        chance = torch.rand(shown.shape, generator=generator, device=self.device)
-        missed = self.small[shown] & (chance < MISS + MISS_PER_M * FAR_M * ranges)
-        shown = torch.where(missed, self.behind[pose].long(), shown)
-        extra = chance > 1.0 - FALSE_ALARM
-        which = ((chance - (1.0 - FALSE_ALARM)) / FALSE_ALARM * len(self.small_classes)).long()
-        shown = torch.where(extra, self.small_classes[which.clamp(0, len(self.small_classes) - 1)], shown)
+        if generator is not None:
+            shown = self.noise(shown, self.behind[pose].long(), ranges, generator)
         return shown, ranges
 
     def go(self, pose: Tensor, action: Tensor) -> Tensor:

@@ -34,7 +34,7 @@ class LoopConfig(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     network: NetworkConfig = NetworkConfig()
     seed: int = 0
     frames: int = 10_000_000
-    batch: int = 128
+    batch: int = 64
     horizon: int = 40
     learning_rate: float = 1e-3
     clip: float = 10.0
@@ -132,7 +132,7 @@ def train(
         if state.frames // every > before // every or state.frames >= config.frames:
             report(state.frames, network, state.take_means())
             save_state(folder, state)
+            savn_checkpoint.save(folder, Checkpoint(network=network, classes=CLASSES))
         else:
             report(state.frames, network, None)
-    savn_checkpoint.save(folder, Checkpoint(network=network, classes=CLASSES))
     return network

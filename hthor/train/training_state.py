@@ -58,7 +58,9 @@ def save_state(folder: Path, state: TrainingState) -> None:
         parts |= {f"optimizer.{index}.{name}": torch.as_tensor(value) for name, value in one.items()}
     parts |= {"generator": state.generator.get_state(), "torch": torch.get_rng_state()}
     numbers = {name: getattr(state, name) for name in _NUMBERS}
-    note = {"config": jsonio.canonical(state.config).decode(), "numbers": jsonio.canonical(numbers).decode()}
+    note = {
+        "note": jsonio.canonical({"config": state.config, "numbers": numbers}).decode()
+    }  # of one, the order is sure
     held = {name: value.detach().cpu().contiguous() for name, value in parts.items()}
     jsonio.write(folder / STATE, tensors.save(held, note))
 
@@ -102,7 +104,6 @@ def _read(path: Path) -> tuple[dict[str, Any], dict[str, torch.Tensor]] | None:
         return None
     try:
         with safe_open(path, "pt") as file:
-            note = {name: json.loads(file.metadata()[name]) for name in ("config", "numbers")}
-            return note, {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118
+            return json.loads(file.metadata()["note"]), {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118
     except (SafetensorError, OSError, KeyError, TypeError, ValueError) as error:
         raise HthorError(f"{path} is not the state of a training ({error}); remove it to begin again") from None

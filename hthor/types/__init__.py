@@ -51,7 +51,7 @@ from hthor.types.observations import (
     ThingState,
 )
 from hthor.types.sensors import Camera, CameraSpec, Detection, DetectorSpec, Scan, Senses, Sighting, View
-from hthor.types.signals import Predict, Ready, Show, Signal
+from hthor.types.signals import Adapt, Predict, Ready, Show, Signal
 from hthor.types.snapshot import Snapshot
 from hthor.types.specs import (
     WALKERS,
@@ -73,6 +73,7 @@ __all__ = [
     "SUBTICKS",
     "WALKERS",
     "Action",
+    "Adapt",
     "AgentRef",
     "BodySpec",
     "Briefing",

@@ -35,4 +35,15 @@ class Predict(Struct, tag="predict", frozen=True, kw_only=True):
     next: dict[str, float] = {}
 
 
-Signal = Show | Ready | Predict
+class Adapt(Struct, tag="adapt", frozen=True, kw_only=True):
+    """A robot has changed its own policy during the trial; nothing depends on it but two metrics.
+
+    Attributes:
+        divergence: [nats] how far the change has moved the policy, as the divergence (Kullback-Leibler) of its next
+            action's probabilities from those that it would have had without any change in this trial.
+    """
+
+    divergence: float
+
+
+Signal = Show | Ready | Predict | Adapt

@@ -248,6 +248,12 @@ def frontier() -> Any:
     return plugins.load("agent", "frontier")()
 
 
+@pytest.fixture(params=["frontier", "nearest"])
+def explorer(request: pytest.FixtureRequest) -> Any:
+    """A robot that explores, and tells of what it finds."""
+    return plugins.load("agent", request.param)()
+
+
 @pytest.fixture
 def oracle() -> Any:
     return plugins.load("agent", "oracle")()
@@ -256,7 +262,7 @@ def oracle() -> Any:
 def test_every_agent_follows_the_contract() -> None:
     names = plugins.names("agent")
     assert {"frontier", "oracle", "none"} <= set(names)
-    for name in ("frontier", "oracle", "none"):
+    for name in set(names) - {"savn", "savn_frozen", "a2c"}:  # which need torch, and have tests of their own
         made = plugins.load("agent", name)
         assert isinstance(made.privileges, tuple)
         assert made.__doc__
@@ -272,33 +278,33 @@ def test_the_silent_agent_waits() -> None:
     assert isinstance(agent.act(Flat().observe()).motion, Wait)
 
 
-def test_the_frontier_robot_finds_what_is_in_the_other_room_and_says_it_once(frontier: Any) -> None:
+def test_a_robot_that_explores_finds_what_is_in_the_other_room_and_says_it_once(explorer: Any) -> None:
     flat = Flat()
-    ((tick, message),) = live(frontier, flat, 900)
+    ((tick, message),) = live(explorer, flat, 900)
     assert tick < 600
     assert (message.object, message.position) == ("apple", APPLE)
-    assert message.text == "I found the apple on the dining table in front of me."
+    assert message.text.replace(" on the dining table", "") == "I found the apple in front of me."
     turn = abs(wrap(math.atan2(APPLE[1] - flat.pose.y, APPLE[0] - flat.pose.x) - flat.pose.yaw))
     assert turn < 0.1, "it should watch the target"
 
 
-def test_the_frontier_robot_offers_once_more_after_a_refusal(frontier: Any) -> None:
+def test_a_robot_that_explores_offers_once_more_after_a_refusal(explorer: Any) -> None:
     flat = Flat()
-    live(frontier, flat, 900, until=1)
+    live(explorer, flat, 900, until=1)
     ((first, _),) = flat.sent
     flat.receipt = Receipt(message=0, status="declined", tick=first + 20)
     flat.news = True
-    frontier.begin = lambda told: None
-    live(frontier, flat, 300)
+    explorer.begin = lambda told: None
+    live(explorer, flat, 300)
     second = flat.sent[1][0]
     assert first + 120 <= second <= first + 150, "it waits ten seconds, and comes back from where it stood aside"
     flat.receipt = Receipt(message=1, status="declined", tick=second)
-    live(frontier, flat, 300)
+    live(explorer, flat, 300)
     assert len(flat.sent) == 2
 
 
-def test_the_frontier_robot_says_nothing_of_what_the_person_holds(frontier: Any) -> None:
-    assert live(frontier, Flat(holds=True), 900) == []
+def test_a_robot_that_explores_says_nothing_of_what_the_person_holds(explorer: Any) -> None:
+    assert live(explorer, Flat(holds=True), 900) == []
 
 
 def test_nothing_is_said_while_the_target_is_out_of_range(frontier: Any) -> None:

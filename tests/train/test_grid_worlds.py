@@ -11,10 +11,11 @@ torch = pytest.importorskip("torch", reason="needs torch: pip install 'hthor[tor
 
 from small_grids import TURNS, make_grid  # noqa: E402
 
+from hthor.agents.skills.detector_noise import FALSE_ALARM, MISS, MISS_PER_M  # noqa: E402
 from hthor.agents.skills.semantic_cells import CELLS, CLASSES, GOALS  # noqa: E402
 from hthor.catalog import TARGETS  # noqa: E402
 from hthor.train.grid_paths import UNREACHABLE, path_lengths  # noqa: E402
-from hthor.train.grid_worlds import CLOSE, DONE, FALSE_ALARM, MISS, MISS_PER_M, GridWorlds  # noqa: E402
+from hthor.train.grid_worlds import CLOSE, DONE, GridWorlds  # noqa: E402
 
 torch.set_num_threads(1)
 GRIDS = [make_grid(seed) for seed in range(2)]
@@ -78,7 +79,7 @@ def test_the_detector_s_noise_is_as_frequent_as_stated() -> None:
     noisy, same = worlds.look(pose, torch.Generator().manual_seed(3))
     assert torch.equal(ranges, same)
     assert torch.equal(clean, worlds.shown[pose].long())
-    small = worlds.small[clean]
+    small = worlds.noise.small[clean]
     expected = float((MISS + MISS_PER_M * 10.0 * ranges[small]).mean())
     assert float((noisy != clean)[small].float().mean()) == pytest.approx(expected, rel=0.05)
     changed = (noisy != clean) & ~small

@@ -13,9 +13,11 @@ import pytest
 torch = pytest.importorskip("torch", reason="needs torch: pip install 'hthor[torch]'", exc_type=ImportError)
 
 from small_grids import make_grid  # noqa: E402
+from typer.testing import CliRunner  # noqa: E402
 
 from hthor.agents.skills import savn_checkpoint  # noqa: E402
 from hthor.agents.skills.savn_network import NetworkConfig  # noqa: E402
+from hthor.cli import app  # noqa: E402
 from hthor.errors import HthorError, UnknownName  # noqa: E402
 from hthor.train import algorithms, bc, loop, savn, session  # noqa: E402
 from hthor.train.grid_worlds import DONE, GridWorlds  # noqa: E402
@@ -188,3 +190,21 @@ def test_learning_finds_what_is_to_be_found(tmp_path: Path) -> None:
 
     loop.train(savn.learn, config, worlds, tmp_path, report, every=10_000)
     assert found[-1] > 2.0 * found[0]
+
+
+def test_the_command_says_how_it_went_and_what_comes_next(tmp_path: Path) -> None:
+    out = tmp_path / "mine"
+    options = ["--out", str(out), "--frames", "0.3k", "--every", "200", "--batch", "16", "--device", "cpu"]
+    sizes = [f"network.{name}={getattr(TINY, name)}" for name in ("image", "goal", "fused", "hidden", "window")]
+    options += [word for size in (*sizes, "horizon=8") for word in ("--set", size)]
+    done = CliRunner().invoke(app, ["train", "savn", *options])
+    assert done.exit_code == 0, done.output
+    assert "success" in done.stdout
+    assert f"hthor eval --agent none --agent savn:{out} --humans proxy" in done.stderr.replace("\n", " ")
+    again = CliRunner().invoke(app, ["train", "savn", *options, "--json"])
+    row = json.loads(again.stdout)
+    assert row["folder"] == str(out)
+    assert row["frames"] >= 300
+    wrong = CliRunner().invoke(app, ["train", "savn", "--frames", "lots"])
+    assert wrong.exit_code == 2
+    assert "is not a number such as 250000" in " ".join(wrong.output.split())

@@ -37,6 +37,7 @@ from hthor.types.events.journal import (
 from hthor.types.events.messages import Accepted, Answered, Covered, Declined, Displayed, MessageEvent, Sent, Shown
 from hthor.types.events.predictions import Believed, Predicted
 from hthor.types.events.trial import (
+    Adapted,
     AdoptionJudged,
     AgentFault,
     Paused,
@@ -71,6 +72,7 @@ Event = (
     | InWay
     | Refused
     | Predicted
+    | Adapted
     | Thought
     | Progress
     | PhaseBegan
@@ -89,6 +91,7 @@ JournalEntry = Stick | Head | Inputs | Attempt | Exposure | Choice | Offer | Mis
 
 __all__ = [
     "Accepted",
+    "Adapted",
     "AdoptionJudged",
     "AgentFault",
     "Answered",

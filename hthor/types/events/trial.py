@@ -13,6 +13,16 @@ class Thought(LogEntry, frozen=True, kw_only=True, tag="thought"):
     ticks: int
 
 
+class Adapted(LogEntry, frozen=True, kw_only=True, tag="adapted"):
+    """The robot in the seat told the system that it has changed its own policy.
+
+    Attributes:
+        divergence: [nats] how far that moved the policy, by what the robot says; see `hthor.types.Adapt`.
+    """
+
+    divergence: float
+
+
 class Progress(LogEntry, frozen=True, kw_only=True, tag="progress"):
     """The share of the goal that is met has changed.
 
