@@ -52,10 +52,12 @@ class GridWorlds:
     Attributes:
         next: (P, 5) int64. length: (P, goals) int16, least number of actions to a pose that sees the goal.
         house: (zones,) the number of each zone's grid. first: (zones + 1,) where each zone's poses begin.
+        zones: the zones as grids.
     """
 
     def __init__(self, grids: Iterable[PoseGrid], zones: Zones, device: str = "cpu") -> None:
         columns: list[tuple[NDArray[Any], ...]] = []
+        self.zones: list[PoseGrid] = []
         house, first = [], [0]
         for number, grid in enumerate(grids):
             for zone in _cut(grid, zones):
@@ -64,6 +66,7 @@ class GridWorlds:
                 if not (length < UNREACHABLE).any():
                     continue
                 columns.append((following + first[-1], length, zone.shown, zone.behind, zone.depth))
+                self.zones.append(zone)
                 house.append(number)
                 first.append(first[-1] + len(visible))
         following, length, shown, behind, depth = (

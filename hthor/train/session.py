@@ -16,7 +16,7 @@ import msgspec
 import torch
 from msgspec import Struct
 
-from hthor import jsonio
+from hthor import documents, jsonio
 from hthor.agents.skills import savn_checkpoint
 from hthor.agents.skills.savn_network import Network
 from hthor.errors import HthorError
@@ -144,7 +144,8 @@ class _Metrics:
         self._path = folder / METRICS
         rows = []
         if self._path.exists():
-            rows = [msgspec.json.decode(line) for line in self._path.read_bytes().splitlines()]
+            lines = self._path.read_bytes().splitlines()
+            rows = [documents.parse(line, dict[str, Any], HthorError, shown=str(self._path)) for line in lines]
         rows = [row for row in rows if row["frames"] <= frames]
         jsonio.write(self._path, b"".join(jsonio.canonical(row) + b"\n" for row in rows))
         self.last: dict[str, Any] = rows[-1] if rows else {}
@@ -183,7 +184,7 @@ def _write_config(config: loop.LoopConfig, setup: Setup) -> None:
     held |= {"begin": "" if setup.begin is None else setup.begin.name, "training": config}
     path = setup.out / TRAIN_CONFIG
     if path.exists() and path.read_bytes() != jsonio.pretty(held):
-        old = msgspec.json.decode(path.read_bytes())
+        old = documents.read(path, dict[str, Any], HthorError)
         new = msgspec.to_builtins(held)
         different = sorted(name for name in {*old, *new} if old.get(name) != new.get(name))
         raise HthorError(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +12,7 @@ from safetensors import SafetensorError, safe_open
 from safetensors import torch as tensors
 from torch import nn
 
-from hthor import jsonio
+from hthor import documents, jsonio
 from hthor.errors import HthorError
 
 STATE = "state.safetensors"
@@ -104,6 +103,8 @@ def _read(path: Path) -> tuple[dict[str, Any], dict[str, torch.Tensor]] | None:
         return None
     try:
         with safe_open(path, "pt") as file:
-            return json.loads(file.metadata()["note"]), {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118
+            note = file.metadata()["note"].encode()
+            held = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118
+            return documents.parse(note, dict[str, Any], HthorError, shown=str(path)), held
     except (SafetensorError, OSError, KeyError, TypeError, ValueError) as error:
         raise HthorError(f"{path} is not the state of a training ({error}); remove it to begin again") from None

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import msgspec
 from msgspec import Struct
 
-from hthor import jsonio
+from hthor import documents, jsonio
 from hthor.agents.skills.savn_network import Network, NetworkConfig
 from hthor.errors import HthorError, MissingExtra
 
@@ -18,6 +17,8 @@ except ModuleNotFoundError as error:
     raise MissingExtra("SAVN", "torch") from error
 
 CONFIG, WEIGHTS = "config.json", "model.safetensors"
+SCHEMA = "hthor.checkpoint/1"
+_HINT = f"A checkpoint is a folder with {CONFIG} and {WEIGHTS}."
 
 
 class CheckpointConfig(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -27,6 +28,7 @@ class CheckpointConfig(Struct, frozen=True, kw_only=True, forbid_unknown_fields=
         network: the sizes of the network and how it adapts. classes: what the numbers of its cells and goals stand for.
     """
 
+    schema: str
     network: NetworkConfig
     classes: tuple[str, ...]
 
@@ -44,7 +46,7 @@ def save(folder: Path, checkpoint: Checkpoint) -> None:
     Raises:
         OSError: when a file cannot be written.
     """
-    config = CheckpointConfig(network=checkpoint.network.config, classes=checkpoint.classes)
+    config = CheckpointConfig(schema=SCHEMA, network=checkpoint.network.config, classes=checkpoint.classes)
     weights = {name: value.detach().cpu().contiguous() for name, value in checkpoint.network.state_dict().items()}
     jsonio.write(folder / WEIGHTS, tensors.save(weights))
     jsonio.write(folder / CONFIG, jsonio.pretty(config))
@@ -68,12 +70,10 @@ def load(folder: Path) -> Checkpoint:
 
 
 def _read_config(path: Path) -> CheckpointConfig:
-    try:
-        config = msgspec.json.decode(_read(path), type=CheckpointConfig)
-    except (msgspec.DecodeError, UnicodeDecodeError) as error:
-        raise HthorError(f"{path} is not the configuration of a checkpoint: {error}") from None
+    config = documents.read(path, CheckpointConfig, HthorError, schema=SCHEMA, hint=_HINT)
     if config.network.classes != len(config.classes):
-        raise HthorError(f"{path} names {len(config.classes)} classes, but its network is for {config.network.classes}")
+        problem = f"names {len(config.classes)} classes, but its network is for {config.network.classes}"
+        raise HthorError.in_file(str(path), "classes", problem)
     return config
 
 
@@ -81,6 +81,4 @@ def _read(path: Path) -> bytes:
     try:
         return path.read_bytes()
     except OSError as error:
-        raise HthorError(
-            f"{path} cannot be read ({error.strerror}); a checkpoint is a folder with {CONFIG} and {WEIGHTS}"
-        ) from None
+        raise HthorError(f"{path} cannot be read: {error.strerror}; {_HINT}") from None
