@@ -57,9 +57,8 @@ Device = Annotated[str, typer.Option(help="auto, cpu or cuda; auto is cuda where
 Jobs = Annotated[int | None, typer.Option(min=1, help="Processes that prepare the houses.", show_default="one per CPU")]
 Quiet = Annotated[bool, typer.Option("--quiet", help="Print the result only, no progress.")]
 
-_FRAMES, _SEED, _HOUSES, _ARRANGEMENTS, _BATCH, _EVERY = "10M", 0, 96, 2, 128, "500k"
-
-
+_SHARES = ("success", "spl", "success_long", "spl_long")
+_HEADINGS = ("validation", "success", "SPL", "success, 5 actions or more", "SPL, 5 or more", "actions")
 _RESUMES = (
     "Stopped by Ctrl-C or SIGTERM, the same command goes on where it was. 'hthor eval --agent savn:FOLDER' evaluates "
     "the result beside people."
@@ -109,10 +108,6 @@ def train(
     output.put_table(_HEADINGS, [_cells(zone, row[zone]) for zone in ("rooms", "houses") if zone in row])
     output.say(f"files: {setup.out}/model.safetensors, config.json, train_config.json, metrics.jsonl")
     output.say(f"next:  hthor eval --agent none --agent savn:{shlex.quote(str(setup.out))} --humans proxy")
-
-
-_SHARES = ("success", "spl", "success_long", "spl_long")
-_HEADINGS = ("validation", "success", "SPL", "success, 5 actions or more", "SPL, 5 or more", "actions")
 
 
 def _cells(zone: str, found: dict[str, float]) -> tuple[str, ...]:

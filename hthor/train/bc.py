@@ -10,9 +10,9 @@ import torch
 from torch import Tensor
 from torch.nn import functional as F  # noqa: N812
 
-from hthor.agents.skills.savn_network import AdaptiveRun, Network
+from hthor.agents.skills.savn_network import AdaptiveRun, Network, draw_actions
 from hthor.train.grid_worlds import DONE, GridWorlds
-from hthor.train.loop import LoopConfig, draw, goal_classes
+from hthor.train.loop import LoopConfig, goal_classes
 
 
 class Config(LoopConfig, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -44,7 +44,7 @@ def learn(
         logits, _ = run.step(worlds.look(pose, generator), alive)
         best = expert_action(worlds, pose, goal)
         losses.append(F.cross_entropy(logits, best, reduction="none") * alive)
-        own = draw(logits.detach().softmax(1), generator)
+        own = draw_actions(logits, generator)
         right, lived = right + ((own == best) * alive).sum(), lived + alive.sum()
         action = torch.where(led, best, own)
         pose, alive = worlds.go(pose, action), alive * ~((action == DONE) & (best == DONE))

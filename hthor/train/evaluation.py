@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import NamedTuple, Protocol
 
 import torch
 from torch import Tensor
 
-from hthor.agents.skills.savn_network import AdaptiveRun, FastWeights, Network
+from hthor.agents.skills.savn_network import AdaptiveRun, Network, draw_actions
 from hthor.train.grid_worlds import DONE, Episodes, GridWorlds
-from hthor.train.loop import draw, goal_classes
+from hthor.train.loop import goal_classes
 
 LONG = 5
 """Episodes of at least so many actions are counted by themselves too, as in the published tables."""
@@ -65,13 +64,11 @@ class NetworkWalker:
     def act(self, pose: Tensor, alive: Tensor) -> Tensor:
         """As `Walker.act`."""
         logits, _ = self.run.step(self.worlds.look(pose, self.generator if self.noisy else None), alive)
-        return draw(logits.detach().softmax(1), self.generator)
+        return draw_actions(logits, self.generator)
 
 
-def evaluate(
-    walker: Walker, worlds: GridWorlds, episodes: Episodes, most: int, step: Callable[[], None] = lambda: None
-) -> Results:
-    """Let a walker go through episodes of at most ``most`` actions; ``step`` is called after each action."""
+def evaluate(walker: Walker, worlds: GridWorlds, episodes: Episodes, most: int) -> Results:
+    """Let a walker go through episodes of at most ``most`` actions."""
     pose, goal, least = episodes
     alive = torch.ones(len(pose), device=worlds.device)
     found = torch.zeros(len(pose), dtype=torch.bool, device=worlds.device)
@@ -82,15 +79,14 @@ def evaluate(
         actions += alive.long()
         pose = worlds.go(pose, action)
         alive = alive * (action != DONE)
-        step()
         if not alive.any():
             break
     return Results(found, actions, least)
 
 
 def divergence(network: Network, worlds: GridWorlds, episodes: Episodes, generator: torch.Generator) -> float:
-    """How far adaptation has moved the policy when it is over: mean divergence (Kullback-Leibler) [nats] of the adapted
-    policy from the one before adaptation, at the poses reached until then.
+    """How far adaptation has moved the policy when it is over, [nats]: the mean over the poses reached until then of
+    `AdaptiveRun.divergence`.
     """
     config = network.config
     walker = NetworkWalker(network, worlds, episodes.goal, generator)
@@ -98,9 +94,4 @@ def divergence(network: Network, worlds: GridWorlds, episodes: Episodes, generat
     for _ in range(config.window * config.updates):
         action = walker.act(pose, alive)
         pose, alive = worlds.go(pose, action), alive * (action != DONE)
-    features, run = worlds.look(pose, None), walker.run
-    with torch.no_grad():
-        adapted, _, _ = network(features, run.goal, run.memory, run.fast)
-        frozen, _, _ = network(features, run.goal, run.memory, FastWeights(0.0, again=False))
-    log = adapted.log_softmax(1)
-    return float((log.exp() * (log - frozen.log_softmax(1))).sum(1).mean())
+    return float(walker.run.divergence(worlds.look(pose, None)).mean())

@@ -76,11 +76,6 @@ def goal_classes(device: torch.device) -> Tensor:
     return torch.tensor([CLASSES.index(name) for name in GOALS], device=device)
 
 
-def draw(chance: Tensor, generator: torch.Generator) -> Tensor:
-    """(B,) an action for each row of probabilities (B, actions)."""
-    return (chance / torch.empty_like(chance).exponential_(generator=generator)).argmax(1)
-
-
 def train(
     learner: Learner[_Config],
     config: _Config,

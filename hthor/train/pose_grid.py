@@ -30,8 +30,6 @@ HEADINGS = 8
 """Headings of 45 degrees, counter-clockwise from +x."""
 TILTS_RAD = (0.0, -math.radians(30.0))
 """[rad] The camera is level or looks down, as in the published training."""
-UNREACHABLE = 10_000
-"""A number of actions for "never"."""
 _SEAT = "robot"
 
 
@@ -55,11 +53,6 @@ class PoseGrid(Struct, frozen=True, kw_only=True, eq=False):
     depth: Bytes
     visible: NDArray[np.uint16]
 
-    @property
-    def next(self) -> Ints:
-        """(P, 5) int32, the pose that each action leads to."""
-        return next_poses(self.ahead)
-
 
 def make_pose(x: float, y: float, heading: int, tilt: int) -> Pose:
     """The pose at a place [m] with numbers of a heading and a tilt."""
@@ -80,19 +73,6 @@ def next_poses(ahead: Ints) -> Ints:
         (place, heading, down),
     )
     return np.stack([(p * HEADINGS + h) * tilts + t for p, h, t in found], axis=1).astype(np.int32)
-
-
-def distances(successors: Ints, visible: NDArray[np.uint16], goal: int) -> NDArray[np.int16]:
-    """(P,) least number of actions from each pose to one where the goal is visible, `UNREACHABLE` for never."""
-    length = np.full(len(successors), UNREACHABLE, np.int16)
-    edge = (visible >> goal) & 1 == 1
-    length[edge] = 0
-    step = 0
-    while edge.any():
-        step += 1
-        edge = edge[successors].any(axis=1) & (length == UNREACHABLE)
-        length[edge] = step
-    return length
 
 
 def lattice(house: HouseSpec, space: FreeSpace) -> tuple[NDArray[np.float64], Ints]:

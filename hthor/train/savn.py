@@ -13,9 +13,9 @@ from typing import NamedTuple
 import torch
 from torch import Tensor
 
-from hthor.agents.skills.savn_network import AdaptiveRun, Network
+from hthor.agents.skills.savn_network import AdaptiveRun, Network, draw_actions
 from hthor.train.grid_worlds import DONE, GridWorlds
-from hthor.train.loop import LoopConfig, draw, goal_classes
+from hthor.train.loop import LoopConfig, goal_classes
 
 
 class Config(LoopConfig, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -69,7 +69,7 @@ def play(network: Network, worlds: GridWorlds, config: Config, generator: torch.
         logits, value = run.step(worlds.look(pose, generator), alive)
         log = logits.log_softmax(1)
         chance = log.exp()
-        action = draw(chance.detach(), generator)
+        action = draw_actions(logits, generator)
         moved = worlds.go(pose, action)
         done = action == DONE
         right = done & worlds.found(pose, goal)

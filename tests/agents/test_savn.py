@@ -15,7 +15,15 @@ from guest_agents import BRIEFING, look  # noqa: E402
 from hthor import houses, plugins, tasks  # noqa: E402
 from hthor.agents import savn  # noqa: E402
 from hthor.agents.skills import savn_checkpoint  # noqa: E402
-from hthor.agents.skills.network_search import STEP_M, TILT_RAD, TURN_RAD, Decision, NetworkSearch, align  # noqa: E402
+from hthor.agents.skills.network_search import (  # noqa: E402
+    STEP_M,
+    TILT_RAD,
+    TURN_RAD,
+    Decision,
+    NetworkSearch,
+    align,
+    make_motion,
+)
 from hthor.agents.skills.semantic_cells import CLASSES  # noqa: E402
 from hthor.episode import EpisodeLog, play  # noqa: E402
 from hthor.errors import AgentError  # noqa: E402
@@ -114,9 +122,7 @@ def test_its_motions_are_those_of_the_training_s_lattice(yaw: float, pitch: floa
     assert align(pose) is None
     heading = pose.yaw / TURN_RAD
     assert heading == pytest.approx(round(heading))
-    from hthor.agents.skills.network_search import _motion
-
-    ahead = _motion("ahead", pose)
+    ahead = make_motion("ahead", pose)
     assert isinstance(ahead, Move)
     x, y = (ahead.forward * f(pose.yaw) / STEP_M for f in (math.cos, math.sin))
     assert (x, y) == (pytest.approx(round(x)), pytest.approx(round(y)))
@@ -126,11 +132,11 @@ def test_its_motions_are_those_of_the_training_s_lattice(yaw: float, pitch: floa
         ("up", pose.yaw, 0.0),
         ("down", pose.yaw, -TILT_RAD),
     ):
-        motion = _motion(name, pose)
+        motion = make_motion(name, pose)
         turned = (motion.yaw, motion.pitch) if isinstance(motion, Rotate) else (0.0, 0.0)
         assert math.remainder(pose.yaw + turned[0] - yaw_after, 2 * math.pi) == pytest.approx(0.0, abs=1e-9)
         assert pose.pitch + turned[1] == pytest.approx(pitch_after)
-    assert _motion("done", pose) is None
+    assert make_motion("done", pose) is None
 
 
 def test_it_believes_a_thing_to_be_about_where_it_is() -> None:

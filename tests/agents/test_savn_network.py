@@ -144,15 +144,19 @@ def test_an_adaptation_moves_the_policy_and_leaves_the_checkpoint_as_it_is(confi
             weight *= 4.0  # as nothing has been learned yet, what it sees hardly moves it
     before = {name: value.clone() for name, value in network.state_dict().items()}
     features, goal, _ = _episodes(config)
-    run = savn.AdaptiveRun(network, goal, learning=False)
+    run, same = (savn.AdaptiveRun(network, goal, learning=False) for _ in range(2))
     for one in features[: config.window * config.updates]:
         run.step(one)
+        run.divergence(one)  # changes nothing
+        same.step(one)
     memory = run.memory
+    assert torch.equal(memory.hidden, same.memory.hidden)
     with torch.no_grad():
         adapted, _, _ = network(features[-1], goal, memory, run.fast)
         frozen, _, _ = network(features[-1], goal, memory, _Plain())
     divergence = (adapted.softmax(1) * (adapted.log_softmax(1) - frozen.log_softmax(1))).sum(1)
     assert float(divergence.min()) > 1e-4
+    torch.testing.assert_close(run.divergence(features[-1]), divergence)
     assert all(torch.equal(before[name], value) for name, value in network.state_dict().items())
 
 

@@ -10,7 +10,7 @@ from msgspec import structs
 
 from hthor.agents.skills.detector_noise import DetectorNoise
 from hthor.agents.skills.savn_checkpoint import Checkpoint
-from hthor.agents.skills.savn_network import ACTIONS, AdaptiveRun, FastWeights, Memory, Network
+from hthor.agents.skills.savn_network import ACTIONS, AdaptiveRun, Network, draw_actions
 from hthor.agents.skills.semantic_cells import FAR_M, GRID, LEVELS, CellReader
 from hthor.errors import MissingExtra
 from hthor.geometry.plane import wrap
@@ -71,15 +71,14 @@ class NetworkSearch:
             self.begin(self._classes[int(self._goal)])
         self._actions += 1
         shown, ranges = self._look(observation)
-        memory, has_adapted = self._run.memory, self._run.adaptations > self._told
-        self._told = self._run.adaptations
+        divergence = None
+        if self._run.adaptations > self._told:
+            self._told = self._run.adaptations
+            divergence = float(self._run.divergence((shown, ranges)))
         logits, _ = self._run.step((shown, ranges))
-        log = logits.detach().log_softmax(1)
-        noise = torch.empty_like(log).exponential_(generator=self._generator)
-        action = ACTIONS[int((log.exp() / noise).argmax())]
-        divergence = self._divergence((shown, ranges), memory, log) if has_adapted else None
+        action = ACTIONS[int(draw_actions(logits, self._generator))]
         position = self._believed(observation.camera, observation.pose, shown[0], ranges[0])
-        return Decision(_motion(action, observation.pose), position, divergence)
+        return Decision(make_motion(action, observation.pose), position, divergence)
 
     def _look(self, observation: Observation) -> tuple[Tensor, Tensor]:
         """Classes and ranges (1, cells) of what the robot sees."""
@@ -93,12 +92,6 @@ class NetworkSearch:
         if self._noise is not None:
             shown = self._noise(shown, behind, ranges, self._generator)
         return shown, ranges
-
-    def _divergence(self, features: tuple[Tensor, Tensor], memory: Memory, log: Tensor) -> float:
-        """Of the adapted policy from the one with the checkpoint's weights, at the same memory [nats]."""
-        with torch.no_grad():
-            logits, _, _ = self._network(features, self._goal, memory, FastWeights(0.0, again=False))
-        return float((log.exp() * (log - logits.log_softmax(1))).sum().clamp(min=0.0))
 
     def _believed(self, camera: Camera, pose: Pose, shown: Tensor, ranges: Tensor) -> Vec3:
         """The middle of the nearest cell that shows the thing; a step ahead of the robot if none does."""
@@ -128,7 +121,8 @@ def align(pose: Pose) -> Rotate | None:
     return None if abs(yaw) < 1e-6 and abs(pitch) < 1e-6 else Rotate(yaw=yaw, pitch=pitch)
 
 
-def _motion(action: str, pose: Pose) -> Motion | None:
+def make_motion(action: str, pose: Pose) -> Motion | None:
+    """The motion that an action stands for at a pose; None for "done"."""
     heading = round(pose.yaw / TURN_RAD)
     match action:
         case "done":

@@ -229,12 +229,18 @@ class Network(nn.Module):
         return torch.sqrt(x.square().sum(1) + 1e-8)  # the square root of exactly zero has no gradient
 
 
+def draw_actions(logits: Tensor, generator: torch.Generator) -> Tensor:
+    """(B,) int64, an action for each row of logits (B, 6), with the probabilities that they stand for."""
+    chance = logits.detach().softmax(1)
+    return (chance / torch.empty_like(chance).exponential_(generator=generator)).argmax(1)
+
+
 class AdaptiveRun:
     """Runs a network through a batch of episodes in lock-step and adapts its weights to each of them.
 
     Attributes:
         memory: what the network carries to the next action. fast: what each episode's adaptations added.
-        adaptations: how many there were.
+        adaptations: how many there were. goal: as in the arguments.
 
     Args:
         goal: (B,) int64, the class that each episode looks for.
@@ -264,6 +270,18 @@ class AdaptiveRun:
                 if len(self._window) == self.network.config.window:
                     self._adapt(alive)
         return logits, value
+
+    def divergence(self, features: Sequence[Tensor]) -> Tensor:
+        """(B,) how far adaptation has moved the policy at what is seen now: the divergence (Kullback-Leibler) [nats] of
+        the next action's probabilities from those with the weights that the run began with.
+        """
+        notes, self.fast.notes_uses = self.fast.notes_uses, False  # this look is no part of the episode
+        with torch.no_grad():
+            fast = (self.fast, FastWeights(0.0, again=False))
+            logits = [self.network(features, self.goal, self.memory, one)[0] for one in fast]
+        self.fast.notes_uses = notes
+        adapted, first = (row.log_softmax(1) for row in logits)
+        return (adapted.exp() * (adapted - first)).sum(1).clamp(min=0.0)
 
     def _adapt(self, alive: Tensor | None) -> None:
         loss = self.network.learned_loss(torch.stack(self._window, 1))
