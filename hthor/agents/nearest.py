@@ -14,7 +14,20 @@ from hthor.navigation.grid_map import CELL_M, GridMap
 from hthor.navigation.path_follower import Courtesy, Follower, face
 from hthor.navigation.planner import Planner
 from hthor.navigation.waiting_spots import retreat
-from hthor.types import Action, Briefing, Detection, Motion, Observation, Pose, Ready, Rotate, Send, Wait, is_person
+from hthor.types import (
+    Action,
+    Briefing,
+    Detection,
+    Motion,
+    Observation,
+    Pose,
+    Ready,
+    Rotate,
+    Send,
+    Vec2,
+    Wait,
+    is_person,
+)
 
 KEEP_M = 1.0
 """[m] Hysteresis: another place must be nearer than the present one by this much."""
@@ -45,6 +58,7 @@ class Agent:
         """Begin with an empty map."""
         self.briefing, body = briefing, briefing.body
         self.map: GridMap | None = None
+        self.mapped_from: Pose | None = None
         self.follower = Follower(turn_rad=0.8)
         self.courtesy = Courtesy(body, lambda a, b: self.planner.straight(a, b))
         self.timing = MessageTiming(briefing, most=2)
@@ -81,7 +95,9 @@ class Agent:
         if self.map is None:
             self.map = GridMap(pose.x, pose.y)
             self.planner = Planner(self.map, self.briefing.body.radius, optimistic=False)
-        self.map.integrate(observation.scan, CLOSE_M, 0.45 * self.briefing.body.fov[0])
+        if pose != self.mapped_from:
+            self.map.integrate(observation.scan, CLOSE_M, 0.45 * self.briefing.body.fov[0])
+            self.mapped_from = pose
         self.kinds |= {one.id: one.kind for one in observation.detections}
         ahead = self.follower.ahead
         if observation.idle and outcome is not None and not outcome.ok and outcome.motion == "move" and ahead:
@@ -104,17 +120,19 @@ class Agent:
     def choose(self, pose: Pose) -> None:
         """Take the nearest place, or keep the present one if no other is much nearer."""
         assert self.map is not None
-        survey, last = Survey(self.map, self.planner, pose, LEAST_M), self.place
-        arrived = self.follower.done
+        last, is_new_try = self.place, self.follower.done or self.place is None
         self.place, self.chose = None, (pose.x, pose.y)
         self.follower.take(None)
-        for one in survey.ranked(lambda centre: KEEP_M * (last is None or math.dist(centre, last.centre) > LEAST_M)):
+
+        def extra_m(centre: Vec2) -> float:
+            return 0.0 if last is not None and math.dist(centre, last.centre) <= LEAST_M else KEEP_M
+
+        survey = Survey(self.map, self.planner, pose, LEAST_M)
+        for one in survey.ranked(extra_m):
             key = (round(one.centre[0] / LEAST_M), round(one.centre[1] / LEAST_M))
-            if self.tries.get(key, 0) >= TRIES:
-                continue
-            path = survey.path(one)
+            path = survey.path(one) if self.tries.get(key, 0) < TRIES else None
             if path:
-                self.tries[key] = self.tries.get(key, 0) + (arrived or last is None)
+                self.tries[key] = self.tries.get(key, 0) + is_new_try
                 self.place = one
                 self.follower.take(path)
                 return

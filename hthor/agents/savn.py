@@ -77,7 +77,7 @@ class Agent:
         self._wanted = _wanted(briefing)
         self._told: list[Vec3] = []
         self._asked: int | None = None  # the tick of a message that has no answer yet
-        self._retreats = False
+        self._has_left = False
         self._next()
 
     def act(self, observation: Observation) -> Action:
@@ -143,10 +143,10 @@ class Agent:
         return Action(motion=Wait(seconds=0.5), say=said, signals=signals)
 
     def _out_of_the_way(self, observation: Observation) -> Motion:
-        """Go, once, to where it blocks nobody who comes to the last place that it told of."""
+        """Go, once, to a spot nearby where it blocks nobody."""
         pose = observation.pose
-        if not self._retreats:
-            self._retreats = True
+        if not self._has_left:
+            self._has_left = True
             self._map.retreat(pose, (pose.x, pose.y), ASIDE_M)
         return self._map.follower.next(pose) or Wait(seconds=1.0)
 

@@ -49,12 +49,12 @@ def make(name: str, settings: Iterable[str] = (), **options: Any) -> tuple[Learn
 
 def _set(config: LoopConfig, key: str, value: str) -> LoopConfig:
     document = msgspec.to_builtins(config)
+    network = document["network"]
+    known = [*(name for name in document if name != "network"), *(f"network.{name}" for name in network)]
+    if key not in known:
+        raise UnknownName("setting", key, known)
     where, _, name = key.rpartition(".")
-    fields = document if not where else document.get(where)
-    if not isinstance(fields, dict) or isinstance(fields.get(name, {}), dict):
-        known = [one for one, held in document.items() if not isinstance(held, dict)]
-        known += [f"network.{one}" for one in document["network"]]
-        raise UnknownName("setting", key, tuple(known))
+    fields = network if where else document
     fields[name] = value
     try:
         return msgspec.convert(document, type(config), strict=False)

@@ -17,7 +17,7 @@ from torch import Tensor
 from hthor.agents.skills.detector_noise import DetectorNoise
 from hthor.agents.skills.semantic_cells import CLASSES, GOALS, LEVELS
 from hthor.train.grid_paths import UNREACHABLE, path_lengths
-from hthor.train.pose_grid import HEADINGS, TILTS_RAD, PoseGrid, next_poses
+from hthor.train.pose_grid import HEADINGS, TILTS_RAD, Ints, PoseGrid, next_poses
 
 Zones = Literal["rooms", "houses"]
 DONE = 5
@@ -52,12 +52,12 @@ class GridWorlds:
     Attributes:
         next: (P, 5) int64. length: (P, goals) int16, least number of actions to a pose that sees the goal.
         house: (zones,) the number of each zone's grid. first: (zones + 1,) where each zone's poses begin.
-        zones: the zones as grids.
+        lattices: of each zone its places (N, 2) [m] and the places ahead (N, 8), see `PoseGrid`.
     """
 
     def __init__(self, grids: Iterable[PoseGrid], zones: Zones, device: str = "cpu") -> None:
         columns: list[tuple[NDArray[Any], ...]] = []
-        self.zones: list[PoseGrid] = []
+        self.lattices: list[tuple[NDArray[np.float64], Ints]] = []
         house, first = [], [0]
         for number, grid in enumerate(grids):
             for zone in _cut(grid, zones):
@@ -66,7 +66,7 @@ class GridWorlds:
                 if not (length < UNREACHABLE).any():
                     continue
                 columns.append((following + first[-1], length, zone.shown, zone.behind, zone.depth))
-                self.zones.append(zone)
+                self.lattices.append((zone.places, zone.ahead))
                 house.append(number)
                 first.append(first[-1] + len(visible))
         following, length, shown, behind, depth = (

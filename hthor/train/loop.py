@@ -27,7 +27,7 @@ class LoopConfig(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
         network: sizes of the network, and how it adapts. seed: of the first weights and of every draw.
         frames: actions to train on. batch: episodes at once. horizon: actions of an episode in training.
         learning_rate: of Adam; falls evenly to a tenth. clip: largest norm of a gradient.
-        late: added to the first weights, so that untrained networks seldom say "here it is".
+        done_bias: added to the first weights, so that untrained networks seldom say "here it is".
         close: share of the episodes that begin near their goal, where there is most to learn at first.
     """
 
@@ -38,7 +38,7 @@ class LoopConfig(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     horizon: int = 40
     learning_rate: float = 1e-3
     clip: float = 10.0
-    late: float = -3.0
+    done_bias: float = -3.0
     close: float = 0.5
 
 
@@ -67,7 +67,7 @@ def make_network(config: LoopConfig) -> Network:
         network.words.copy_(torch.from_numpy(word_vectors(CLASSES)))
         hidden = config.network.hidden
         network.gates.bias[hidden : 2 * hidden] += 1.0  # so that it remembers at first
-        network.actor.bias[DONE] += config.late
+        network.actor.bias[DONE] += config.done_bias
     return network
 
 
@@ -98,7 +98,8 @@ def train(
         The network, or None when it stopped before the end; the state is kept either way.
 
     Raises:
-        HthorError: when the folder holds another training. FloatingPointError: when the loss is not finite.
+        HthorError: when the state in the folder is damaged, or of another network. FloatingPointError: when the loss is
+            not finite.
     """
     device = worlds[0].device
     network: Network = make_network(config).to(device)
@@ -106,7 +107,7 @@ def train(
         network.load_state_dict(begin.network.state_dict())
     optimizer = torch.optim.Adam(network.parameters(), lr=config.learning_rate, amsgrad=True)
     generator = torch.Generator(device).manual_seed(config.seed)
-    state = TrainingState(config=config, network=network, optimizer=optimizer, generator=generator)
+    state = TrainingState(network=network, optimizer=optimizer, generator=generator)
     load_state(folder, state)
     while state.frames < config.frames:
         if stops():

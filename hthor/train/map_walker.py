@@ -17,7 +17,7 @@ from torch import Tensor
 from hthor import rules
 from hthor.train.grid_paths import UNREACHABLE, Paths
 from hthor.train.grid_worlds import DONE, GridWorlds
-from hthor.train.pose_grid import HEADINGS, STEP_M, TILTS_RAD, PoseGrid
+from hthor.train.pose_grid import HEADINGS, STEP_M, TILTS_RAD, Ints
 
 SCAN_M = 5.0
 """[m] Range of the scan."""
@@ -42,21 +42,21 @@ class Terrain:
         seen: (N * 8, N) the places that a scan shows from a pose. near: those within the detector's range.
     """
 
-    def __init__(self, grid: PoseGrid) -> None:
-        self.ahead = grid.ahead
-        place, heading = (part.ravel() for part in np.indices(grid.ahead.shape))
+    def __init__(self, places: NDArray[np.float64], ahead: Ints) -> None:
+        self.ahead = ahead
+        place, heading = (part.ravel() for part in np.indices(ahead.shape))
         turned = [place * HEADINGS + (heading + by) % HEADINGS for by in (1, -1)]
-        self.successors = np.stack([grid.ahead[place, heading] * HEADINGS + heading, *turned], axis=1)
+        self.successors = np.stack([ahead[place, heading] * HEADINGS + heading, *turned], axis=1)
         self.paths = Paths(self.successors)
-        offset = grid.places[None, :] - grid.places[:, None]
+        offset = places[None, :] - places[:, None]
         apart = np.hypot(offset[..., 0], offset[..., 1])
         facing = np.arange(HEADINGS) * (2.0 * math.pi / HEADINGS)
         angle = np.arctan2(offset[..., 1], offset[..., 0])[:, None] - facing[:, None]
         in_view = (np.abs(np.remainder(angle + math.pi, 2.0 * math.pi) - math.pi) <= VIEW_RAD / 2.0) | (
             apart < STEP_M / 2.0
         )[:, None]
-        clear = _clear_lines(grid.places, apart <= SCAN_M)
-        self.seen = (in_view & clear[:, None]).reshape(-1, len(grid.places))
+        clear = _clear_lines(places, apart <= SCAN_M)
+        self.seen = (in_view & clear[:, None]).reshape(-1, len(places))
         self.near = self.seen & np.repeat(apart <= rules.DETECTOR_RANGE_M, HEADINGS, axis=0)
 
 
@@ -156,5 +156,5 @@ class MapWalker:
     def _begin(self, pose: Tensor) -> None:
         zone = torch.bucketize(pose, self._worlds.first[1:], right=True).tolist()
         self._first = self._worlds.first[zone].tolist()
-        terrains = {one: Terrain(self._worlds.zones[one]) for one in sorted(set(zone))}
+        terrains = {one: Terrain(*self._worlds.lattices[one]) for one in sorted(set(zone))}
         self._explorers = [Explorer(terrains[one], self._kind) for one in zone]

@@ -10,7 +10,7 @@ import contextlib
 import signal
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any, Literal, Protocol
+from typing import Any, Literal
 
 import msgspec
 import torch
@@ -53,8 +53,8 @@ class Setup(Struct, frozen=True, kw_only=True):
     begin: Path | None = None
 
 
-class Watcher(Protocol):
-    """Is told how a training goes."""
+class Watcher:
+    """Is told how a training goes; this one does nothing with it."""
 
     def building(self, done: int, total: int) -> None:
         """So many grids are there."""
@@ -144,7 +144,8 @@ class _Metrics:
         self._path = folder / METRICS
         rows = []
         if self._path.exists():
-            lines = self._path.read_bytes().splitlines()
+            lines = self._path.read_bytes().splitlines(keepends=True)
+            lines = [line for line in lines if line.endswith(b"\n")]  # the last one may have been cut off
             rows = [documents.parse(line, dict[str, Any], HthorError, shown=str(self._path)) for line in lines]
         rows = [row for row in rows if row["frames"] <= frames]
         jsonio.write(self._path, b"".join(jsonio.canonical(row) + b"\n" for row in rows))

@@ -8,24 +8,12 @@ from contextlib import contextmanager
 from typing import Any
 
 from hthor.console import output, progress_bar
+from hthor.train.session import Watcher
 
 _LINE_EVERY_S = 30.0
 
 
-class Silence:
-    """Prints nothing."""
-
-    def building(self, done: int, total: int) -> None:
-        """As `hthor.train.session.Watcher.building`."""
-
-    def training(self, frames: int, total: int) -> None:
-        """As `hthor.train.session.Watcher.training`."""
-
-    def validated(self, row: dict[str, Any]) -> None:
-        """As `hthor.train.session.Watcher.validated`."""
-
-
-class Words(Silence):
+class Words(Watcher):
     """Says what is being done: in a bar that is redrawn, or in lines."""
 
     def __init__(self, name: str, bar: Any | None) -> None:
@@ -38,15 +26,12 @@ class Words(Silence):
         self._validation = ""
 
     def building(self, done: int, total: int) -> None:
-        """As `hthor.train.session.Watcher.building`."""
         self._show("houses", done, total, f"{done}/{total} pose grids")
 
     def training(self, frames: int, total: int) -> None:
-        """As `hthor.train.session.Watcher.training`."""
         self._show("actions", frames, total, f"{frames / 1e6:.2f}/{total / 1e6:.2f} M actions{self._validation}")
 
     def validated(self, row: dict[str, Any]) -> None:
-        """As `hthor.train.session.Watcher.validated`."""
         parts = [
             f"{zone}: success {100.0 * row[zone]['success']:.0f} %, SPL {row[zone]['spl']:.2f}"
             for zone in ("rooms", "houses")
@@ -77,10 +62,10 @@ class Words(Silence):
 
 
 @contextmanager
-def watch(name: str, *, shown: bool) -> Iterator[Silence]:
+def watch(name: str, *, shown: bool) -> Iterator[Watcher]:
     """A watcher for a training of this name; one that prints nothing unless ``shown``."""
     if not shown:
-        yield Silence()
+        yield Watcher()
     elif not output.live():
         yield Words(name, None)
     else:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import torch
 from msgspec import Struct
 from safetensors import SafetensorError, safe_open
@@ -19,14 +20,13 @@ STATE = "state.safetensors"
 
 
 class TrainingState(Struct, kw_only=True, eq=False):
-    """Everything that changes in a training, and its configuration, which does not.
+    """Everything that changes in a training.
 
     Attributes:
         frames: actions so far. batches: of them. sums: of what was measured since the last means. summed: over how many
             batches.
     """
 
-    config: Struct
     network: nn.Module
     optimizer: torch.optim.Optimizer
     generator: torch.Generator
@@ -57,9 +57,7 @@ def save_state(folder: Path, state: TrainingState) -> None:
         parts |= {f"optimizer.{index}.{name}": torch.as_tensor(value) for name, value in one.items()}
     parts |= {"generator": state.generator.get_state(), "torch": torch.get_rng_state()}
     numbers = {name: getattr(state, name) for name in _NUMBERS}
-    note = {
-        "note": jsonio.canonical({"config": state.config, "numbers": numbers}).decode()
-    }  # of one, the order is sure
+    note = {"numbers": jsonio.canonical(numbers).decode()}
     held = {name: value.detach().cpu().contiguous() for name, value in parts.items()}
     jsonio.write(folder / STATE, tensors.save(held, note))
 
@@ -68,43 +66,46 @@ def load_state(folder: Path, state: TrainingState) -> None:
     """Bring a training to where its folder says that it was; one without a state is left as it is.
 
     Raises:
-        HthorError: when the file is damaged, or of a training with another configuration.
+        HthorError: when the file is damaged, or of another network.
     """
-    found = _read(folder / STATE)
-    if found is None:
+    path = folder / STATE
+    if not path.exists():
         return
-    note, held = found
-    wanted = msgspec.to_builtins(state.config)
-    if note["config"] != wanted:
-        other = ", ".join(sorted(name for name in wanted if note["config"].get(name) != wanted[name]))
-        raise HthorError(f"{folder} holds a training with other settings ({other}); give another --out")
-    network = {name.removeprefix("network."): value for name, value in held.items() if name.startswith("network.")}
-    state.network.load_state_dict(network)
-    steps: dict[int, dict[str, Any]] = {}
-    for name, value in held.items():
-        if name.startswith("optimizer."):
-            _, index, key = name.split(".")
-            steps.setdefault(int(index), {})[key] = value
-    state.optimizer.load_state_dict({**state.optimizer.state_dict(), "state": steps})
-    state.generator.set_state(held["generator"])
-    torch.set_rng_state(held["torch"])
-    for name in _NUMBERS:
-        setattr(state, name, note["numbers"][name])
+    with _opened(path) as (file, numbers):
+        held = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118
+        network = {name.removeprefix("network."): value for name, value in held.items() if name.startswith("network.")}
+        state.network.load_state_dict(network)
+        steps: dict[int, dict[str, Any]] = {}
+        for name, value in held.items():
+            if name.startswith("optimizer."):
+                _, index, key = name.split(".")
+                steps.setdefault(int(index), {})[key] = value
+        state.optimizer.load_state_dict({**state.optimizer.state_dict(), "state": steps})
+        state.generator.set_state(held["generator"])
+        torch.set_rng_state(held["torch"])
+        for name in _NUMBERS:
+            setattr(state, name, numbers[name])
 
 
 def load_frames(folder: Path) -> int:
-    """How many actions the training in a folder has seen, 0 if it holds none."""
-    found = _read(folder / STATE)
-    return 0 if found is None else int(found[0]["numbers"]["frames"])
+    """How many actions the training in a folder has seen, 0 if it holds none.
 
-
-def _read(path: Path) -> tuple[dict[str, Any], dict[str, torch.Tensor]] | None:
+    Raises:
+        HthorError: when the file is damaged.
+    """
+    path = folder / STATE
     if not path.exists():
-        return None
+        return 0
+    with _opened(path) as (_, numbers):
+        return int(numbers["frames"])
+
+
+@contextmanager
+def _opened(path: Path) -> Iterator[tuple[Any, dict[str, Any]]]:
+    """The file of a state, and its numbers."""
     try:
         with safe_open(path, "pt") as file:
-            note = file.metadata()["note"].encode()
-            held = {name: file.get_tensor(name) for name in file.keys()}  # noqa: SIM118
-            return documents.parse(note, dict[str, Any], HthorError, shown=str(path)), held
-    except (SafetensorError, OSError, KeyError, TypeError, ValueError) as error:
-        raise HthorError(f"{path} is not the state of a training ({error}); remove it to begin again") from None
+            numbers = file.metadata()["numbers"].encode()
+            yield file, documents.parse(numbers, dict[str, Any], HthorError, shown=str(path))
+    except (SafetensorError, OSError, KeyError, TypeError, ValueError, RuntimeError) as error:
+        raise HthorError(f"{path} is not the state of this training ({error}); remove it to begin again") from None

@@ -7,21 +7,12 @@ import math
 import eval_fakes as fakes
 import msgspec
 import pytest
-from episode_fakes import TASK, trial
-from walking_stage import WalkingStage
+from walking_stage import begun
 
-from hthor.episode import Episode
 from hthor.eval.metrics.definitions.adaptation import adaptation_divergence, adaptations
 from hthor.eval.metrics.metric import Trial
 from hthor.types import HUMAN, Action, Adapt
 from hthor.types.events import Adapted, Refused
-
-
-def begun() -> Episode:
-    spec = msgspec.structs.replace(trial(), task=msgspec.structs.replace(TASK, time_limit=12.0))
-    episode = Episode(spec, WalkingStage())  # type: ignore[arg-type]
-    episode.reset()
-    return episode
 
 
 def test_one_adaptation_of_a_robot_is_taken_in_a_tick() -> None:

@@ -10,21 +10,14 @@ import pytest
 from episode_fakes import TASK, trial
 from hypothesis import given
 from hypothesis import strategies as st
-from walking_stage import SEATS, Chancy, WalkingStage, minds
+from walking_stage import SEATS, Chancy, WalkingStage, begun, minds
 
-from hthor.episode import Episode, EpisodeLog, play
+from hthor.episode import EpisodeLog, play
 from hthor.episode.predictions import PLACES_MAX, predicted
 from hthor.types import HUMAN, Action, Observation, Predict
 from hthor.types.events import Believed, Predicted, Refused
 
 PEOPLE = (HUMAN, "human2")
-
-
-def begun() -> Episode:
-    spec = msgspec.structs.replace(trial(), task=msgspec.structs.replace(TASK, time_limit=12.0))
-    episode = Episode(spec, WalkingStage())  # type: ignore[arg-type]
-    episode.reset()
-    return episode
 
 
 def test_a_prediction_is_logged_by_name_and_a_second_one_in_a_tick_is_refused() -> None:

@@ -5,9 +5,11 @@ from __future__ import annotations
 import pickle
 from typing import Any
 
-from episode_fakes import Mind, Stage
+import msgspec
+from episode_fakes import TASK, Mind, Stage, trial
 
 from hthor import seeds
+from hthor.episode import Episode
 from hthor.types import HUMAN, Action, Drive, Motion, Move, Observation, Outcome, Pose, Reply, Send, Snapshot, Wait
 from hthor.types.events import Blocked, Event
 
@@ -127,3 +129,11 @@ def minds(root: int) -> tuple[dict[str, Chancy], dict[str, Chancy]]:
     both = {seat: Chancy(seat, root) for seat in SEATS}
     people = {seat: mind for seat, mind in both.items() if seat.startswith(HUMAN)}
     return people, {seat: mind for seat, mind in both.items() if seat not in people}
+
+
+def begun() -> Episode:
+    """An episode of twelve seconds at its beginning."""
+    spec = msgspec.structs.replace(trial(), task=msgspec.structs.replace(TASK, time_limit=12.0))
+    episode = Episode(spec, WalkingStage())  # type: ignore[arg-type]
+    episode.reset()
+    return episode

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from hthor.agents.skills.semantic_cells import CELLS, CLASSES, GOALS
-from hthor.train.pose_grid import HEADINGS, TILTS_RAD, PoseGrid
+from hthor.train.grid_worlds import TURNS
+from hthor.train.pose_grid import PoseGrid
 
-TURNS = HEADINGS * len(TILTS_RAD)
 SIDE = 5
 STEPS = ((1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1))
 

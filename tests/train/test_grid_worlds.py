@@ -9,13 +9,13 @@ from hypothesis import strategies as st
 
 torch = pytest.importorskip("torch", reason="needs torch: pip install 'hthor[torch]'", exc_type=ImportError)
 
-from small_grids import TURNS, make_grid  # noqa: E402
+from small_grids import make_grid  # noqa: E402
 
 from hthor.agents.skills.detector_noise import FALSE_ALARM, MISS, MISS_PER_M  # noqa: E402
 from hthor.agents.skills.semantic_cells import CELLS, CLASSES, GOALS  # noqa: E402
 from hthor.catalog import TARGETS  # noqa: E402
 from hthor.train.grid_paths import UNREACHABLE, path_lengths  # noqa: E402
-from hthor.train.grid_worlds import CLOSE, DONE, GridWorlds  # noqa: E402
+from hthor.train.grid_worlds import CLOSE, DONE, TURNS, GridWorlds  # noqa: E402
 
 torch.set_num_threads(1)
 GRIDS = [make_grid(seed) for seed in range(2)]

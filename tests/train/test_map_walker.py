@@ -22,7 +22,7 @@ KINDS: tuple[Kind, ...] = ("frontier", "nearest")
 
 def test_a_scan_shows_places_in_view_and_range_with_nothing_between() -> None:
     grid = make_grid(0)
-    terrain = Terrain(grid)
+    terrain = Terrain(grid.places, grid.ahead)
     for place, pose in ((0, 0), (12, 12 * HEADINGS + 3), (40, 40 * HEADINGS + 6)):
         offset = grid.places - grid.places[place]
         apart = np.hypot(offset[:, 0], offset[:, 1])
@@ -41,7 +41,7 @@ def test_a_scan_shows_places_in_view_and_range_with_nothing_between() -> None:
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_an_explorer_sees_every_place_from_close_by(kind: Kind) -> None:
-    terrain = Terrain(make_grid(1))
+    terrain = Terrain(*GridWorlds([make_grid(1)], "houses").lattices[0])
     explorer, pose = Explorer(terrain, kind), 0
     looked = np.zeros(len(terrain.ahead), np.bool_)
     for _ in range(150):
@@ -53,7 +53,7 @@ def test_an_explorer_sees_every_place_from_close_by(kind: Kind) -> None:
 @pytest.mark.parametrize("kind", KINDS)
 def test_they_find_everything_that_is_seen_from_close_by(kind: Kind) -> None:
     grid = make_grid(0)
-    near = Terrain(grid).near  # each goal lies at a place of its own, and is seen from where that is looked at
+    near = Terrain(grid.places, grid.ahead).near  # a goal is seen from where its place is looked at
     visible = np.zeros(len(near), np.uint16)
     for goal in range(len(GOALS)):
         visible |= near[:, goal * 3].astype(np.uint16) << goal
