@@ -5,6 +5,7 @@ Self-adaptive visual navigation (Wortsman et al., CVPR 2019). Needs the extra ``
 
 from __future__ import annotations
 
+import importlib.util
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
@@ -13,11 +14,14 @@ from hthor import seeds
 from hthor.agents.skills.conversation.answers import kind_of
 from hthor.agents.skills.conversation.conversation import Conversation
 from hthor.agents.skills.message_timing import AGAIN_S, ASIDE_M, kind_title
-from hthor.errors import AgentError
+from hthor.errors import AgentError, MissingExtra
 from hthor.types import Action, Adapt, Briefing, Motion, Observation, Ready, Send, Signal, Vec3, Wait
 
 if TYPE_CHECKING:
     from hthor.agents.skills.network_search import NetworkSearch
+
+if importlib.util.find_spec("torch") is None:  # said at once, not in each trial
+    raise MissingExtra("SAVN", "torch")
 
 CHECKPOINTS = Path(__file__).with_name("checkpoints")
 SAME_M = 1.0
