@@ -1,15 +1,19 @@
-"""`hthor train`: robots that learn, by themselves or from an expert."""
+"""`hthor train`: robots that learn, by themselves or from an expert, and how well they find things."""
 
 from __future__ import annotations
 
 import shlex
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
 from hthor.commands.options import Json
 from hthor.console import output
+
+if TYPE_CHECKING:
+    from hthor.train.comparison import Comparison
+    from hthor.train.resampling import Rating
 
 app = typer.Typer(no_args_is_help=True, help="Train robots that learn to find things (needs the extra torch).")
 
@@ -33,8 +37,9 @@ Frames = Annotated[int, typer.Option(parser=_count, metavar="NUMBER", help="Acti
 Seed = Annotated[int, typer.Option(help="The same seed gives the same network on the same kind of processor.")]
 Houses = Annotated[int, typer.Option(min=1, help="Number of houses to train in.")]
 Arrangements = Annotated[int, typer.Option(min=1, help="Number of arrangements of the objects in each house.")]
+_Zones = Literal["rooms", "houses", "both"]
 Zones = Annotated[
-    Literal["rooms", "houses", "both"],
+    _Zones,
     typer.Option(help="Whether the robot searches a single room, the whole house, or half of the time each."),
 ]
 Batch = Annotated[int, typer.Option(min=1, help="Number of episodes at once.")]
@@ -56,6 +61,20 @@ Every = Annotated[int, typer.Option(parser=_count, metavar="NUMBER", help="Actio
 Device = Annotated[str, typer.Option(help="auto, cpu or cuda; auto is cuda where there is one.")]
 Jobs = Annotated[int | None, typer.Option(min=1, help="Processes that prepare the houses.", show_default="one per CPU")]
 Quiet = Annotated[bool, typer.Option("--quiet", help="Print the result only, no progress.")]
+
+Checkpoints = Annotated[
+    list[Path] | None,
+    typer.Argument(
+        metavar="CHECKPOINT...",
+        help="Folders of trainings; the first one is compared with the others.",
+        show_default="those of savn and a2c that come with hthor",
+    ),
+]
+TestHouses = Annotated[int, typer.Option("--houses", min=2, help="Number of new houses, and of houses of training.")]
+Episodes = Annotated[int, typer.Option(min=1, help="Number of episodes in each house.")]
+Report = Annotated[
+    Path | None, typer.Option("--out", metavar="FILE", help="Write everything to this JSON file.", show_default=False)
+]
 
 _SHARES = ("success", "spl", "success_long", "spl_long")
 _HEADINGS = ("validation", "success", "SPL", "success, 5 actions or more", "SPL, 5 or more", "actions")
@@ -110,6 +129,83 @@ def train(
     output.say(f"next:  hthor eval --agent none --agent savn:{shlex.quote(str(setup.out))} --humans proxy")
 
 
+def compare(
+    checkpoints: Checkpoints = None,
+    houses: TestHouses = 24,
+    episodes: Episodes = 25,
+    zones: Zones = "both",
+    jobs: Jobs = None,
+    out: Report = None,
+    quiet: Quiet = False,
+    json: Json = False,
+) -> None:
+    """Let robots look for things, alone, and compare a trained one with the others.
+
+    The episodes are the same for all robots and in every call. Most are in houses that no training sees. The first
+    checkpoint is also tried without sight, with another goal, without adaptation, with an ideal detector, with "here it
+    is" said for it, and with a map. Give the checkpoints of several seeds of a training to try them as one robot.
+    Intervals come from a bootstrap over houses and checkpoints.
+    """
+    from hthor import jsonio
+    from hthor.train import comparison, groups, training_display
+
+    chosen = checkpoints or [groups.SHIPPED / name for name in ("savn", "a2c")]
+    setup = comparison.Setup(
+        houses=houses, episodes=episodes, zones=comparison.BOTH if zones == "both" else (zones,), jobs=jobs
+    )
+    with training_display.watch("eval", shown=not quiet) as watcher:
+        found = comparison.compare(groups.load_groups(chosen), setup, watcher.building, watcher.walking)
+    if out is not None:
+        jsonio.write(out, jsonio.pretty(found))
+    if json:
+        output.put_json(found)
+        return
+    for zone in setup.zones:
+        _show(found, zone)
+    output.say(
+        f"{found.episodes} episodes in each of {found.houses['test']} new houses; success in %, 'long' that of "
+        f"episodes of at least 5 actions, 'training' that in {found.houses['train']} houses of training"
+    )
+    if out is not None:
+        output.say(f"file: {out}")
+
+
+def _show(found: Comparison, zone: str) -> None:
+    """The table of one kind of zones."""
+    rows = [row for row in found.rows if row.zones == zone]
+    known = {row.robot: row.success for row in rows if row.split == "train"}
+    less = {one.other: one.success for one in found.differences if one.zones == zone}
+    robot = found.differences[0].robot
+    output.put_table(
+        (f"in {zone}", "success", "95 %", "SPL", "long", "training", f"{robot} minus it"),
+        [
+            (
+                row.robot.removeprefix(f"{robot}, ") + (f" ({row.checkpoints})" if row.checkpoints > 1 else ""),
+                _mean(row.success),
+                _interval(row.success),
+                f"{row.spl.mean:.3f}",
+                _mean(row.success_long),
+                _mean(known[row.robot]) if row.robot in known else "",
+                _difference(less[row.robot]) if row.robot in less else "",
+            )
+            for row in rows
+            if row.split == "test"
+        ],
+    )
+
+
+def _mean(rating: Rating) -> str:
+    return "–" if rating.mean is None else f"{100.0 * rating.mean:.1f}"
+
+
+def _interval(rating: Rating) -> str:
+    return "–" if rating.ci95 is None else "…".join(f"{100.0 * end:z.1f}" for end in rating.ci95)
+
+
+def _difference(rating: Rating) -> str:
+    return "–" if rating.mean is None else f"{100.0 * rating.mean:+z.1f} ({_interval(rating)})"
+
+
 def _cells(zone: str, found: dict[str, float]) -> tuple[str, ...]:
     return (
         zone,
@@ -124,3 +220,4 @@ for _name, _words in {
     "bc": "Train the same network to imitate an expert who knows the shortest path.",
 }.items():
     app.command(_name, help=f"{_words}\n\n{_RESUMES}")(train)
+app.command("eval")(compare)

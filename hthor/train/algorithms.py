@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable
 from typing import Any
 
@@ -55,7 +56,7 @@ def _set(config: LoopConfig, key: str, value: str) -> LoopConfig:
         raise UnknownName("setting", key, known)
     where, _, name = key.rpartition(".")
     fields = network if where else document
-    fields[name] = value
+    fields[name] = re.sub(r"^(-?)\.", r"\g<1>0.", value)  # .5 is how people write it
     try:
         return msgspec.convert(document, type(config), strict=False)
     except msgspec.ValidationError as error:

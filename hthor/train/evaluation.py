@@ -2,25 +2,19 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import torch
 from torch import Tensor
 
-from hthor.agents.skills.savn_network import AdaptiveRun, Network, draw_actions
-from hthor.train.grid_worlds import DONE, Episodes, GridWorlds
-from hthor.train.loop import goal_classes
+from hthor.agents.skills.savn_network import Network
+from hthor.train.grid_worlds import DONE, Episodes, GridWorlds, Zones
+from hthor.train.walkers import NetworkWalker, Walker
 
 LONG = 5
 """Episodes of at least so many actions are counted by themselves too, as in the published tables."""
-
-
-class Walker(Protocol):
-    """Walks through a batch of episodes: says the next action of each."""
-
-    def act(self, pose: Tensor, alive: Tensor) -> Tensor:
-        """(B,) int64, an action for each pose (B,). alive: (B,) 1 for the episodes that go on."""
-        ...
+MOST_ACTIONS: dict[Zones, int] = {"rooms": 100, "houses": 200}
+"""The longest episodes of an evaluation, as published: 200 actions in living rooms, 100 in other rooms."""
 
 
 class Results(NamedTuple):
@@ -45,26 +39,6 @@ class Results(NamedTuple):
             "spl_long": float(self.spl[long].mean()),
             "actions": float(self.actions.float().mean()),
         }
-
-
-class NetworkWalker:
-    """Acts as a network decides, which adapts on the way if it was made to.
-
-    Attributes:
-        run: the network's run.
-    """
-
-    def __init__(
-        self, network: Network, worlds: GridWorlds, goal: Tensor, generator: torch.Generator, *, noisy: bool = True
-    ) -> None:
-        """``generator`` draws actions and, if ``noisy``, the detector's noise."""
-        self.run = AdaptiveRun(network, goal_classes(worlds.device)[goal], learning=False)
-        self.worlds, self.generator, self.noisy = worlds, generator, noisy
-
-    def act(self, pose: Tensor, alive: Tensor) -> Tensor:
-        """As `Walker.act`."""
-        logits, _ = self.run.step(self.worlds.look(pose, self.generator if self.noisy else None), alive)
-        return draw_actions(logits, self.generator)
 
 
 def evaluate(walker: Walker, worlds: GridWorlds, episodes: Episodes, most: int) -> Results:

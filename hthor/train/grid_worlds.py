@@ -78,19 +78,22 @@ class GridWorlds:
         self.house, self.first = torch.tensor(house), torch.tensor(first, device=self.device)
         self.noise = DetectorNoise(CLASSES, self.device)
 
-    def draw(self, batch: int, generator: torch.Generator, close: float = 0.0) -> Episodes:
+    def draw(self, batch: int, generator: torch.Generator, close: float = 0.0, house: int | None = None) -> Episodes:
         """Episodes whose zone, start and goal are drawn evenly among those where the goal is not in view.
 
         Args:
             close: share of the episodes that begin at most `CLOSE` actions from where the goal is in view.
+            house: the number of the grid whose zones are drawn from; all if None.
         """
+        among = torch.arange(len(self.house)) if house is None else torch.nonzero(self.house == house).squeeze(1)
+        among = among.to(self.device)
         chance = torch.rand(batch, generator=generator, device=self.device)
         longest = torch.where(chance < close, CLOSE, UNREACHABLE - 1)
         pose, goal = (torch.empty(batch, dtype=torch.long, device=self.device) for _ in range(2))
         left = torch.arange(batch, device=self.device)
         while len(left):
             chance = torch.rand(3, len(left), generator=generator, device=self.device, dtype=torch.float64)
-            zone = (chance[0] * len(self.house)).long()
+            zone = among[(chance[0] * len(among)).long()]
             here, size = self.first[zone], self.first[zone + 1] - self.first[zone]
             start = here + (chance[1] * (size // len(TILTS_RAD))).long() * len(TILTS_RAD)  # with a level camera
             aim = (chance[2] * len(GOALS)).long()

@@ -7,6 +7,7 @@ A scan shows them, 5 m far, the places that they can stand at, and where these b
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import Literal
 
 import numpy as np
@@ -15,7 +16,6 @@ from numpy.typing import NDArray
 from torch import Tensor
 
 from hthor import rules
-from hthor.train.grid_paths import UNREACHABLE, Paths
 from hthor.train.grid_worlds import DONE, GridWorlds
 from hthor.train.pose_grid import HEADINGS, STEP_M, TILTS_RAD, Ints
 
@@ -29,6 +29,7 @@ after so many, too."""
 LOOK_ROUND = 3
 """Turns at the beginning, in which the whole surroundings come into view."""
 _LEFT = 1
+_AT_ONCE = 256
 Bools = NDArray[np.bool_]
 Kind = Literal["frontier", "nearest"]
 
@@ -38,7 +39,6 @@ class Terrain:
 
     Attributes:
         ahead: (N, 8) see `PoseGrid`. successors: (N * 8, 3) poses that ahead, left and right lead to.
-        paths: along them.
         seen: (N * 8, N) the places that a scan shows from a pose. near: those within the detector's range.
     """
 
@@ -47,7 +47,6 @@ class Terrain:
         place, heading = (part.ravel() for part in np.indices(ahead.shape))
         turned = [place * HEADINGS + (heading + by) % HEADINGS for by in (1, -1)]
         self.successors = np.stack([ahead[place, heading] * HEADINGS + heading, *turned], axis=1)
-        self.paths = Paths(self.successors)
         offset = places[None, :] - places[:, None]
         apart = np.hypot(offset[..., 0], offset[..., 1])
         facing = np.arange(HEADINGS) * (2.0 * math.pi / HEADINGS)
@@ -87,7 +86,8 @@ class Explorer:
         self._terrain, self._kind = terrain, kind
         count = len(terrain.ahead)
         self._known, self._looked = np.zeros(count, np.bool_), np.zeros(count, np.bool_)
-        self._turns, self._goal, self._since = LOOK_ROUND, -1, 0
+        self._turns, self._since = LOOK_ROUND, 0
+        self._path: list[int] = []  # poses to go to, the next one last
 
     def act(self, pose: int) -> int:
         """The next action: 0 for ahead, 1 for left, 2 for right."""
@@ -98,27 +98,47 @@ class Explorer:
             return _LEFT
         self._since += 1
         impatient = self._kind == "nearest" and self._since >= KEEP
-        if self._goal < 0 or impatient or not self._worth(slice(self._goal, self._goal + 1))[0]:
+        if self._path and pose == self._path[-1]:
+            self._path.pop()
+        on_the_way = self._path and self._path[-1] in self._terrain.successors[pose]
+        if not on_the_way or impatient or not self._worth(np.array(self._path[:1]))[0]:
             self._choose(pose)
-        if self._goal < 0 or pose == self._goal:
+        if not self._path:
             return _LEFT
-        return int(self._length[self._terrain.successors[pose]].argmin())
+        return int(np.flatnonzero(self._terrain.successors[pose] == self._path[-1])[0])
 
     def _choose(self, pose: int) -> None:
-        walkable = np.repeat(self._known, HEADINGS)
-        worth = self._worth(slice(None)) & walkable
-        length = self._terrain.paths.lengths(np.flatnonzero(worth), walkable)
-        last, self._goal, self._since = self._goal, -1, 0
-        if length[pose] == UNREACHABLE:
+        """Plan a path to the nearest place worth going to."""
+        order, before = self._reached(pose)
+        last, self._since = self._path[:1], 0
+        self._path = next((_path(int(one), before) for one in self._in_order(order)), [])
+        if not self._path:
             self._looked[:] = False  # there is nothing left: look at everything again
-            return
-        self._goal = self._end(pose, length)
-        if self._kind == "nearest" and last >= 0 and worth[last]:
-            kept = self._terrain.paths.lengths(np.array([last]), walkable)
-            self._goal = last if kept[pose] <= length[pose] + KEEP else self._goal
-        self._length = self._terrain.paths.lengths(np.array([self._goal]), walkable)
+        elif self._kind == "nearest" and last and self._worth(np.array(last))[0]:
+            kept = _path(last[0], before)
+            if 0 < len(kept) <= len(self._path) + KEEP:
+                self._path = kept
 
-    def _worth(self, poses: slice) -> Bools:
+    def _reached(self, pose: int) -> tuple[Ints, Ints]:
+        """The poses that known ways lead to, nearest first, and (P,) the pose before each on a shortest path."""
+        from scipy.sparse import csr_matrix
+        from scipy.sparse.csgraph import breadth_first_order
+
+        successors = self._terrain.successors
+        walkable = np.repeat(self._known, HEADINGS)
+        ways = walkable[:, None] & walkable[successors]
+        first = np.concatenate(([0], np.cumsum(np.count_nonzero(ways, axis=1))))
+        graph = csr_matrix((np.ones(first[-1], np.int8), successors[ways], first), shape=(len(walkable),) * 2)
+        order, before = breadth_first_order(graph, pose)
+        return order[1:], before
+
+    def _in_order(self, order: Ints) -> Iterator[np.integer]:
+        """The poses worth going to."""
+        for begin in range(0, len(order), _AT_ONCE):
+            some = order[begin : begin + _AT_ONCE]
+            yield from some[self._worth(some)]
+
+    def _worth(self, poses: Ints) -> Bools:
         """Whether there is something new to be seen from poses, as far as the map tells."""
         unknown = ~self._known[self._terrain.ahead]  # by the heading in which each neighbour lies
         edge = (unknown | np.roll(unknown, 1, axis=1) | np.roll(unknown, -1, axis=1)).ravel()
@@ -127,27 +147,35 @@ class Explorer:
         fresh = (self._terrain.near[poses] & (self._known & ~self._looked)).any(axis=1)
         return edge[poses] | np.asarray(fresh, np.bool_)
 
-    def _end(self, pose: int, length: NDArray[np.int16]) -> int:
-        """The pose to which a shortest path leads."""
-        while length[pose] > 0:
-            following = self._terrain.successors[pose]
-            pose = int(following[length[following].argmin()])
-        return pose
+
+def _path(end: int, before: Ints) -> list[int]:
+    """The poses on the way to ``end``, from there back to the one after the first; none if it is not reached."""
+    path = []
+    while before[end] >= 0:
+        path.append(end)
+        end = int(before[end])
+    return path
 
 
 class MapWalker:
-    """Lets an explorer walk through each episode of a batch, as `hthor.train.evaluation.Walker`."""
+    """Lets an explorer walk through each episode of a batch, as `hthor.train.walkers.Walker`.
 
-    def __init__(self, worlds: GridWorlds, goal: Tensor, kind: Kind) -> None:
+    Args:
+        goal: (B,) what ends each episode when it is in view; None if somebody else says "here it is".
+    """
+
+    def __init__(self, worlds: GridWorlds, goal: Tensor | None, kind: Kind) -> None:
         self._worlds, self._goal, self._kind = worlds, goal, kind
         self._explorers: list[Explorer] = []
         self._first: list[int] = []
 
     def act(self, pose: Tensor, alive: Tensor) -> Tensor:
-        """The next actions, see `hthor.train.evaluation.Walker.act`."""
+        """The next actions, see `hthor.train.walkers.Walker.act`."""
         if not self._explorers:
             self._begin(pose)
-        action = torch.where(self._worlds.found(pose, self._goal), DONE, 0)
+        action = torch.zeros_like(pose)
+        if self._goal is not None:
+            action[self._worlds.found(pose, self._goal)] = DONE
         for number in torch.nonzero((alive > 0) & (action != DONE)).squeeze(1).tolist():
             here = (int(pose[number]) - self._first[number]) // len(TILTS_RAD)
             action[number] = self._explorers[number].act(here)

@@ -59,13 +59,23 @@ class Rollout(NamedTuple):
 
 
 def play(network: Network, worlds: GridWorlds, config: Config, generator: torch.Generator) -> Rollout:
-    """Episodes of at most ``horizon`` actions with a network that learns from them."""
+    """Episodes of at most ``horizon`` actions with a network that learns from them.
+
+    Episodes that have ended are left out after each window, so that they cost no more time.
+    """
     pose, goal, _ = worlds.draw(config.batch, generator, config.close)
     run = AdaptiveRun(network, goal_classes(worlds.device)[goal], learning=True)
     alive = torch.ones(config.batch, device=worlds.device)
     found = torch.zeros(config.batch, dtype=torch.bool, device=worlds.device)
+    lane = torch.arange(config.batch, device=worlds.device)  # the episode of each row of what follows
     columns: list[tuple[Tensor, ...]] = []
-    for _ in range(config.horizon):
+    for step in range(config.horizon):
+        if step and step % network.config.window == 0 and not alive.all():
+            left = torch.nonzero(alive).squeeze(1)
+            run.keep(left)
+            pose, goal, alive, lane = pose[left], goal[left], alive[left], lane[left]
+            if not len(left):
+                break
         logits, value = run.step(worlds.look(pose, generator), alive)
         log = logits.log_softmax(1)
         chance = log.exp()
@@ -75,15 +85,18 @@ def play(network: Network, worlds: GridWorlds, config: Config, generator: torch.
         right = done & worlds.found(pose, goal)
         nearer = (worlds.length[pose, goal] - worlds.length[moved, goal]).float()
         reward = config.step + config.nearer * nearer + torch.where(right, config.found, config.wrong) * done
-        columns.append(
-            (log.gather(1, action.unsqueeze(1)).squeeze(1), -(chance * log).sum(1), value, reward * alive, alive)
-        )
-        found |= right & (alive > 0)
+        chosen = log.gather(1, action.unsqueeze(1)).squeeze(1)
+        rows = (chosen, -(chance * log).sum(1), value, reward * alive, alive)
+        columns.append(tuple(row.new_zeros(config.batch).index_copy(0, lane, row) for row in rows))
+        found[lane] |= right & (alive > 0)
         alive, pose = alive * ~(done if config.wrong_ends else right), moved
-    with torch.no_grad():
-        _, after, _ = network(worlds.look(pose, generator), run.goal, run.memory, run.fast)
+    after = torch.zeros(config.batch, device=worlds.device)
+    if len(lane):
+        with torch.no_grad():
+            _, value, _ = network(worlds.look(pose, generator), run.goal, run.memory, run.fast)
+        after[lane] = value * alive
     chosen, entropy, values, rewards, lived = (torch.stack(column) for column in zip(*columns, strict=True))
-    return Rollout(chosen, entropy, values, rewards, lived, after * alive, found)
+    return Rollout(chosen, entropy, values, rewards, lived, after, found)
 
 
 def loss_of(rollout: Rollout, config: Config) -> Tensor:

@@ -20,16 +20,14 @@ from hthor import documents, jsonio
 from hthor.agents.skills import savn_checkpoint
 from hthor.agents.skills.savn_network import Network
 from hthor.errors import HthorError
-from hthor.train import evaluation, loop
+from hthor.train import evaluation, loop, walkers
 from hthor.train.grid_data import load_grids
 from hthor.train.grid_worlds import GridWorlds, Zones
-from hthor.train.training_state import load_frames
+from hthor.train.training_state import TRAIN_CONFIG, TrainConfig, load_frames
 
-METRICS, TRAIN_CONFIG = "metrics.jsonl", "train_config.json"
+METRICS = "metrics.jsonl"
 VALIDATION_HOUSES, VALIDATION_EPISODES = 8, 200
 BOTH: tuple[Zones, ...] = ("rooms", "houses")
-MOST_ACTIONS: dict[Zones, int] = {"rooms": 100, "houses": 200}
-"""The longest episodes of an evaluation, as published: 200 actions in living rooms, 100 in other rooms."""
 
 
 class Setup(Struct, frozen=True, kw_only=True):
@@ -58,6 +56,9 @@ class Watcher:
 
     def building(self, done: int, total: int) -> None:
         """So many grids are there."""
+
+    def walking(self, done: int, total: int) -> None:
+        """So many robots have been through all episodes."""
 
     def training(self, frames: int, total: int) -> None:
         """So many actions were trained on."""
@@ -125,8 +126,8 @@ class _Validation:
     def row(self, network: Network) -> dict[str, float]:
         network.eval()
         episodes = self._episodes
-        walker = evaluation.NetworkWalker(network, self.worlds, episodes.goal, self._generator())
-        found = evaluation.evaluate(walker, self.worlds, episodes, MOST_ACTIONS[self.zone]).summary()
+        walker = walkers.NetworkWalker(network, self.worlds, episodes.goal, self._generator())
+        found = evaluation.evaluate(walker, self.worlds, episodes, evaluation.MOST_ACTIONS[self.zone]).summary()
         if network.config.updates:
             found["divergence"] = evaluation.divergence(network, self.worlds, episodes, self._generator())
         network.train()
@@ -180,9 +181,15 @@ def _board(folder: Path, frames: int) -> Any:
 
 
 def _write_config(config: loop.LoopConfig, setup: Setup) -> None:
-    names = ("algorithm", "houses", "arrangements", "zones", "every")
-    held = {name: getattr(setup, name) for name in names}
-    held |= {"begin": "" if setup.begin is None else setup.begin.name, "training": config}
+    held = TrainConfig(
+        algorithm=setup.algorithm,
+        houses=setup.houses,
+        arrangements=setup.arrangements,
+        zones=setup.zones,
+        every=setup.every,
+        begin="" if setup.begin is None else setup.begin.name,
+        training=msgspec.to_builtins(config),
+    )
     path = setup.out / TRAIN_CONFIG
     if path.exists() and path.read_bytes() != jsonio.pretty(held):
         old = documents.read(path, dict[str, Any], HthorError)

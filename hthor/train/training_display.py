@@ -28,6 +28,9 @@ class Words(Watcher):
     def building(self, done: int, total: int) -> None:
         self._show("houses", done, total, f"{done}/{total} pose grids")
 
+    def walking(self, done: int, total: int) -> None:
+        self._show("walks", done, total, f"{done}/{total} walks through all episodes")
+
     def training(self, frames: int, total: int) -> None:
         self._show("actions", frames, total, f"{frames / 1e6:.2f}/{total / 1e6:.2f} M actions{self._validation}")
 

@@ -17,6 +17,25 @@ from hthor import documents, jsonio
 from hthor.errors import HthorError
 
 STATE = "state.safetensors"
+TRAIN_CONFIG = "train_config.json"
+
+
+class TrainConfig(Struct, frozen=True, kw_only=True):
+    """What a training was made from, as its `train_config.json` says.
+
+    Attributes:
+        algorithm, houses, arrangements, zones, every: see `hthor.train.session.Setup`.
+        begin: name of the folder of the checkpoint that it started from, "" for none.
+        training: the algorithm's own configuration.
+    """
+
+    algorithm: str
+    houses: int
+    arrangements: int
+    zones: str
+    every: int
+    begin: str
+    training: dict[str, Any]
 
 
 class TrainingState(Struct, kw_only=True, eq=False):

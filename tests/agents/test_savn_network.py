@@ -181,6 +181,38 @@ def test_an_ended_episode_does_not_adapt() -> None:
     assert not torch.allclose(logits[0], unchanged[0])
 
 
+@BOTH
+def test_episodes_that_are_left_out_between_windows_change_nothing_for_the_others(config: Any) -> None:
+    """Neither what the others do nor any gradient, as an ended episode adds nothing to either."""
+    network = _network(config)
+    features, goal, alive = _episodes(config)
+    run = savn.AdaptiveRun(network, goal, learning=True)
+    logits, values = [], []
+    for step, (one, on) in enumerate(zip(features, alive, strict=True)):
+        rest = torch.tensor([0, 1, 2] if step < 18 else [0, 2])  # the second has ended after 15
+        if step == 18:
+            run.keep(rest)
+        row, value = run.step([part[rest] for part in one], on[rest])
+        whole = row.new_zeros(BATCH, row.shape[1]).index_copy(0, rest, row)
+        logits.append(whole)
+        values.append(value.new_zeros(BATCH).index_copy(0, rest, value))
+    shorter = _gradients(network, _objective(logits, values, alive))
+    expected, objective = _low_rank(network)
+    torch.testing.assert_close(torch.stack(logits, 1)[[0, 2]], expected[[0, 2]], rtol=1e-12, atol=1e-12)
+    for one, other in zip(shorter, _gradients(network, objective), strict=True):
+        assert (one - other).abs().max() < 1e-12
+    run = savn.AdaptiveRun(network, goal, learning=True)
+    run.step(features[0])
+    with pytest.raises(ValueError, match="between two adaptations"):
+        run.keep(rest)
+
+
+def _gradients(network: Any, objective: Any) -> list[Any]:
+    parameters = list(network.parameters())
+    found = torch.autograd.grad(objective, parameters, allow_unused=True)
+    return [torch.zeros_like(p) if g is None else g for p, g in zip(parameters, found, strict=True)]
+
+
 def _frozen(network: Any) -> Any:
     """The same weights in a network that never adapts."""
     copy = savn.Network(msgspec.structs.replace(network.config, updates=0)).double()

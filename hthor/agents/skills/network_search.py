@@ -6,11 +6,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from msgspec import structs
 
 from hthor.agents.skills.detector_noise import DetectorNoise
 from hthor.agents.skills.savn_checkpoint import Checkpoint
-from hthor.agents.skills.savn_network import ACTIONS, AdaptiveRun, Network, draw_actions
+from hthor.agents.skills.savn_network import ACTIONS, AdaptiveRun, draw_actions, without_adaptation
 from hthor.agents.skills.semantic_cells import FAR_M, GRID, LEVELS, CellReader
 from hthor.errors import MissingExtra
 from hthor.geometry.plane import wrap
@@ -50,7 +49,8 @@ class NetworkSearch:
 
     def __init__(self, checkpoint: Checkpoint, briefing: Briefing, *, adapts: bool, noisy: bool, seed: int) -> None:
         torch.set_num_threads(1)  # more threads wait for each other longer than they compute
-        self._network = checkpoint.network if adapts else _frozen(checkpoint.network)
+        network = checkpoint.network.double()  # so that processors, which round differently, decide alike
+        self._network = network if adapts else without_adaptation(network)
         self._classes, self._labels = checkpoint.classes, briefing.labels
         self._noise = DetectorNoise(checkpoint.classes, torch.device("cpu")) if noisy else None
         self._generator = torch.Generator().manual_seed(seed)
@@ -104,14 +104,6 @@ class NetworkSearch:
         ray = np.linalg.inv(camera.matrix) @ pixel * float(ranges[cell]) * FAR_M
         x, y, z = (camera.pose @ np.append(ray, 1.0))[:3].tolist()
         return (x, y, z)
-
-
-def _frozen(network: Network) -> Network:
-    """The same weights in a network that never adapts."""
-    copy = Network(structs.replace(network.config, updates=0))
-    copy.load_state_dict(network.state_dict())
-    copy.eval()
-    return copy
 
 
 def align(pose: Pose) -> Rotate | None:

@@ -13,7 +13,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Literal, NamedTuple
 
-from msgspec import Struct
+from msgspec import Struct, structs
 
 from hthor.agents.skills.semantic_cells import CELLS
 from hthor.errors import MissingExtra
@@ -128,6 +128,12 @@ class FastWeights:
             self._add(name, uses)
         self._used = []
 
+    def keep(self, episodes: Tensor) -> None:
+        """Go on with some of the episodes only, numbers (K,) of them; not while uses are kept."""
+        if self._used:
+            raise ValueError("episodes can only be left out between two adaptations")
+        self._added = {name: (one[episodes], other[episodes]) for name, (one, other) in self._added.items()}
+
     def _add(self, name: str, uses: Sequence[tuple[Tensor, Tensor]]) -> None:
         old = self._added.get(name)
         if uses[0][0].dim() == 3:
@@ -210,7 +216,7 @@ class Network(nn.Module):
         """
         if self.config.profile == "paper":
             return features[0]
-        classes, ranges = features
+        classes, ranges = features[0], features[1].to(self.words.dtype)
         likeness = (self.words[goal] @ self.words.T).gather(1, classes)
         near = torch.exp(-6.0 * ranges)
         same = (classes == goal.unsqueeze(1)).to(ranges.dtype)
@@ -227,6 +233,14 @@ class Network(nn.Module):
         x = F.leaky_relu(self.loss_1(F.pad(window, (1, 0))))
         x = F.leaky_relu(self.loss_2(F.pad(x, (2, 0)))).flatten(1)
         return torch.sqrt(x.square().sum(1) + 1e-8)  # the square root of exactly zero has no gradient
+
+
+def without_adaptation(network: Network) -> Network:
+    """The same weights in a network that never adapts."""
+    copy = Network(structs.replace(network.config, updates=0))
+    copy.to(network.words.dtype).load_state_dict(network.state_dict())
+    copy.eval()
+    return copy
 
 
 def draw_actions(logits: Tensor, generator: torch.Generator) -> Tensor:
@@ -270,6 +284,16 @@ class AdaptiveRun:
                 if len(self._window) == self.network.config.window:
                     self._adapt(alive)
         return logits, value
+
+    def keep(self, episodes: Tensor) -> None:
+        """Go on with some of the episodes only, numbers (K,) of them, when a window has just ended.
+
+        Raises:
+            ValueError: within a window, if another adaptation follows.
+        """
+        self.fast.keep(episodes)
+        self.goal = self.goal[episodes]
+        self.memory = Memory(*(part[episodes] for part in self.memory))
 
     def divergence(self, features: Sequence[Tensor]) -> Tensor:
         """(B,) how far adaptation has moved the policy at what is seen now: the divergence (Kullback-Leibler) [nats] of
