@@ -89,6 +89,9 @@ OF_TASKS = {
 """Figures of tasks in three dimensions: a task, and the option of `hthor tasks draw`."""
 FILMS = {"trial.webp": "paper/juniper/manipulation-03"}
 """Trials with the oracle as the README's film shows one."""
+LADDER, _LADDER_OF = "savn_ladder.png", "hthor/agents/checkpoints/savn/eval.json"
+"""How well robots find things, by the evaluation of the network that ships."""
+_LADDER_CODE = ("benchmarks/navigation_ladder.py", "hthor/report/html/matplotlib_svg.py")
 _FILMING = ("report/drawing", "report/drawing/film", "report/drawing/overviews", "report/drawing/person_display")
 """Folders with the code that draws a film, besides `benchmarks.readme_film` itself."""
 
@@ -103,6 +106,7 @@ def names() -> list[str]:
         "eyes.jpg",
         *_OF_RUNS,
         "display.png",
+        LADDER,
         *(f"scenes/{name}.jpg" for name in houses.names()),
     ]
 
@@ -135,6 +139,8 @@ def origin(name: str) -> str:
         return jsonio.sha256(
             [AGENTS, CASE, tasks.load_suite(SUITE).sha256, rules.sha256(), *map(_code_sha256, _code_of_pages())]
         )
+    if name == LADDER:
+        return jsonio.sha256([_sha256(ROOT / _LADDER_OF), *(_code_sha256(ROOT / path) for path in _LADDER_CODE)])
     if name == "display.png":
         facts = [_task(_DISPLAY_TASK), rules.sha256(), _sha256(ROOT / _REFERENCE)]
         return jsonio.sha256([*facts, *(_code_sha256(ROOT / path) for path in _DISPLAY)])
@@ -233,6 +239,8 @@ def _maker(name: str) -> Callable[[Path], None]:
         return lambda path: _draw_smaller(path, "tasks", "draw", *OF_TASKS[name])
     if name == "display.png":
         return _draw_display
+    if name == LADDER:
+        return _draw_ladder
     return _draw_scene
 
 
@@ -314,6 +322,12 @@ def _draw_display(path: Path) -> None:
     gap = np.full((high, 12, 3), 255, dtype=np.uint8)
     whole = np.hstack([world.human.rgb(_DISPLAY_PX), gap, panel, gap, world.human.map_view(high)])
     cv2.imwrite(str(path), whole[:, :, ::-1])
+
+
+def _draw_ladder(path: Path) -> None:
+    from benchmarks import navigation_ladder  # needs torch
+
+    navigation_ladder.write(path, ROOT / _LADDER_OF)
 
 
 def _draw_scene(path: Path) -> None:

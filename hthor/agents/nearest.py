@@ -14,20 +14,7 @@ from hthor.navigation.grid_map import CELL_M, GridMap
 from hthor.navigation.path_follower import Courtesy, Follower, face
 from hthor.navigation.planner import Planner
 from hthor.navigation.waiting_spots import retreat
-from hthor.types import (
-    Action,
-    Briefing,
-    Detection,
-    Motion,
-    Observation,
-    Pose,
-    Ready,
-    Rotate,
-    Send,
-    Vec2,
-    Wait,
-    is_person,
-)
+from hthor.types import Action, Briefing, Detection, Motion, Observation, Pose, Ready, Rotate, Send, Wait, is_person
 
 KEEP_M = 1.0
 """[m] Hysteresis: another place must be nearer than the present one by this much."""
@@ -124,7 +111,7 @@ class Agent:
         self.place, self.chose = None, (pose.x, pose.y)
         self.follower.take(None)
 
-        def extra_m(centre: Vec2) -> float:
+        def extra_m(centre: tuple[float, float]) -> float:
             return 0.0 if last is not None and math.dist(centre, last.centre) <= LEAST_M else KEEP_M
 
         survey = Survey(self.map, self.planner, pose, LEAST_M)
