@@ -97,10 +97,11 @@ def run(learner: loop.Learner[Any], config: loop.LoopConfig, setup: Setup, watch
     begin = None if setup.begin is None else savn_checkpoint.load(setup.begin)
     zones: tuple[Zones, ...] = BOTH if setup.zones == "both" else (setup.zones,)
     _write_config(config, setup)
-    train = load_grids("train", setup.houses, setup.arrangements, jobs=setup.jobs, progress=watcher.building)
-    held_out = load_grids("validation", VALIDATION_HOUSES, 1, jobs=setup.jobs, progress=watcher.building)
-    worlds = [GridWorlds(train, zone, device) for zone in zones]
-    validation = [_Validation(GridWorlds(held_out, zone, device), zone) for zone in zones]
+    grids = load_grids("train", setup.houses, setup.arrangements, jobs=setup.jobs, progress=watcher.building)
+    worlds = [GridWorlds(grids, zone, device) for zone in zones]
+    grids = load_grids("validation", VALIDATION_HOUSES, 1, jobs=setup.jobs, progress=watcher.building)
+    validation = [_Validation(GridWorlds(grids, zone, device), zone) for zone in zones]
+    del grids  # which the worlds hold once more
     metrics = _Metrics(setup.out, load_frames(setup.out))
 
     def report(frames: int, network: Network, means: dict[str, float] | None) -> None:
