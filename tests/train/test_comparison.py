@@ -165,6 +165,7 @@ def test_checkpoints_that_differ_in_the_seed_are_one_robot(tmp_path: Path) -> No
 def test_the_command_shows_and_writes_every_robot(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(comparison, "load_grids", lambda split, *_, **__: GRIDS[1:] if split == "test" else GRIDS[:1])
     monkeypatch.setattr(evaluation, "MOST_ACTIONS", {"rooms": 12, "houses": 12})
+    monkeypatch.setenv("COLUMNS", "120")
     out = tmp_path / "eval.json"
     options = ["train", "eval", "--episodes", "3", "--out", str(out)]
     done = CliRunner().invoke(app, [*options, "--zones", "rooms"])
