@@ -78,9 +78,9 @@ def test_going_to_a_point_ends_at_the_nearest_free_place(built: World, x: float,
     outcome = robot.go_to((x, y))
     space, others = world.space["robot"], [pose for seat, pose in world.poses().items() if seat != "robot"]
     assert outcome.ok or outcome.by in ("human", "robot2")
-    if all(math.hypot(pose.x - x, pose.y - y) > 1.5 for pose in others):
+    nearest = (x, y) if space.is_free(x, y) else space.nearest_free(x, y, space.component(6.0, 3.0))
+    if all(math.dist((pose.x, pose.y), nearest) > 1.5 for pose in others):  # and nobody stands there
         assert outcome.ok
-        nearest = (x, y) if space.is_free(x, y) else space.nearest_free(x, y, space.component(6.0, 3.0))
         assert straight(world, "robot", x, y) == pytest.approx(math.dist(nearest, (x, y)), abs=1e-6)
     assert not [event for event in world.events if event.kind in ("blocked", "in_way", "refused")]
 
