@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from matplotlib.figure import Figure
 
@@ -12,6 +13,9 @@ from hthor.report.drawing import figure_file
 from hthor.report.html import matplotlib_svg
 from hthor.report.page.figures.run_styles import RunStyle, interval
 from hthor.train.comparison import Comparison, Row
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 _NETWORK = RunStyle(shade="#2f9270", shape="o")
 _WITHOUT = RunStyle(shade="#7d7d7d", shape="s")
@@ -42,11 +46,11 @@ def draw(found: Comparison) -> Figure:
     return made
 
 
-def _draw_row(ax: object, y: int, row: Row, found: Comparison) -> None:
+def _draw_row(ax: Axes, y: int, row: Row, found: Comparison) -> None:
     style = _NETWORK if row.robot.split(",")[0] in found.checkpoints else _WITHOUT
     mean = 100.0 * (row.success.mean or 0.0)
     if row.split == "train":
-        ax.plot(mean, y, style.shape, mfc="none", mec=style.shade, ms=5.4, zorder=2)  # type: ignore[attr-defined]
+        ax.plot(mean, y, style.shape, mfc="none", mec=style.shade, ms=5.4, zorder=2)
         return
     ends = None if row.success.ci95 is None else [100.0 * end for end in row.success.ci95]
-    interval(ax, y, mean, ends, style)  # type: ignore[arg-type]
+    interval(ax, y, mean, ends, style)

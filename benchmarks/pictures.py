@@ -91,7 +91,11 @@ FILMS = {"trial.webp": "paper/juniper/manipulation-03"}
 """Trials with the oracle as the README's film shows one."""
 LADDER, _LADDER_OF = "savn_ladder.png", "hthor/agents/checkpoints/savn/eval.json"
 """How well robots find things, by the evaluation of the network that ships."""
-_LADDER_CODE = ("benchmarks/navigation_ladder.py", "hthor/report/html/matplotlib_svg.py")
+_LADDER_CODE = (
+    "benchmarks/navigation_ladder.py",
+    "hthor/report/html/matplotlib_svg.py",
+    "hthor/report/page/figures/run_styles.py",
+)
 _FILMING = ("report/drawing", "report/drawing/film", "report/drawing/overviews", "report/drawing/person_display")
 """Folders with the code that draws a film, besides `benchmarks.readme_film` itself."""
 

@@ -2,7 +2,7 @@
 # savn.sh [SEEDS [FOLDER]]: trains the networks that ship with hthor from nothing, and compares them with controls.
 #
 #   benchmarks/savn.sh                            seed 0, which ships, into training/shipped
-#   benchmarks/savn.sh "0 1 2 3 4" training/five  the five seeds of docs/savn.md, with bc beside them
+#   benchmarks/savn.sh "0 1 2 3 4" training/five  five seeds, with bc beside them
 #
 # Pose grids come first, then for each seed a network without adaptation (base), and from it both savn and a2c. Two
 # trainings run at a time, each on one core. Called again, it goes on where it was. FOLDER/eval.json is the comparison.

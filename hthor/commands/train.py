@@ -37,9 +37,9 @@ Frames = Annotated[int, typer.Option(parser=_count, metavar="NUMBER", help="Acti
 Seed = Annotated[int, typer.Option(help="The same seed gives the same network on the same kind of processor.")]
 Houses = Annotated[int, typer.Option(min=1, help="Number of houses to train in.")]
 Arrangements = Annotated[int, typer.Option(min=1, help="Number of arrangements of the objects in each house.")]
-_Zones = Literal["rooms", "houses", "both"]
+ZonesName = Literal["rooms", "houses", "both"]
 Zones = Annotated[
-    _Zones,
+    ZonesName,
     typer.Option(help="Whether the robot searches a single room, the whole house, or half of the time each."),
 ]
 Batch = Annotated[int, typer.Option(min=1, help="Number of episodes at once.")]
@@ -71,6 +71,9 @@ Checkpoints = Annotated[
     ),
 ]
 TestHouses = Annotated[int, typer.Option("--houses", min=2, help="Number of new houses, and of houses of training.")]
+TestZones = Annotated[
+    ZonesName, typer.Option("--zones", help="Whether to search in single rooms, whole houses, or both.")
+]
 Episodes = Annotated[int, typer.Option(min=1, help="Number of episodes in each house.")]
 Report = Annotated[
     Path | None, typer.Option("--out", metavar="FILE", help="Write everything to this JSON file.", show_default=False)
@@ -133,7 +136,7 @@ def compare(
     checkpoints: Checkpoints = None,
     houses: TestHouses = 24,
     episodes: Episodes = 25,
-    zones: Zones = "both",
+    zones: TestZones = "both",
     jobs: Jobs = None,
     out: Report = None,
     quiet: Quiet = False,
@@ -141,17 +144,17 @@ def compare(
 ) -> None:
     """Let robots look for things, alone, and compare a trained one with the others.
 
-    The episodes are the same for all robots and in every call. Most are in houses that no training sees. The first
-    checkpoint is also tried without sight, with another goal, without adaptation, with an ideal detector, with "here it
-    is" said for it, and with a map. Give the checkpoints of several seeds of a training to try them as one robot.
-    Intervals come from a bootstrap over houses and checkpoints.
+    The episodes are the same for all robots and in every call with the same --episodes. Most are in houses that no
+    training sees. The first checkpoint is also tried without sight, with another goal, without adaptation, with an
+    ideal detector, with "here it is" said for it, and with a map. Give the checkpoints of several seeds of a training
+    to try them as one robot. Intervals come from a bootstrap over houses and checkpoints.
     """
     from hthor import jsonio
-    from hthor.train import comparison, groups, training_display
+    from hthor.train import comparison, grid_worlds, groups, training_display
 
     chosen = checkpoints or [groups.SHIPPED / name for name in ("savn", "a2c")]
     setup = comparison.Setup(
-        houses=houses, episodes=episodes, zones=comparison.BOTH if zones == "both" else (zones,), jobs=jobs
+        houses=houses, episodes=episodes, zones=grid_worlds.BOTH if zones == "both" else (zones,), jobs=jobs
     )
     with training_display.watch("eval", shown=not quiet) as watcher:
         found = comparison.compare(groups.load_groups(chosen), setup, watcher.building, watcher.walking)

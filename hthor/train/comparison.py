@@ -15,7 +15,7 @@ from hthor import jsonio, seeds
 from hthor.train import evaluation
 from hthor.train.controls import Robot, robots
 from hthor.train.grid_data import Progress, load_grids
-from hthor.train.grid_worlds import Episodes, GridWorlds, Zones
+from hthor.train.grid_worlds import BOTH, Episodes, GridWorlds, Zones
 from hthor.train.groups import Group
 from hthor.train.houses import Split
 from hthor.train.resampling import Rating, Sums, add_up, difference, rate
@@ -25,9 +25,6 @@ SCHEMA = "hthor.navigation/1"
 NEW: Split = "test"
 KNOWN: Split = "train"
 """The splits of houses that are new to a network, and that it was trained in."""
-
-
-BOTH: tuple[Zones, ...] = ("rooms", "houses")
 
 
 class Setup(Struct, frozen=True, kw_only=True):
@@ -105,7 +102,7 @@ class Arena(NamedTuple):
 
 
 def make_arena(worlds: GridWorlds, zones: Zones, split: Split, episodes: int) -> Arena:
-    """So many episodes in each house. They depend on nothing but the split, the zones and the house."""
+    """So many episodes in each house. They depend on nothing but their number, the split, the zones and the house."""
     houses = worlds.house.unique().tolist()
     lists = [
         worlds.draw(

@@ -20,6 +20,7 @@ from hthor.train.grid_paths import UNREACHABLE, path_lengths
 from hthor.train.pose_grid import HEADINGS, TILTS_RAD, Ints, PoseGrid, next_poses
 
 Zones = Literal["rooms", "houses"]
+BOTH: tuple[Zones, ...] = ("rooms", "houses")
 DONE = 5
 """The action "here it is"; the five before it are those of `hthor.train.pose_grid.next_poses`."""
 TURNS = HEADINGS * len(TILTS_RAD)

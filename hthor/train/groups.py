@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -51,9 +52,10 @@ def load_groups(folders: Sequence[Path]) -> list[Group]:
         networks.append(checkpoint.network.double())
         hashes.append(hashlib.sha256((folder / savn_checkpoint.WEIGHTS).read_bytes()).hexdigest())
     groups: list[Group] = []
+    alike: Counter[str] = Counter()
     for algorithm, networks, hashes in held.values():
-        alike = sum(group.name.split(" ")[0] == algorithm for group in groups)
-        name = f"{algorithm} {alike + 1}" if alike else algorithm
+        alike[algorithm] += 1
+        name = f"{algorithm} {alike[algorithm]}" if alike[algorithm] > 1 else algorithm
         groups.append(Group(name, tuple(networks), tuple(hashes)))
     return groups
 

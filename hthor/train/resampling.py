@@ -14,9 +14,9 @@ from msgspec import Struct
 from numpy.typing import NDArray
 
 from hthor import seeds
+from hthor.eval.statistics.intervals import LEVEL
 
 DRAWS = 10_000
-LEVEL = 0.95
 _DIGITS = 6
 _Floats = NDArray[np.float64]
 

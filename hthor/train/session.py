@@ -22,12 +22,11 @@ from hthor.agents.skills.savn_network import Network
 from hthor.errors import HthorError
 from hthor.train import evaluation, loop, walkers
 from hthor.train.grid_data import load_grids
-from hthor.train.grid_worlds import GridWorlds, Zones
+from hthor.train.grid_worlds import BOTH, GridWorlds, Zones
 from hthor.train.training_state import TRAIN_CONFIG, TrainConfig, load_frames
 
 METRICS = "metrics.jsonl"
 VALIDATION_HOUSES, VALIDATION_EPISODES = 8, 200
-BOTH: tuple[Zones, ...] = ("rooms", "houses")
 
 
 class Setup(Struct, frozen=True, kw_only=True):

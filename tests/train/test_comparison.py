@@ -21,7 +21,7 @@ from hthor.cli import app  # noqa: E402
 from hthor.errors import HthorError  # noqa: E402
 from hthor.train import comparison, evaluation, groups  # noqa: E402
 from hthor.train.controls import robots  # noqa: E402
-from hthor.train.grid_worlds import DONE, GridWorlds  # noqa: E402
+from hthor.train.grid_worlds import BOTH, DONE, GridWorlds  # noqa: E402
 from hthor.train.map_walker import MapWalker  # noqa: E402
 from hthor.train.resampling import Sums, add_up, difference, rate  # noqa: E402
 from hthor.train.training_state import TrainConfig  # noqa: E402
@@ -189,7 +189,7 @@ def test_what_ships_finds_what_it_found_before(shipped: list[groups.Group]) -> N
     """100 episodes in a house and its rooms, to the digit: how many were found, and all actions together."""
     grids = comparison.load_grids("test", 1, 1)
     found = {}
-    for zones in comparison.BOTH:
+    for zones in BOTH:
         arena = comparison.make_arena(GridWorlds(grids, zones), zones, "test", 50)
         for robot in robots(arena.worlds, arena.episodes, shipped, variants=True):
             if robot.name in ("random with ideal Done", "a2c", "savn", "savn, not adapted"):
