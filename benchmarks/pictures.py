@@ -76,6 +76,12 @@ TRIALS = {
     "carry.png": "carry/rowan/01",
 }
 """Trials with the oracle, in the bodies that the kind of task is made for: a task, whose suite is its first word."""
+LEARNED = {"savn_success.png": "smoke/rowan/manipulation-03", "savn_failure.png": "smoke/juniper/manipulation-01"}
+"""Trials with the network that ships, `_LEARNED_OF` decides what it does."""
+_LEARNED_OF = [
+    *(f"hthor/agents/{part}.py" for part in ("savn", "skills/network_search", "skills/detector_noise")),
+    *(f"hthor/agents/checkpoints/savn/{part}" for part in ("config.json", "model.safetensors")),
+]
 TASKS = {"vln_task.png": "vln/juniper/01"}
 """Tasks as `hthor tasks draw` draws them."""
 
@@ -104,6 +110,7 @@ def names() -> list[str]:
     """All pictures that this makes."""
     return [
         *TRIALS,
+        *LEARNED,
         *OF_TASKS,
         *TASKS,
         *FILMS,
@@ -117,10 +124,11 @@ def names() -> list[str]:
 
 def origin(name: str) -> str:
     """Hash of all that decides what a picture shows."""
-    if name in TRIALS:
-        task = _task(TRIALS[name])
-        code = [f"hthor/report/drawing/{part}.py" for part in _DRAWING]
-        facts = [TRIALS[name], task, houses.load(task.house).sha256, rules.sha256(), _sha256(ROOT / _REFERENCE)]
+    if name in TRIALS or name in LEARNED:
+        task_id = (TRIALS | LEARNED)[name]
+        task = _task(task_id)
+        code = [f"hthor/report/drawing/{part}.py" for part in _DRAWING] + (_LEARNED_OF if name in LEARNED else [])
+        facts = [task_id, task, houses.load(task.house).sha256, rules.sha256(), _sha256(ROOT / _REFERENCE)]
         return jsonio.sha256([*facts, *(_code_sha256(ROOT / path) for path in code)])
     if name in FILMS:
         task = _task(FILMS[name])
@@ -199,15 +207,15 @@ def likeness(before: Any, after: Any) -> str:
     return f"similarity to the picture before {share:.3f}{', look at it' if share < LOOK_BELOW else ''}"
 
 
-def played(task_id: str) -> TrialRecord:
-    """The trial of a task with the oracle, as `hthor eval` plays it with the seed 0."""
-    return [done.record for done in trial_runner.make_runner()(session_until(task_id))][-1]
+def played(task_id: str, agent: str = "oracle") -> TrialRecord:
+    """The trial of a task with an agent, as `hthor eval` plays it with the seed 0."""
+    return [done.record for done in trial_runner.make_runner()(session_until(task_id, agent))][-1]
 
 
-def session_until(task_id: str) -> sessions.Session:
-    """The session of a task with the oracle, up to the trial of this task."""
+def session_until(task_id: str, agent: str = "oracle") -> sessions.Session:
+    """The session of a task with an agent, up to the trial of this task."""
     chosen = task_selection.select_tasks(task_id.partition("/")[0], "")
-    suite, crew = chosen.suite, robot_team.form_team(chosen.robots, ["oracle"] * len(chosen.robots))
+    suite, crew = chosen.suite, robot_team.form_team(chosen.robots, [agent] * len(chosen.robots))
     for one in sessions.make_sessions(suite, agent=crew):
         ids = [trial.task.id for trial in one.trials]
         if task_id in ids:
@@ -237,6 +245,8 @@ def _maker(name: str) -> Callable[[Path], None]:
         return lambda path: _hthor("tasks", "draw", TASKS[name], "--out", path)
     if name in TRIALS:
         return lambda path: _draw_trial(path, TRIALS[name])
+    if name in LEARNED:
+        return lambda path: _draw_trial(path, LEARNED[name], "savn")
     if name in FILMS:
         return lambda path: readme_film.write_film(path, session_until(FILMS[name]))
     if name in OF_TASKS:
@@ -248,8 +258,8 @@ def _maker(name: str) -> Callable[[Path], None]:
     return _draw_scene
 
 
-def _draw_trial(path: Path, task_id: str) -> None:
-    record = played(task_id)
+def _draw_trial(path: Path, task_id: str, agent: str = "oracle") -> None:
+    record = played(task_id, agent)
     made = trial_figure.trial_figure(record.spec, record.log, houses.load(record.spec.task.house))
     figure_file.write_figure(made, path)
 

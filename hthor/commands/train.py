@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 app = typer.Typer(no_args_is_help=True, help="Train robots that learn to find things (needs the extra torch).")
 
+_HOUSES = {"slim": 96, "paper": 12}
+"""How many houses to train in unless told: pictures take 40 MB a house, and a minute of two processors to draw."""
 _UNITS = {"k": 1_000, "M": 1_000_000}
 
 
@@ -36,6 +38,10 @@ Out = Annotated[Path | None, typer.Option(help="Folder of the training.", show_d
 Frames = Annotated[int, typer.Option(parser=_count, metavar="NUMBER", help="Actions to train on, such as 500k or 10M.")]
 Seed = Annotated[int, typer.Option(help="The same seed gives the same network on the same kind of processor.")]
 Houses = Annotated[int, typer.Option(min=1, help="Number of houses to train in.")]
+HousesOfProfile = Annotated[
+    int | None,
+    typer.Option("--houses", min=1, help="Number of houses to train in.", show_default="96, with --profile paper 12"),
+]
 Arrangements = Annotated[int, typer.Option(min=1, help="Number of arrangements of the objects in each house.")]
 ZonesName = Literal["rooms", "houses", "both"]
 Zones = Annotated[
@@ -46,6 +52,14 @@ Batch = Annotated[int, typer.Option(min=1, help="Number of episodes at once.")]
 Begin = Annotated[
     Path | None,
     typer.Option(metavar="CHECKPOINT", help="Start from this checkpoint.", show_default="random weights"),
+]
+Profile = Annotated[
+    Literal["slim", "paper"],
+    typer.Option(help="slim: a small network that reads labels. paper: the published one, which reads pictures."),
+]
+Encoder = Annotated[
+    Path | None,
+    typer.Option(metavar="FOLDER", help="Encoder of pictures for --profile paper.", show_default="hthor's own"),
 ]
 Set = Annotated[
     list[str] | None,
@@ -61,6 +75,14 @@ Every = Annotated[int, typer.Option(parser=_count, metavar="NUMBER", help="Actio
 Device = Annotated[str, typer.Option(help="auto, cpu or cuda; auto is cuda where there is one.")]
 Jobs = Annotated[int | None, typer.Option(min=1, help="Processes that prepare the houses.", show_default="one per CPU")]
 Quiet = Annotated[bool, typer.Option("--quiet", help="Print the result only, no progress.")]
+
+EncoderOut = Annotated[
+    Path | None, typer.Option("--out", help="Folder of the training.", show_default="training/encoder-SEED")
+]
+NumberOfPictures = Annotated[
+    int, typer.Option("--pictures", parser=_count, metavar="NUMBER", help="Pictures to train on, such as 50k.")
+]
+Each = Annotated[int, typer.Option(min=1, help="Number of different pictures from each house.")]
 
 Checkpoints = Annotated[
     list[Path] | None,
@@ -92,11 +114,13 @@ def train(
     out: Out = None,
     frames: Frames = "10M",  # type: ignore[assignment]  # parsed
     seed: Seed = 0,
-    houses: Houses = 96,
+    houses: HousesOfProfile = None,
     arrangements: Arrangements = 2,
     zones: Zones = "both",
     batch: Batch = 64,
     begin: Begin = None,
+    profile: Profile = "slim",
+    encoder: Encoder = None,
     settings: Set = None,
     every: Every = "500k",  # type: ignore[assignment]
     device: Device = "auto",
@@ -108,17 +132,18 @@ def train(
     from hthor.train import algorithms, session, training_display
 
     name = context.info_name or ""
-    learner, config = algorithms.make(name, settings or (), seed=seed, frames=frames, batch=batch)
+    learner, config = algorithms.make(name, settings or (), profile, seed=seed, frames=frames, batch=batch)
     setup = session.Setup(
         algorithm=name,
         out=out or Path("training") / f"{name}-{seed}",
-        houses=houses,
+        houses=houses or _HOUSES[profile],
         arrangements=arrangements,
         zones=zones,
         every=every,
         device=device,
         jobs=jobs,
         begin=begin,
+        encoder=encoder,
     )
     with training_display.watch(name, shown=not quiet) as watcher:
         row = session.run(learner, config, setup, watcher)
@@ -130,6 +155,43 @@ def train(
     output.put_table(_HEADINGS, [_cells(zone, row[zone]) for zone in ("rooms", "houses") if zone in row])
     output.say(f"files: {setup.out}/model.safetensors, config.json, train_config.json, metrics.jsonl")
     output.say(f"next:  hthor eval --agent none --agent savn:{shlex.quote(str(setup.out))} --humans proxy")
+
+
+def train_encoder(
+    out: EncoderOut = None,
+    pictures: NumberOfPictures = "400k",  # type: ignore[assignment]  # parsed
+    seed: Seed = 0,
+    houses: Houses = 96,
+    each: Each = 300,
+    device: Device = "auto",
+    jobs: Jobs = None,
+    quiet: Quiet = False,
+    json: Json = False,
+) -> None:
+    """Train the encoder of pictures that networks of the profile paper see with.
+
+    It learns to name what each of 7 x 7 cells of the robot's picture shows, and how far off that is. Stopped by Ctrl-C
+    or SIGTERM, the same command goes on where it was.
+    """
+    from hthor.train import encoder, training_display
+
+    folder = out or Path("training") / f"encoder-{seed}"
+    config = encoder.Config(seed=seed, houses=houses, each=each, pictures=pictures)
+    with training_display.watch("encoder", shown=not quiet) as watcher:
+        row = encoder.train(config, folder, device, jobs, watcher)
+    if row is None:
+        raise KeyboardInterrupt
+    if json:
+        output.put_json({"folder": str(folder), **row})
+        return
+    found = row["validation"]
+    shares = (f"{100.0 * found[name]:.1f} %" for name in ("right", "small_found", "small_right"))
+    output.put_table(
+        ("in new houses", "cells named rightly", "things found", "things right", "error of ranges"),
+        [("validation", *shares, f"{found['range_error_m']:.2f} m")],
+    )
+    output.say(f"files: {folder}/encoder.safetensors, train_config.json, metrics.jsonl")
+    output.say(f"next:  hthor train a2c --profile paper --encoder {shlex.quote(str(folder))}")
 
 
 def compare(
@@ -157,7 +219,7 @@ def compare(
         houses=houses, episodes=episodes, zones=grid_worlds.BOTH if zones == "both" else (zones,), jobs=jobs
     )
     with training_display.watch("eval", shown=not quiet) as watcher:
-        found = comparison.compare(groups.load_groups(chosen), setup, watcher.building, watcher.walking)
+        found = comparison.compare(groups.load_groups(chosen), setup, watcher)
     if out is not None:
         jsonio.write(out, jsonio.pretty(found))
     if json:
@@ -223,4 +285,5 @@ for _name, _words in {
     "bc": "Train the same network to imitate an expert who knows the shortest path.",
 }.items():
     app.command(_name, help=f"{_words}\n\n{_RESUMES}")(train)
+app.command("encoder")(train_encoder)
 app.command("eval")(compare)

@@ -3,34 +3,35 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
-from typing import Any
+from collections.abc import Iterable
+from typing import Any, Literal
 
 import msgspec
+from msgspec import structs
 
-from hthor.agents.skills.savn_network import NetworkConfig
+from hthor.agents.skills.savn_network import PAPER, NetworkConfig
 from hthor.errors import HthorError, UnknownName
 from hthor.train import bc, savn
 from hthor.train.loop import Learner, LoopConfig
 
-
-def _a2c(**options: Any) -> savn.Config:
-    """The configuration of SAVN for a network that never adapts."""
-    return savn.Config(network=NetworkConfig(updates=0), **options)
-
-
-_ALGORITHMS: dict[str, tuple[Learner[Any], Callable[..., LoopConfig]]] = {
-    "savn": (savn.learn, savn.Config),
-    "a2c": (savn.learn, _a2c),
-    "bc": (bc.learn, bc.Config),
+Profile = Literal["slim", "paper"]
+_NETWORKS: dict[Profile, NetworkConfig] = {"slim": NetworkConfig(), "paper": PAPER}
+_ALGORITHMS: dict[str, tuple[Learner[Any], type[LoopConfig], bool]] = {
+    "savn": (savn.learn, savn.Config, True),
+    "a2c": (savn.learn, savn.Config, False),
+    "bc": (bc.learn, bc.Config, True),
 }
+"""How each learns, its configuration, and whether its network adapts."""
 
 
-def make(name: str, settings: Iterable[str] = (), **options: Any) -> tuple[Learner[Any], LoopConfig]:
+def make(
+    name: str, settings: Iterable[str] = (), profile: Profile = "slim", **options: Any
+) -> tuple[Learner[Any], LoopConfig]:
     """An algorithm and its configuration.
 
     Args:
-        settings: other values, each as "KEY=VALUE", such as "entropy=0.02" or "network.hidden=256".
+        profile: of the network. settings: other values, each as "KEY=VALUE", such as "entropy=0.02" or
+            "network.hidden=256".
         options: fields of the configuration.
 
     Raises:
@@ -38,8 +39,9 @@ def make(name: str, settings: Iterable[str] = (), **options: Any) -> tuple[Learn
     """
     if name not in _ALGORITHMS:
         raise UnknownName("algorithm", name, tuple(_ALGORITHMS))
-    learner, make_config = _ALGORITHMS[name]
-    config = make_config(**options)
+    learner, config_type, adapts = _ALGORITHMS[name]
+    network = _NETWORKS[profile] if adapts else structs.replace(_NETWORKS[profile], updates=0)
+    config = config_type(network=network, **options)
     for setting in settings:
         key, equals, value = setting.partition("=")
         if not equals:

@@ -14,12 +14,13 @@ from numpy.typing import NDArray
 from hthor import jsonio, seeds
 from hthor.train import evaluation
 from hthor.train.controls import Robot, robots
-from hthor.train.grid_data import Progress, load_grids
+from hthor.train.grid_pictures import load_grids
 from hthor.train.grid_worlds import BOTH, Episodes, GridWorlds, Zones
-from hthor.train.groups import Group
+from hthor.train.groups import Group, find_encoder
 from hthor.train.houses import Split
 from hthor.train.resampling import Rating, Sums, add_up, difference, rate
 from hthor.train.walkers import Walker
+from hthor.train.watcher import Watcher
 
 SCHEMA = "hthor.navigation/1"
 NEW: Split = "test"
@@ -116,21 +117,29 @@ def make_arena(worlds: GridWorlds, zones: Zones, split: Split, episodes: int) ->
     return Arena(zones, split, worlds, whole, np.repeat(houses, episodes))
 
 
-def compare(groups: Sequence[Group], setup: Setup, building: Progress, walking: Progress) -> Comparison:
+def compare(groups: Sequence[Group], setup: Setup, watcher: Watcher) -> Comparison:
     """Let all robots go through the same episodes, on one processor core.
 
     Args:
         groups: networks. The first ones are also tried in variants, and compared with all others.
-        building, walking: are called with the number of grids or of walks that are done, and of all.
 
     Raises:
-        HthorError: when no house has room for its objects.
+        HthorError: when no house has room for its objects, or the networks do not all see with the same eyes.
     """
     torch.set_num_threads(1)  # more threads wait for each other longer than they compute
     arenas: list[Arena] = []
     houses: dict[str, int] = {}
+    encoder = find_encoder(groups)
     for split in (NEW, KNOWN):
-        grids = load_grids(split, setup.houses, 1, jobs=setup.jobs, progress=building)
+        grids = load_grids(
+            split,
+            setup.houses,
+            1,
+            encoder=encoder,
+            jobs=setup.jobs,
+            building=watcher.building,
+            drawing=watcher.drawing,
+        )
         houses[split] = len(grids)
         arenas += [make_arena(GridWorlds(grids, zones), zones, split, setup.episodes) for zones in setup.zones]
     tried = [list(robots(arena.worlds, arena.episodes, groups, variants=arena.split == NEW)) for arena in arenas]
@@ -139,7 +148,7 @@ def compare(groups: Sequence[Group], setup: Setup, building: Progress, walking: 
 
     def walk(arena: Arena, walker: Walker) -> evaluation.Results:
         found = evaluation.evaluate(walker, arena.worlds, arena.episodes, evaluation.MOST_ACTIONS[arena.zones])
-        walking(next(done), total)
+        watcher.walking(next(done), total)
         return found
 
     rows: list[Row] = []

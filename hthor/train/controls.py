@@ -71,7 +71,8 @@ def robots(worlds: GridWorlds, episodes: Episodes, groups: Sequence[Group], *, v
         yield robot(f"{first.name}, not adapted", first, adapts=False)
     yield robot(first.name, first)
     if variants:
-        yield robot(f"{first.name}, ideal detector", first, Aids(noise=False))
+        if first.networks[0].config.profile == "slim":  # the other reads pictures, which do not err
+            yield robot(f"{first.name}, ideal detector", first, Aids(noise=False))
         yield robot(f"{first.name}, ideal Done", first, Aids(ideal_done=True))
         yield robot(f"{first.name}, with a map", first, mapped=True)
         for kind in _MAPPED:

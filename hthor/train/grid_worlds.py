@@ -66,16 +66,15 @@ class GridWorlds:
                 length = path_lengths(following, visible)
                 if not (length < UNREACHABLE).any():
                     continue
-                columns.append((following + first[-1], length, zone.shown, zone.behind, zone.depth))
+                seen = (zone.shown, zone.behind, zone.depth) if zone.codes is None else (zone.codes,)
+                columns.append((following + first[-1], length, *seen))
                 self.lattices.append((zone.places, zone.ahead))
                 house.append(number)
                 first.append(first[-1] + len(visible))
-        following, length, shown, behind, depth = (
-            torch.from_numpy(np.concatenate(column)) for column in zip(*columns, strict=True)
-        )
+        following, length, *views = (torch.from_numpy(np.concatenate(column)) for column in zip(*columns, strict=True))
         self.device = torch.device(device)
         self.next, self.length = following.to(self.device).long(), length.to(self.device)
-        self.shown, self.behind, self.depth = (part.to(self.device) for part in (shown, behind, depth))
+        self._views = [part.to(self.device) for part in views]
         self.house, self.first = torch.tensor(house), torch.tensor(first, device=self.device)
         self.noise = DetectorNoise(CLASSES, self.device)
 
@@ -104,15 +103,19 @@ class GridWorlds:
             left = left[~good]
         return Episodes(pose, goal, self.length[pose, goal].long() + 1)
 
-    def look(self, pose: Tensor, generator: torch.Generator | None) -> tuple[Tensor, Tensor]:
-        """The classes (B, cells) and the ranges (B, cells), from 0 to 1, that are seen from poses.
+    def look(self, pose: Tensor, generator: torch.Generator | None) -> tuple[Tensor, ...]:
+        """What a network reads at poses, see `hthor.agents.skills.savn_network.Network.forward`: the classes (B, cells)
+        and the ranges (B, cells), from 0 to 1, or the codes of the pictures if the grids have any.
 
         Args:
             generator: draws the detector's noise; None for a detector without any.
         """
-        shown, ranges = self.shown[pose].long(), self.depth[pose].float() / LEVELS
+        if len(self._views) == 1:
+            return (self._views[0][pose],)
+        shown, behind, depth = (part[pose] for part in self._views)
+        shown, ranges = shown.long(), depth.float() / LEVELS
         if generator is not None:
-            shown = self.noise(shown, self.behind[pose].long(), ranges, generator)
+            shown = self.noise(shown, behind.long(), ranges, generator)
         return shown, ranges
 
     def go(self, pose: Tensor, action: Tensor) -> Tensor:
@@ -151,4 +154,5 @@ def _part(grid: PoseGrid, places: NDArray[np.int64]) -> PoseGrid:
         behind=grid.behind[poses],
         depth=grid.depth[poses],
         visible=grid.visible[poses],
+        codes=None if grid.codes is None else grid.codes[poses],
     )

@@ -12,7 +12,7 @@ from msgspec import structs
 
 from hthor import documents, jsonio
 from hthor.agents import savn
-from hthor.agents.skills import savn_checkpoint
+from hthor.agents.skills import picture_encoder, savn_checkpoint
 from hthor.agents.skills.savn_network import Network
 from hthor.agents.skills.semantic_cells import CLASSES
 from hthor.errors import HthorError
@@ -58,6 +58,26 @@ def load_groups(folders: Sequence[Path]) -> list[Group]:
         name = f"{algorithm} {alike[algorithm]}" if alike[algorithm] > 1 else algorithm
         groups.append(Group(name, tuple(networks), tuple(hashes)))
     return groups
+
+
+def find_encoder(groups: Sequence[Group]) -> bytes | None:
+    """The weights of the encoder of pictures that all networks see with; None if they read labels.
+
+    Raises:
+        HthorError: when they do not all see with the same eyes.
+    """
+    found = {
+        picture_encoder.dump(network.encoder) if network.config.profile == "paper" else None: group.name
+        for group in groups
+        for network in group.networks
+    }
+    if len(found) > 1:
+        names = " and ".join(sorted(set(found.values())))
+        raise HthorError(
+            f"{names}: networks that read labels (slim) and such that read pictures (paper), or pictures with another "
+            "encoder, cannot be compared in one call; give those that see alike"
+        )
+    return next(iter(found))
 
 
 def _read_training(folder: Path) -> tuple[str, str]:

@@ -9,12 +9,13 @@ from typing import Protocol, TypeVar
 
 import torch
 from msgspec import Struct, structs
-from torch import Tensor
+from torch import Tensor, nn
 
-from hthor.agents.skills import savn_checkpoint
+from hthor.agents.skills import picture_encoder, savn_checkpoint
 from hthor.agents.skills.savn_checkpoint import Checkpoint
 from hthor.agents.skills.savn_network import Network, NetworkConfig
 from hthor.agents.skills.semantic_cells import CLASSES, GOALS
+from hthor.errors import HthorError
 from hthor.train.grid_worlds import DONE, GridWorlds
 from hthor.train.training_state import TrainingState, load_state, save_state
 from hthor.train.words import word_vectors
@@ -59,8 +60,16 @@ Report = Callable[[int, Network, dict[str, float] | None], None]
 """Is called after each batch with the number of actions so far, and every so often with means of what was measured."""
 
 
-def make_network(config: LoopConfig) -> Network:
-    """A network before training."""
+def make_network(config: LoopConfig, begin: Checkpoint | None = None, encoder: bytes | None = None) -> Network:
+    """A network before training.
+
+    Args:
+        begin: a checkpoint to start with instead of random weights. encoder: weights of the encoder of pictures for the
+            profile "paper", see `hthor.agents.skills.picture_encoder.dump`; random ones if None.
+
+    Raises:
+        HthorError: when the checkpoint or the encoder is of another size.
+    """
     torch.manual_seed(config.seed)
     network = Network(structs.replace(config.network, classes=len(CLASSES)))
     with torch.no_grad():
@@ -68,7 +77,19 @@ def make_network(config: LoopConfig) -> Network:
         hidden = config.network.hidden
         network.gates.bias[hidden : 2 * hidden] += 1.0  # so that it remembers at first
         network.actor.bias[DONE] += config.done_bias
+    if encoder is not None:
+        _copy(network.encoder, picture_encoder.load(encoder), "the encoder of pictures")
+    if begin is not None:
+        _copy(network, begin.network, "the checkpoint to begin with")
     return network
+
+
+def _copy(network: nn.Module, other: nn.Module, shown: str) -> None:
+    try:
+        network.load_state_dict(other.state_dict())
+    except RuntimeError as error:
+        first = str(error).strip().splitlines()[-1].strip()
+        raise HthorError(f"{shown} has other sizes than this network: {first}") from None
 
 
 def goal_classes(device: torch.device) -> Tensor:
@@ -79,20 +100,20 @@ def goal_classes(device: torch.device) -> Tensor:
 def train(
     learner: Learner[_Config],
     config: _Config,
+    network: Network,
     worlds: Sequence[GridWorlds],
     folder: Path,
     report: Report,
     *,
-    begin: Checkpoint | None = None,
     stops: Callable[[], bool] = lambda: False,
     every: int = 500_000,
 ) -> Network | None:
     """Train a network, going on from where a training in the same folder stopped.
 
     Args:
-        worlds: the batches come from each of them in turn. folder: of the checkpoint and the training's state.
-        begin: a checkpoint to start with instead of random weights. stops: whether to stop after this batch, as after
-            a signal. every: actions between two reports of means.
+        network: before training. worlds: the batches come from each of them in turn. folder: of the checkpoint and the
+            training's state.
+        stops: whether to stop after this batch, as after a signal. every: actions between two reports of means.
 
     Returns:
         The network, or None when it stopped before the end; the state is kept either way.
@@ -102,9 +123,7 @@ def train(
             not finite.
     """
     device = worlds[0].device
-    network: Network = make_network(config).to(device)
-    if begin is not None:
-        network.load_state_dict(begin.network.state_dict())
+    network.to(device)
     optimizer = torch.optim.Adam(network.parameters(), lr=config.learning_rate, amsgrad=True)
     generator = torch.Generator(device).manual_seed(config.seed)
     state = TrainingState(network=network, optimizer=optimizer, generator=generator)

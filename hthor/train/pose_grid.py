@@ -43,6 +43,8 @@ class PoseGrid(Struct, frozen=True, kw_only=True, eq=False):
         ahead: (N, 8) int32, the place that a step ahead leads to; the place itself where the way is not free.
         shown, behind, depth: (P, 49) uint8, see `hthor.agents.skills.semantic_cells.Cells`.
         visible: (P,) uint16, bit g is set if the robot's detector reports a thing of kind ``GOALS[g]``.
+        codes: (P, 49, 32) uint8, an encoder's codes of the pictures, see `hthor.agents.skills.picture_encoder`; None if
+            nothing reads them.
     """
 
     places: NDArray[np.float64]
@@ -52,6 +54,7 @@ class PoseGrid(Struct, frozen=True, kw_only=True, eq=False):
     behind: Bytes
     depth: Bytes
     visible: NDArray[np.uint16]
+    codes: Bytes | None = None
 
 
 def make_pose(x: float, y: float, heading: int, tilt: int) -> Pose:
@@ -124,10 +127,9 @@ def _joined(spot: dict[tuple[int, int], tuple[float, float]], space: FreeSpace) 
 
 def build_grid(house: HouseSpec, objects: Sequence[Placement], robot: str = "scout") -> PoseGrid:
     """The grid of a house with these objects, for a robot's body; costs some seconds."""
-    world = World(house, robots=[robot], objects=[(one.id, one.kind) for one in objects])
-    world.rearrange((), objects)
+    world = _make_world(house, objects, robot)
     places, ahead = lattice(house, world.space[_SEAT])
-    cells, visible = survey(world, list(_poses(places)))
+    cells, visible = survey(world, [_pose(places, number) for number in range(len(places) * HEADINGS * len(TILTS_RAD))])
     return PoseGrid(
         places=places,
         rooms=_rooms(house, places),
@@ -137,6 +139,20 @@ def build_grid(house: HouseSpec, objects: Sequence[Placement], robot: str = "sco
         depth=cells.depth,
         visible=visible,
     )
+
+
+def draw_pictures(
+    house: HouseSpec, objects: Sequence[Placement], robot: str, places: NDArray[np.float64], poses: Iterable[int]
+) -> Iterator[NDArray[np.uint8]]:
+    """The robot's colour pictures, each (H, W, 3), from poses of a grid of this house with these objects.
+
+    Args:
+        places: of the grid. poses: their numbers, see `PoseGrid`.
+    """
+    world = _make_world(house, objects, robot)
+    for reading in world.survey(_SEAT, (_pose(places, number) for number in poses), colours=True):
+        assert reading.rgb is not None  # as colours are wanted
+        yield reading.rgb
 
 
 def survey(world: World, poses: Sequence[Pose]) -> tuple[Cells, NDArray[np.uint16]]:
@@ -157,11 +173,17 @@ def goal_bits(detections: Iterable[Detection]) -> int:
     return sum(1 << number for number, kind in enumerate(GOALS) if kind in kinds)
 
 
-def _poses(places: NDArray[np.float64]) -> Iterator[Pose]:
-    for x, y in places.tolist():
-        for heading in range(HEADINGS):
-            for tilt in range(len(TILTS_RAD)):
-                yield make_pose(x, y, heading, tilt)
+def _make_world(house: HouseSpec, objects: Sequence[Placement], robot: str) -> World:
+    world = World(house, robots=[robot], objects=[(one.id, one.kind) for one in objects])
+    world.rearrange((), objects)
+    return world
+
+
+def _pose(places: NDArray[np.float64], number: int) -> Pose:
+    """The pose of a number, see `PoseGrid`."""
+    place, turned = divmod(number, HEADINGS * len(TILTS_RAD))
+    x, y = places[place].tolist()
+    return make_pose(x, y, *divmod(turned, len(TILTS_RAD)))
 
 
 def _rooms(house: HouseSpec, places: NDArray[np.float64]) -> Ints:

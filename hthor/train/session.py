@@ -6,9 +6,8 @@ for each validation (`metrics.jsonl`, and the same for TensorBoard), and the sta
 
 from __future__ import annotations
 
-import contextlib
-import signal
-from collections.abc import Callable, Iterator
+import functools
+import hashlib
 from pathlib import Path
 from typing import Any, Literal
 
@@ -16,16 +15,18 @@ import msgspec
 import torch
 from msgspec import Struct
 
-from hthor import documents, jsonio
-from hthor.agents.skills import savn_checkpoint
+from hthor.agents.skills import picture_encoder, savn_checkpoint
+from hthor.agents.skills.savn_checkpoint import Checkpoint
 from hthor.agents.skills.savn_network import Network
 from hthor.errors import HthorError
 from hthor.train import evaluation, loop, walkers
-from hthor.train.grid_data import load_grids
+from hthor.train.grid_pictures import load_grids
 from hthor.train.grid_worlds import BOTH, GridWorlds, Zones
-from hthor.train.training_state import TRAIN_CONFIG, TrainConfig, load_frames
+from hthor.train.groups import SHIPPED
+from hthor.train.training_folder import Metrics, choose_device, signals, write_config
+from hthor.train.training_state import TrainConfig, load_frames
+from hthor.train.watcher import Watcher
 
-METRICS = "metrics.jsonl"
 VALIDATION_HOUSES, VALIDATION_EPISODES = 8, 200
 
 
@@ -37,6 +38,8 @@ class Setup(Struct, frozen=True, kw_only=True):
         zones: whether episodes are in single rooms, in whole houses, or half of them in each.
         every: actions between two validations. device: such as "cpu", "cuda", or "auto". jobs: processes that build
             grids, None for one a processor. begin: folder of a checkpoint to start from, None for random weights.
+        encoder: folder of an encoder of pictures for the profile "paper", None for that of ``begin``, or else for the
+            one that comes with hthor.
     """
 
     algorithm: str
@@ -48,38 +51,7 @@ class Setup(Struct, frozen=True, kw_only=True):
     device: str = "auto"
     jobs: int | None = None
     begin: Path | None = None
-
-
-class Watcher:
-    """Is told how a training goes; this one does nothing with it."""
-
-    def building(self, done: int, total: int) -> None:
-        """So many grids are there."""
-
-    def walking(self, done: int, total: int) -> None:
-        """So many robots have been through all episodes."""
-
-    def training(self, frames: int, total: int) -> None:
-        """So many actions were trained on."""
-
-    def validated(self, row: dict[str, Any]) -> None:
-        """A row of `metrics.jsonl`."""
-
-
-def choose_device(name: str) -> str:
-    """The device that a name stands for.
-
-    Raises:
-        HthorError: when there is no such device here.
-    """
-    if name == "auto":
-        return "cuda" if torch.cuda.is_available() else "cpu"
-    try:
-        torch.empty(0, device=name)
-    except (RuntimeError, AssertionError) as error:
-        first = str(error).strip().splitlines()[0]
-        raise HthorError(f"the device {name!r} cannot be used here ({first}); give auto, cpu or cuda") from None
-    return name
+    encoder: Path | None = None
 
 
 def run(learner: loop.Learner[Any], config: loop.LoopConfig, setup: Setup, watcher: Watcher) -> dict[str, Any] | None:
@@ -95,13 +67,28 @@ def run(learner: loop.Learner[Any], config: loop.LoopConfig, setup: Setup, watch
     device = choose_device(setup.device)
     begin = None if setup.begin is None else savn_checkpoint.load(setup.begin)
     zones: tuple[Zones, ...] = BOTH if setup.zones == "both" else (setup.zones,)
-    _write_config(config, setup)
-    grids = load_grids("train", setup.houses, setup.arrangements, jobs=setup.jobs, progress=watcher.building)
+    encoder = _choose_encoder(config, setup, begin)
+    network = loop.make_network(config, begin, encoder)
+    held = TrainConfig(
+        algorithm=setup.algorithm,
+        houses=setup.houses,
+        arrangements=setup.arrangements,
+        zones=setup.zones,
+        every=setup.every,
+        begin="" if setup.begin is None else setup.begin.name,
+        encoder="" if encoder is None else hashlib.sha256(encoder).hexdigest(),
+        training=msgspec.to_builtins(config),
+    )
+    write_config(setup.out, held)
+    load = functools.partial(
+        load_grids, encoder=encoder, jobs=setup.jobs, building=watcher.building, drawing=watcher.drawing
+    )
+    grids = load("train", setup.houses, setup.arrangements)
     worlds = [GridWorlds(grids, zone, device) for zone in zones]
-    grids = load_grids("validation", VALIDATION_HOUSES, 1, jobs=setup.jobs, progress=watcher.building)
+    grids = load("validation", VALIDATION_HOUSES, 1)
     validation = [_Validation(GridWorlds(grids, zone, device), zone) for zone in zones]
     del grids  # which the worlds hold once more
-    metrics = _Metrics(setup.out, load_frames(setup.out))
+    metrics = Metrics(setup.out, load_frames(setup.out))
 
     def report(frames: int, network: Network, means: dict[str, float] | None) -> None:
         watcher.training(frames, config.frames)
@@ -111,9 +98,24 @@ def run(learner: loop.Learner[Any], config: loop.LoopConfig, setup: Setup, watch
             metrics.add(row)
             watcher.validated(row)
 
-    with _signals() as stops, metrics:
-        finished = loop.train(learner, config, worlds, setup.out, report, begin=begin, stops=stops, every=setup.every)
+    with signals() as stops, metrics:
+        finished = loop.train(learner, config, network, worlds, setup.out, report, stops=stops, every=setup.every)
     return None if finished is None else metrics.last
+
+
+def _choose_encoder(config: loop.LoopConfig, setup: Setup, begin: Checkpoint | None) -> bytes | None:
+    """The weights of the encoder of pictures; None if the network reads labels."""
+    if config.network.profile != "paper":
+        if setup.encoder is not None:
+            raise HthorError(
+                "only networks of the profile paper read pictures: add --profile paper, or give no --encoder"
+            )
+        return None
+    if begin is not None and setup.encoder is not None:
+        raise HthorError(f"{setup.begin} has an encoder of its own: give either --begin or --encoder")
+    if begin is None:
+        return picture_encoder.dump(picture_encoder.read_file(setup.encoder or SHIPPED / "encoder"))
+    return picture_encoder.dump(begin.network.encoder) if begin.network.config.profile == "paper" else None
 
 
 class _Validation:
@@ -135,85 +137,3 @@ class _Validation:
 
     def _generator(self) -> torch.Generator:
         return torch.Generator(self.worlds.device).manual_seed(1)
-
-
-class _Metrics:
-    """Rows of `metrics.jsonl` and, where TensorBoard is installed, its events."""
-
-    def __init__(self, folder: Path, frames: int) -> None:
-        """Rows after so many ``frames`` are left out: the training goes on from there, and writes them again."""
-        self._path = folder / METRICS
-        rows = []
-        if self._path.exists():
-            lines = self._path.read_bytes().splitlines(keepends=True)
-            lines = [line for line in lines if line.endswith(b"\n")]  # the last one may have been cut off
-            rows = [documents.parse(line, dict[str, Any], HthorError, shown=str(self._path)) for line in lines]
-        rows = [row for row in rows if row["frames"] <= frames]
-        jsonio.write(self._path, b"".join(jsonio.canonical(row) + b"\n" for row in rows))
-        self.last: dict[str, Any] = rows[-1] if rows else {}
-        self._board = _board(folder, frames)
-
-    def __enter__(self) -> _Metrics:
-        return self
-
-    def __exit__(self, *error: object) -> None:
-        if self._board is not None:
-            self._board.close()
-
-    def add(self, row: dict[str, Any]) -> None:
-        with self._path.open("ab") as file:
-            file.write(jsonio.canonical(row) + b"\n")
-        self.last = row
-        if self._board is not None:
-            for group, numbers in row.items():
-                for name, value in numbers.items() if isinstance(numbers, dict) else ():
-                    self._board.add_scalar(f"{group}/{name}", value, row["frames"])
-            self._board.flush()
-
-
-def _board(folder: Path, frames: int) -> Any:
-    """A writer of TensorBoard's events, None where it is not installed."""
-    try:
-        from torch.utils.tensorboard import SummaryWriter
-    except ImportError:
-        return None
-    return SummaryWriter(str(folder / "tensorboard"), purge_step=frames + 1)
-
-
-def _write_config(config: loop.LoopConfig, setup: Setup) -> None:
-    held = TrainConfig(
-        algorithm=setup.algorithm,
-        houses=setup.houses,
-        arrangements=setup.arrangements,
-        zones=setup.zones,
-        every=setup.every,
-        begin="" if setup.begin is None else setup.begin.name,
-        training=msgspec.to_builtins(config),
-    )
-    path = setup.out / TRAIN_CONFIG
-    if path.exists() and path.read_bytes() != jsonio.pretty(held):
-        old = documents.read(path, dict[str, Any], HthorError)
-        new = msgspec.to_builtins(held)
-        different = sorted(name for name in {*old, *new} if old.get(name) != new.get(name))
-        raise HthorError(
-            f"{setup.out} holds a training with other settings ({', '.join(different)}); give another --out"
-        )
-    jsonio.write(path, jsonio.pretty(held))
-
-
-@contextlib.contextmanager
-def _signals() -> Iterator[Callable[[], bool]]:
-    """Whether SIGINT or SIGTERM has come; a second SIGINT interrupts as usual."""
-    came = []
-
-    def note(number: int, frame: object) -> None:
-        del frame
-        came.append(number)
-        signal.signal(signal.SIGINT, before[signal.SIGINT])
-
-    before = {number: signal.signal(number, note) for number in (signal.SIGINT, signal.SIGTERM)}
-    try:
-        yield lambda: bool(came)
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)

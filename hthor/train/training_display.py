@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from hthor.console import output, progress_bar
-from hthor.train.session import Watcher
+from hthor.train.watcher import Watcher
 
 _LINE_EVERY_S = 30.0
 
@@ -43,6 +43,19 @@ class Words(Watcher):
         if self._bar is None:
             self._say(f"{row['frames'] / 1e6:.2f} M actions, validation {'; '.join(parts)}")
         self._validation = f", {'; '.join(parts)}"
+
+    def drawing(self, done: int, total: int) -> None:
+        self._show("pictures", done, total, f"pictures of {done}/{total} houses")
+
+    def seeing(self, pictures: int, total: int) -> None:
+        self._show("learning", pictures, total, f"{pictures / 1e3:.0f}/{total / 1e3:.0f} k pictures{self._validation}")
+
+    def recognised(self, row: dict[str, Any]) -> None:
+        found = row["validation"]
+        words = f"{100.0 * found['right']:.0f} % of the cells right, things {100.0 * found['small_found']:.0f} %"
+        if self._bar is None:
+            self._say(f"{row['frames'] / 1e3:.0f} k pictures, validation: {words}")
+        self._validation = f", {words}"
 
     def _show(self, stage: str, done: int, total: int, words: str) -> None:
         now = time.monotonic()

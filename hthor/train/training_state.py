@@ -26,6 +26,7 @@ class TrainConfig(Struct, frozen=True, kw_only=True):
     Attributes:
         algorithm, houses, arrangements, zones, every: see `hthor.train.session.Setup`.
         begin: name of the folder of the checkpoint that it started from, "" for none.
+        encoder: hash of the weights of the encoder of pictures, "" for none.
         training: the algorithm's own configuration.
     """
 
@@ -35,6 +36,7 @@ class TrainConfig(Struct, frozen=True, kw_only=True):
     zones: str
     every: int
     begin: str
+    encoder: str = ""
     training: dict[str, Any]
 
 

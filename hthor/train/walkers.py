@@ -47,7 +47,8 @@ class NetworkWalker:
 
     Args:
         goal: (B,) what the network looks for. generator: draws actions and the detector's noise.
-        explorer: with a map, leads the way whenever no cell shows the goal; the network still says "here it is".
+        explorer: with a map, leads the way whenever no cell is likely to show the goal; the network still says "here
+            it is".
     """
 
     def __init__(
@@ -65,10 +66,10 @@ class NetworkWalker:
 
     def act(self, pose: Tensor, alive: Tensor) -> Tensor:
         """As `Walker.act`."""
-        shown, ranges = self._worlds.look(pose, self._generator if self._aids.noise else None)
+        features = self._worlds.look(pose, self._generator if self._aids.noise else None)
         if not self._aids.sight:
-            shown, ranges = torch.zeros_like(shown), torch.zeros_like(ranges)
-        logits, _ = self.run.step((shown, ranges), alive)
+            features = tuple(torch.zeros_like(part) for part in features)
+        logits, _ = self.run.step(features, alive)
         if self._aids.ideal_done:
             logits = logits.detach().clone()
             logits[:, DONE] = -torch.inf
@@ -77,7 +78,7 @@ class NetworkWalker:
             action[self._worlds.found(pose, self._goal)] = DONE
         if self._explorer is None:
             return action
-        led = (action != DONE) & ~(shown == self.run.goal.unsqueeze(1)).any(1)
+        led = (action != DONE) & ~(self.run.network.likelihood(features, self.run.goal) > 0.5).any(1)
         return torch.where(led, self._explorer.act(pose, alive), action)
 
 

@@ -38,11 +38,14 @@ _OUT_OF_SIGHT = Pose(x=-1e3, y=-1e3)
 
 
 class SurveyReading(NamedTuple):
-    """What a seat senses from one pose: detections, depth (H, W) float32 [m] and segmentation (H, W) int32."""
+    """What a seat senses from one pose: detections, depth (H, W) float32 [m], segmentation (H, W) int32, and colours
+    (H, W, 3) uint8 if they were wanted.
+    """
 
     detections: tuple[Detection, ...]
     depth: NDArray[np.float32]
     segmentation: NDArray[np.int32]
+    rgb: NDArray[np.uint8] | None = None
 
 
 class SensingSimulation(EditableSimulation):
@@ -125,11 +128,14 @@ class SensingSimulation(EditableSimulation):
         body = self._seats[seat]
         return self._scanners[seat].scan(body.pose, body.space)
 
-    def survey(self, seat: str, poses: Iterable[Pose]) -> Iterator[SurveyReading]:
+    def survey(self, seat: str, poses: Iterable[Pose], *, colours: bool = False) -> Iterator[SurveyReading]:
         """What the seat would sense from each of these poses if no other body were in the house.
 
         For data sets: no time passes, nothing is pushed, and the poses need not be free. The detector is ideal and the
         camera the body's own. Afterwards all bodies are where they were.
+
+        Args:
+            colours: whether the readings have colour pictures, too; drawing them takes longer.
         """
         body, kept = self._seats[seat], self.poses()
         try:
@@ -137,9 +143,9 @@ class SensingSimulation(EditableSimulation):
                 other.pose = _OUT_OF_SIGHT
             self._mocap.rewrite()
             first, second = itertools.tee(poses)
-            pictures = self._pictures.survey(seat, second, self._seed)
-            for body.pose, (depth, segmentation) in zip(first, pictures, strict=True):
-                yield SurveyReading(self._visibility.detections(body), depth, segmentation)
+            pictures = self._pictures.survey(seat, second, self._seed, colours)
+            for body.pose, (rgb, depth, segmentation) in zip(first, pictures, strict=True):
+                yield SurveyReading(self._visibility.detections(body), depth, segmentation, rgb)
         finally:
             for name, pose in kept.items():
                 self._seats[name].pose = pose

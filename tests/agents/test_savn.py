@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import msgspec
 import numpy as np
@@ -24,6 +25,7 @@ from hthor.agents.skills.network_search import (  # noqa: E402
     align,
     make_motion,
 )
+from hthor.agents.skills.savn_network import Network, NetworkConfig  # noqa: E402
 from hthor.agents.skills.semantic_cells import CLASSES  # noqa: E402
 from hthor.episode import EpisodeLog, play  # noqa: E402
 from hthor.errors import AgentError  # noqa: E402
@@ -164,14 +166,15 @@ def test_it_believes_a_thing_to_be_about_where_it_is() -> None:
     assert max(errors) < 0.35
 
 
-def trials(agent: str) -> list[EpisodeLog]:
+def trials(agent: str, count: int = 2) -> list[EpisodeLog]:
     """The first trials of one person in one house."""
     smoke = tasks.load_suite("smoke")
     few = make_suite("few", 1, tuple(task for task in smoke.tasks if task.house == "hazel"))
     session = make_sessions(few, agent=agent)[0]
     stage = trial_runner.TrialRunner()
     with stage.enter(session) as company:
-        return [play(trial, stage.world(trial), company.humans, company.ready_agents()) for trial in session.trials[:2]]
+        some = session.trials[:count]
+        return [play(trial, stage.world(trial), company.humans, company.ready_agents()) for trial in some]
 
 
 def test_it_adapts_by_gradient_tells_so_and_does_the_same_again() -> None:
@@ -186,6 +189,25 @@ def test_it_adapts_by_gradient_tells_so_and_does_the_same_again() -> None:
         assert all(event.seat == "robot" and event.divergence >= 0.0 for event in adapted)
         assert max(event.divergence for event in adapted) > 0.0
         assert not log.faults
+
+
+def test_a_network_that_reads_pictures_plays_trials_and_does_the_same_again(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    torch.manual_seed(0)
+    sizes = {"channels": 8, "image": 4, "goal": 4, "action": 3, "fused": 2, "hidden": 8, "classes": len(CLASSES)}
+    network = Network(NetworkConfig(profile="paper", rate=5.0, **sizes))
+    with torch.no_grad():
+        for weight in network.parameters():
+            weight *= 4.0  # as nothing has been learned yet, what it sees hardly moves it
+        network.actor.bias[-1] -= 5.0  # so that it seldom says "here it is"
+    savn_checkpoint.save(tmp_path / "savn", savn_checkpoint.Checkpoint(network=network, classes=CLASSES))
+    monkeypatch.setattr(savn, "CHECKPOINTS", tmp_path)
+    logs = trials("savn", 1)
+    assert logs == trials("savn", 1)
+    for log in logs:
+        assert not log.faults
+        assert max(event.divergence for event in log.events if isinstance(event, Adapted)) > 0.0
 
 
 @pytest.mark.parametrize("agent", ["savn_frozen", "a2c"])

@@ -14,20 +14,23 @@ pytest.importorskip("torch", reason="needs torch: pip install 'hthor[torch]'", e
 from hthor import catalog, houses, tasks
 from hthor.agents.skills.semantic_cells import CELLS, CLASSES, GOALS, CellReader
 from hthor.errors import HthorError, UnknownName
-from hthor.train import grid_data, pose_grid
+from hthor.train import array_cache, grid_data, pose_grid
 from hthor.train import houses as train_houses
 from hthor.train.pose_grid import HEADINGS, TILTS_RAD, PoseGrid
 from hthor.train.words import word_vectors
-from hthor.types import HouseSpec, Pose
+from hthor.types import HouseSpec, Placement, Pose
 from hthor.world import World
 
 POSES = 1_000
 
 
+def _objects() -> tuple[Placement, ...]:
+    return next(task for task in tasks.load_suite("smoke").tasks if task.house == "hazel").objects
+
+
 @pytest.fixture(scope="module")
 def world() -> World:
-    house = houses.load("hazel")
-    objects = next(task for task in tasks.load_suite("smoke").tasks if task.house == "hazel").objects
+    house, objects = houses.load("hazel"), _objects()
     made = World(house, robots=["scout"], objects=[(one.id, one.kind) for one in objects])
     made.rearrange((), objects)
     return made
@@ -63,6 +66,24 @@ def test_a_grid_s_readings_are_those_of_the_live_world_from_a_thousand_poses(wor
     assert np.count_nonzero(visible) > 50
     for number, name in enumerate(cells._fields):
         assert np.array_equal(cells[number], np.stack([one[number] for one, _ in live])), name
+
+
+def test_pictures_of_a_grid_are_those_of_the_live_world(world: World) -> None:
+    """Of a world whose person is elsewhere."""
+    places, _ = pose_grid.lattice(world.house, world.space["robot"])
+    poses = np.random.default_rng(1).integers(0, len(places) * HEADINGS * len(TILTS_RAD), 40).tolist()
+    drawn = list(pose_grid.draw_pictures(world.house, _objects(), "scout", places, poses))
+    person, compared = world.names.index("human"), 0
+    for number, picture in zip(poses, drawn, strict=True):
+        place, turned = divmod(number, HEADINGS * len(TILTS_RAD))
+        x, y = places[place].tolist()
+        if math.dist((x, y), (world.pose("human").x, world.pose("human").y)) < 0.6:
+            continue
+        world.teleport("robot", pose_grid.make_pose(x, y, *divmod(turned, len(TILTS_RAD))))
+        if not (world.picture("robot", "segmentation") == person).any():
+            assert np.array_equal(picture, world.picture("robot"))
+            compared += 1
+    assert compared > 20
 
 
 def test_each_step_of_the_lattice_is_a_move_that_the_world_allows(world: World) -> None:
@@ -129,16 +150,18 @@ def test_a_grid_is_kept_and_a_house_without_room_for_its_objects_is_left_out(
     monkeypatch.setattr(grid_data.houses, "make_arrangement", arrangement)
     for house in range(2):
         for one in range(2):
-            grid_data._write("train", house, one)
-    found = grid_data.load_grids("train", 2, 2)  # all are there, so no process is started
+            array_cache.write(grid_data._entry(("train", house, one)))
+    found = grid_data.build_grids("train", 2, 2)  # all are there, so no process is started
     assert built == [("elder", "scout")]
+    assert list(found) == [("train", 0, 0)]
     for name in PoseGrid.__struct_fields__:
-        assert np.array_equal(getattr(found[0], name), getattr(_small_grid(), name))
-    assert len(found) == 1
+        assert np.array_equal(getattr(found["train", 0, 0], name), getattr(_small_grid(), name))
+    with pytest.raises(HthorError, match=r"no pose grid of \('train', 0, 1\)"):
+        grid_data.load_grid(("train", 0, 1))
     monkeypatch.setattr(grid_data.houses, "make_house", lambda *_: houses.load("hazel"))
-    grid_data._write("test", 0, 0)
+    array_cache.write(grid_data._entry(("test", 0, 0)))
     with pytest.raises(HthorError, match="none of the first 1 houses of the split 'test'"):
-        grid_data.load_grids("test", 1, 1)
+        grid_data.build_grids("test", 1, 1)
 
 
 def test_the_same_number_gives_the_same_house_and_splits_share_none() -> None:
@@ -168,9 +191,9 @@ def test_every_class_has_a_word_vector_of_length_one() -> None:
 def test_grids_of_houses_are_built_in_parallel_in_order(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     told: list[tuple[int, int]] = []
-    grids = grid_data.load_grids("validation", 2, 1, jobs=2, progress=lambda *numbers: told.append(numbers))
+    grids = grid_data.build_grids("validation", 2, 1, jobs=2, progress=lambda *numbers: told.append(numbers))
     assert told == [(1, 2), (2, 2)]
     first = train_houses.make_house("validation", 0)
     alone = pose_grid.build_grid(first, train_houses.make_arrangement(first, 0))
-    assert np.array_equal(grids[0].shown, alone.shown)
+    assert np.array_equal(grids["validation", 0, 0].shown, alone.shown)
     assert len(list(islice(tmp_path.rglob("*.npz"), 3))) == 2

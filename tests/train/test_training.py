@@ -23,6 +23,7 @@ from hthor.cli import app  # noqa: E402
 from hthor.errors import HthorError, UnknownName  # noqa: E402
 from hthor.train import algorithms, bc, evaluation, loop, savn, session  # noqa: E402
 from hthor.train.grid_worlds import DONE, GridWorlds  # noqa: E402
+from hthor.train.watcher import Watcher  # noqa: E402
 
 TINY = NetworkConfig(embedding=3, image=4, goal=4, action=3, fused=2, hidden=8, window=3, updates=2)
 ALGORITHMS = ("savn", "a2c", "bc")
@@ -37,7 +38,7 @@ def small_grids(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(evaluation, "MOST_ACTIONS", {"rooms": 8, "houses": 8})
 
 
-class StopsAfter(session.Watcher):
+class StopsAfter(Watcher):
     """Sends a signal to this process after so many batches."""
 
     def __init__(self, batches: int) -> None:
@@ -58,7 +59,7 @@ def make(name: str, *settings: str) -> tuple[Any, Any]:
 
 def train(name: str, out: Path, watcher: Any = None, **more: Any) -> dict[str, Any] | None:
     setup = session.Setup(algorithm=name, out=out, every=400, device="cpu", **more)
-    return session.run(*make(name), setup, watcher or session.Watcher())
+    return session.run(*make(name), setup, watcher or Watcher())
 
 
 def files(folder: Path) -> dict[str, bytes]:
@@ -89,7 +90,7 @@ def test_a_checkpoint_is_read_as_it_was_written_and_another_training_starts_from
     setup = session.Setup(algorithm="a2c", out=tmp_path / "next", begin=tmp_path / "bc", device="cpu", zones="rooms")
     learner, config = make("a2c", "learning_rate=0")
     config = msgspec.structs.replace(config, learning_rate=0.0, network=begin.network.config)
-    row = session.run(learner, config, setup, session.Watcher())
+    row = session.run(learner, config, setup, Watcher())
     assert row is not None
     assert set(row) == {"frames", "train", "rooms"}
     after = savn_checkpoint.load(tmp_path / "next")
@@ -194,7 +195,9 @@ def test_learning_finds_what_is_to_be_found(tmp_path: Path) -> None:
         if means is not None:
             found.append(means["success"])
 
-    loop.train(savn.learn, config, [GridWorlds([grid], "houses")], tmp_path, report, every=10_000)
+    loop.train(
+        savn.learn, config, loop.make_network(config), [GridWorlds([grid], "houses")], tmp_path, report, every=10_000
+    )
     assert found[-1] > 0.2 > 2.0 * found[0]
 
 

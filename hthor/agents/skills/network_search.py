@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hthor.agents.skills.detector_noise import DetectorNoise
 from hthor.agents.skills.savn_checkpoint import Checkpoint
 from hthor.agents.skills.savn_network import ACTIONS, AdaptiveRun, draw_actions, without_adaptation
-from hthor.agents.skills.semantic_cells import FAR_M, GRID, LEVELS, CellReader
+from hthor.agents.skills.semantic_cells import FAR_M, GRID, LEVELS, CellReader, mean_depths
 from hthor.errors import MissingExtra
 from hthor.geometry.plane import wrap
 from hthor.types import Briefing, Camera, Motion, Move, Observation, Pose, Rotate, Vec3, Wait
@@ -70,18 +72,22 @@ class NetworkSearch:
         if self._actions == MOST_ACTIONS:
             self.begin(self._classes[int(self._goal)])
         self._actions += 1
-        shown, ranges = self._look(observation)
+        features, metres = self._look(observation)
         divergence = None
         if self._run.adaptations > self._told:
             self._told = self._run.adaptations
-            divergence = float(self._run.divergence((shown, ranges)))
-        logits, _ = self._run.step((shown, ranges))
+            divergence = float(self._run.divergence(features))
+        logits, _ = self._run.step(features)
         action = ACTIONS[int(draw_actions(logits, self._generator))]
-        position = self._believed(observation.camera, observation.pose, shown[0], ranges[0])
+        likely = self._network.likelihood(features, self._goal)[0].numpy() > 0.5
+        position = _believed(observation.camera, observation.pose, likely, metres)
         return Decision(make_motion(action, observation.pose), position, divergence)
 
-    def _look(self, observation: Observation) -> tuple[Tensor, Tensor]:
-        """Classes and ranges (1, cells) of what the robot sees."""
+    def _look(self, observation: Observation) -> tuple[Sequence[Tensor], NDArray[np.float64]]:
+        """What the network reads of what the robot sees, and how far off each cell is, (cells,) [m]."""
+        if self._network.config.profile == "paper":
+            picture = torch.from_numpy(np.array(observation.rgb)).unsqueeze(0)
+            return (self._network.encoder.encode(picture),), mean_depths(observation.depth)
         segmentation = observation.segmentation
         if self._reader is None:
             height, width = segmentation.shape
@@ -91,19 +97,24 @@ class NetworkSearch:
         ranges = torch.from_numpy(cells.depth.astype(np.float32) / LEVELS).unsqueeze(0)
         if self._noise is not None:
             shown = self._noise(shown, behind, ranges, self._generator)
-        return shown, ranges
+        return (shown, ranges), ranges[0].numpy().astype(np.float64) * FAR_M
 
-    def _believed(self, camera: Camera, pose: Pose, shown: Tensor, ranges: Tensor) -> Vec3:
-        """The middle of the nearest cell that shows the thing; a step ahead of the robot if none does."""
-        cells = torch.nonzero(shown == self._goal).squeeze(1)
-        if not len(cells):
-            return (pose.x + math.cos(pose.yaw), pose.y + math.sin(pose.yaw), float(camera.pose[2, 3]))
-        cell = int(cells[ranges[cells].argmin()])
-        width, height = camera.size
-        pixel = np.array([(cell % GRID + 0.5) * width / GRID, (cell // GRID + 0.5) * height / GRID, 1.0])
-        ray = np.linalg.inv(camera.matrix) @ pixel * float(ranges[cell]) * FAR_M
-        x, y, z = (camera.pose @ np.append(ray, 1.0))[:3].tolist()
-        return (x, y, z)
+
+def _believed(camera: Camera, pose: Pose, likely: NDArray[np.bool_], metres: NDArray[np.float64]) -> Vec3:
+    """The middle of the nearest cell that is likely to show the thing; a step ahead of the robot if none is.
+
+    Args:
+        likely, metres: (cells,), and how far off each cell is [m].
+    """
+    cells = np.flatnonzero(likely)
+    if not len(cells):
+        return (pose.x + math.cos(pose.yaw), pose.y + math.sin(pose.yaw), float(camera.pose[2, 3]))
+    cell = int(cells[metres[cells].argmin()])
+    width, height = camera.size
+    pixel = np.array([(cell % GRID + 0.5) * width / GRID, (cell // GRID + 0.5) * height / GRID, 1.0])
+    ray = np.linalg.inv(camera.matrix) @ pixel * float(metres[cell])
+    x, y, z = (camera.pose @ np.append(ray, 1.0))[:3].tolist()
+    return (x, y, z)
 
 
 def align(pose: Pose) -> Rotate | None:

@@ -15,6 +15,7 @@ from typing import Literal, NamedTuple
 
 from msgspec import Struct, structs
 
+from hthor.agents.skills.picture_encoder import PictureEncoder
 from hthor.agents.skills.semantic_cells import CELLS
 from hthor.errors import MissingExtra
 
@@ -33,9 +34,9 @@ class NetworkConfig(Struct, frozen=True, kw_only=True):
     """The sizes of a network and how it adapts; the defaults are those of the profile "slim".
 
     Attributes:
-        profile: "slim" reads a class and a range per cell, "paper" a vector of image features per cell.
+        profile: "slim" reads a class and a range per cell, "paper" features of the colour picture per cell.
         words: length of a word vector. classes: of things that a cell can show, the empty cell included.
-        embedding: numbers that stand for a cell's class. channels: of the image features, for "paper".
+        embedding: numbers that stand for a cell's class. channels: features of a cell, for "paper".
         image, goal, action: channels of the three inputs after their first layer. fused: channels after the second.
         hidden: size of the recurrent state. dropout: share of fused and image channels dropped in training.
         window: actions between two adaptations. updates: how often an episode adapts at most, 0 for never.
@@ -155,7 +156,8 @@ class Network(nn.Module):
 
     Attributes:
         words: (classes, words), a vector of length 1 for each class; goals are named by them too.
-        table: for "slim", numbers that stand for each class.
+        table: for "slim", numbers that stand for each class. encoder: for "paper", makes the features; its weights are
+            made before and stay as they are.
     """
 
     words: Tensor
@@ -168,6 +170,8 @@ class Network(nn.Module):
         if config.profile == "slim":
             self.table = nn.Embedding(config.classes, config.embedding)
             channels = config.embedding + 6  # see `_cells`
+        else:
+            self.encoder = PictureEncoder(config.classes, channels).requires_grad_(False)
         self.image = nn.Linear(channels, config.image)
         self.goal = nn.Linear(config.words, config.goal)
         self.action = nn.Linear(len(ACTIONS), config.action)
@@ -190,8 +194,8 @@ class Network(nn.Module):
         """Logits of the actions (B, 6), the value (B,) and the new memory.
 
         Args:
-            features: for "slim" the classes (B, cells) and the ranges (B, cells), for "paper" image features
-                (B, cells, channels). goal: (B,) int64, classes. fast: the episodes' own weights.
+            features: for "slim" the classes (B, cells) and the ranges (B, cells), for "paper" the encoder's codes
+                (B, cells, 32). goal: (B,) int64, classes. fast: the episodes' own weights.
         """
         drop = self.config.dropout if self.training else 0.0
         image = F.relu(fast("image", self.image, self._cells(features, goal)))
@@ -215,7 +219,7 @@ class Network(nn.Module):
         whether it is the goal, and how far, near distances also on a finer scale.
         """
         if self.config.profile == "paper":
-            return features[0]
+            return self.encoder.features(features[0])
         classes, ranges = features[0], features[1].to(self.words.dtype)
         likeness = (self.words[goal] @ self.words.T).gather(1, classes)
         near = torch.exp(-6.0 * ranges)
@@ -223,6 +227,15 @@ class Network(nn.Module):
         return torch.cat(
             (self.table(classes), torch.stack((likeness, ranges, near, same, same * ranges, same * near), 2)), 2
         )
+
+    def likelihood(self, features: Sequence[Tensor], goal: Tensor) -> Tensor:
+        """(B, cells) how likely each cell shows the goal: for "slim" 0 or 1, as the detector says, for "paper" from 0
+        to 1, as the encoder believes.
+        """
+        if self.config.profile == "paper":
+            logits, _ = self.encoder.read(self.encoder.features(features[0]))
+            return logits.softmax(2)[torch.arange(len(goal)), :, goal]
+        return (features[0] == goal.unsqueeze(1)).to(self.words.dtype)
 
     def learned_loss(self, window: Tensor) -> Tensor:
         """(B,) from the hidden states and action probabilities of a window, (B, window, hidden + 6).

@@ -57,7 +57,7 @@ class CellReader:
         self._class = np.array([*(number.get(kind, number[ROBOT]) for kind in labels), number[NOTHING]], np.int64)
         self._small = np.array([name in catalog.TARGETS for name in classes])
         width, height = size
-        columns, rows = (np.arange(n) * GRID // n for n in (width, height))
+        columns, rows = _cell_of(width), _cell_of(height)
         self._first = ((rows[:, None] * GRID + columns[None, :]) * self._count).ravel()
 
     def read(self, segmentation: NDArray[np.int32], depth: NDArray[np.float32]) -> Cells:
@@ -73,3 +73,19 @@ class CellReader:
         mean = metres[every, shown] / np.maximum(pixels[every, shown], 1)
         steps = np.rint(np.clip(mean / FAR_M, 0.0, 1.0) * LEVELS)
         return Cells(shown.astype(np.uint8), behind.astype(np.uint8), steps.astype(np.uint8))
+
+
+def mean_depths(depth: NDArray[np.float32]) -> NDArray[np.float64]:
+    """(49,) [m] the mean depth of each cell of a picture (H, W) [m], row by row from the upper left."""
+    means = np.asarray(depth, np.float64)
+    for axis, length in enumerate(depth.shape):
+        cells = _cell_of(length)
+        first = np.flatnonzero(np.diff(cells, prepend=-1))
+        counts = np.diff(first, append=length)
+        means = np.add.reduceat(means, first, axis=axis) / (counts[:, None] if axis == 0 else counts)
+    return means.ravel()
+
+
+def _cell_of(length: int) -> NDArray[np.int64]:
+    """The cell in which each row or column of a picture is, along one side of so many pixels."""
+    return np.arange(length) * GRID // length

@@ -139,12 +139,14 @@ class LazyImages:
         return draw
 
     def survey(
-        self, seat: str, poses: Iterable[Pose], seed: int
-    ) -> Iterator[tuple[NDArray[np.float32], NDArray[np.int32]]]:
-        """Depth [m] and segmentation from each of these poses of the seat; nothing else moves. Always "fast"."""
+        self, seat: str, poses: Iterable[Pose], seed: int, colours: bool
+    ) -> Iterator[tuple[NDArray[np.uint8] | None, NDArray[np.float32], NDArray[np.int32]]]:
+        """Colours if they are wanted, depth [m] and segmentation from each of these poses of the seat; nothing else
+        moves. Always "fast".
+        """
         size = camera.image_size(self._seats[seat].spec)
-        for depth, found in self._fast().survey(self._moment(), seat, poses, size):
-            yield depth, self._labelled(found, seed)
+        for rgb, depth, found in self._fast().survey(self._moment(), seat, poses, size, colours):
+            yield rgb, depth, self._labelled(found, seed)
 
     def top_view(self, pixels_per_metre: float, profile: str | None) -> NDArray[np.uint8]:
         """The house from above now, (H, W, 3) uint8."""

@@ -76,16 +76,18 @@ class RayRenderer:
         return _depth(w) if mode == "depth" else self._numbers(hit)
 
     def survey(
-        self, moment: PoseSnapshot, seat: str, poses: Iterable[Pose], size: tuple[int, int]
-    ) -> Iterator[tuple[NDArray[np.float32], NDArray[np.int32]]]:
-        """Depth and numbers of owners, as in `look`, from each of these poses of ``seat``; nothing else moves."""
+        self, moment: PoseSnapshot, seat: str, poses: Iterable[Pose], size: tuple[int, int], colours: bool
+    ) -> Iterator[tuple[NDArray[np.uint8] | None, NDArray[np.float32], NDArray[np.int32]]]:
+        """Colours if they are wanted, depth and numbers of owners, as in `look`, from each of these poses of ``seat``;
+        nothing else moves.
+        """
         self._pose(moment, seat)
         spec = moment.seats[seat][1]
         for pose in poses:
             view = camera.projection_vector(pose, spec, size)
             w, hit = _blank(view, size)
             self._draw(view, self._solid, w, hit)
-            yield _depth(w), self._numbers(hit)
+            yield self._shade(view, w, hit) if colours else None, _depth(w), self._numbers(hit)
 
     def top_view(self, moment: PoseSnapshot, bounds: tuple[float, float, float, float], pixels_per_metre: float) -> Any:
         """The area x0, y0, x1, y1 [m] from straight above without ceilings, (H, W, 3) uint8."""
