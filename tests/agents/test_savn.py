@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+import shutil
 from pathlib import Path
 
+import levels
 import msgspec
 import numpy as np
 import pytest
@@ -31,6 +33,7 @@ from hthor.episode import EpisodeLog, play  # noqa: E402
 from hthor.errors import AgentError  # noqa: E402
 from hthor.eval.config.sessions import make_sessions  # noqa: E402
 from hthor.eval.runner import trial_runner  # noqa: E402
+from hthor.guest import Guest, GuestConfig  # noqa: E402
 from hthor.tasks.suite import make_suite  # noqa: E402
 from hthor.types import Briefing, Move, Observation, Pose, Receipt, Rotate, Send, Wait  # noqa: E402
 from hthor.types.events import Adapted  # noqa: E402
@@ -191,6 +194,7 @@ def test_it_adapts_by_gradient_tells_so_and_does_the_same_again() -> None:
         assert not log.faults
 
 
+@pytest.mark.slow
 def test_a_network_that_reads_pictures_plays_trials_and_does_the_same_again(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
@@ -208,6 +212,14 @@ def test_a_network_that_reads_pictures_plays_trials_and_does_the_same_again(
     for log in logs:
         assert not log.faults
         assert max(event.divergence for event in log.events if isinstance(event, Adapted)) > 0.0
+
+
+@pytest.mark.parametrize("level", levels.CONFINED)
+def test_a_checkpoint_of_the_user_s_own_acts_in_isolation(level: str, tmp_path: Path) -> None:
+    own = shutil.copytree(savn.CHECKPOINTS / "savn", tmp_path / "own")
+    with Guest(f"savn:{own}", config=GuestConfig(isolation=levels.need(level))) as guest:
+        guest.begin(TASK)
+        assert guest.act(look(0)).motion is not None
 
 
 @pytest.mark.parametrize("agent", ["savn_frozen", "a2c"])

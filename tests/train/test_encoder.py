@@ -67,6 +67,7 @@ def files(folder: Path) -> dict[str, bytes]:
     return {path.name: path.read_bytes() for path in sorted(folder.iterdir()) if path.is_file()}
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("pictures")
 def test_an_encoder_learns_to_name_what_it_sees_and_goes_on_where_it_was(tmp_path: Path) -> None:
     config = encoder.Config(pictures=1_600, batch=8, every=800, learning_rate=3e-3)

@@ -15,8 +15,12 @@ _NEVER = (".git", "runs")
 _RUN = ("run.json", "trials.jsonl", "sessions.jsonl")
 """A folder with one of these files, written by hthor, is hidden with everything in it."""
 _FAULTS = "faults"
-_OURS = re.compile(rb'"schema":\s?"hthor\.|"floorPolygon"|"sha256":\s?"[0-9a-f]{64}",\s?"version":\s?\d+,\s?"tasks":')
-"""Marks of hthor's documents: a schema, the rooms of a house, the head of a suite."""
+_OURS = re.compile(
+    rb'"schema":\s?"hthor\.(?!checkpoint/)|"floorPolygon"|"sha256":\s?"[0-9a-f]{64}",\s?"version":\s?\d+,\s?"tasks":'
+)
+"""Marks of hthor's documents: a schema, other than that of a robot's own weights; the rooms of a house; the head of a
+suite.
+"""
 _LINE = re.compile(rb'"(human_sha256|rules_sha256)"|"check":"[0-9a-f]{8}"\}\n')
 """Marks of a log's lines."""
 _SALT = re.compile(rb"[0-9a-f]{64}\s*")
