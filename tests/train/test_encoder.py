@@ -88,7 +88,8 @@ def test_an_encoder_learns_to_name_what_it_sees_and_goes_on_where_it_was(tmp_pat
 
 
 @pytest.mark.usefixtures("pictures")
-def test_the_command_shows_how_well_it_reads_new_houses(tmp_path: Path) -> None:
+def test_the_command_shows_how_well_it_reads_new_houses(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("COLUMNS", "120")
     options = ["train", "encoder", "--pictures", "64", "--out", str(tmp_path / "one"), "--quiet"]
     done = CliRunner().invoke(app, options)
     assert done.exit_code == 0, done.output
