@@ -7,7 +7,6 @@ pixel. What lies before these answers are the features. See `hthor.agents.skills
 from __future__ import annotations
 
 import functools
-import math
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -23,8 +22,9 @@ from hthor.agents.skills.picture_encoder import WEIGHTS, PictureEncoder
 from hthor.agents.skills.savn_network import PAPER
 from hthor.agents.skills.semantic_cells import CELLS, CLASSES, FAR_M, GRID, LEVELS
 from hthor.train.grid_pictures import Pictures, load_pictures
+from hthor.train.optimization import Schedule, optimize
 from hthor.train.training_folder import Metrics, choose_device, signals, write_config
-from hthor.train.training_state import TrainingState, load_frames, load_state, save_state
+from hthor.train.training_state import TrainingState, load_frames
 from hthor.train.watcher import Watcher
 
 VALIDATION_HOUSES = 8
@@ -81,44 +81,42 @@ def train(config: Config, folder: Path, device: str, jobs: int | None, watcher: 
     optimizer = torch.optim.Adam(encoder.parameters(), lr=config.learning_rate)
     generator = torch.Generator().manual_seed(config.seed)
     state = TrainingState(network=encoder, optimizer=optimizer, generator=generator)
-    load_state(folder, state)
+    weight = torch.ones(len(CLASSES), device=device)
+    weight[_small(device)] = config.small
+
+    def batch(number: int) -> tuple[Tensor, int, dict[str, float]]:
+        del number
+        rgb, answers = _draw(known, config.batch, generator, device)
+        return _loss(encoder, rgb, answers, weight, config.range), len(rgb), {}
+
+    def report(pictures: int, means: dict[str, float] | None) -> None:
+        watcher.seeing(pictures, config.pictures)
+        if means is not None:
+            row = {"frames": pictures, "train": means, "validation": _validate(encoder, new)}
+            metrics.add(row)
+            watcher.recognised(row)
+
+    schedule = Schedule(frames=config.pictures, every=config.every, learning_rate=config.learning_rate)
     with signals() as stops, Metrics(folder, load_frames(folder)) as metrics:
-        while state.frames < config.pictures:
-            if stops():
-                save_state(folder, state)
-                return None
-            for group in optimizer.param_groups:
-                group["lr"] = config.learning_rate * (1.0 - 0.9 * state.frames / config.pictures)
-            rgb, answers = _draw(known, config.batch, generator, device)
-            loss = _loss(encoder, rgb, answers, config)
-            optimizer.zero_grad()
-            loss.backward()
-            optimizer.step()
-            if not math.isfinite(float(loss.detach())):
-                raise FloatingPointError(f"the loss is {float(loss.detach())} after {state.frames} pictures")
-            state.add({"loss": float(loss.detach())})
-            before, state.frames, state.batches = state.frames, state.frames + len(rgb), state.batches + 1
-            watcher.seeing(state.frames, config.pictures)
-            if state.frames // config.every > before // config.every or state.frames >= config.pictures:
-                row = {"frames": state.frames, "train": state.take_means(), "validation": _validate(encoder, new)}
-                metrics.add(row)
-                watcher.recognised(row)
-                save_state(folder, state)
-                jsonio.write(folder / WEIGHTS, picture_encoder.dump(encoder))
-    return metrics.last
+        finished = optimize(
+            state,
+            batch,
+            schedule,
+            folder,
+            report=report,
+            save=lambda: jsonio.write(folder / WEIGHTS, picture_encoder.dump(encoder)),
+            stops=stops,
+        )
+    return metrics.last if finished else None
 
 
 def _draw(pictures: Pictures, batch: int, generator: torch.Generator, device: str) -> tuple[Tensor, Answers]:
     """Pictures drawn at random, half of them mirrored, and the answers to them."""
     which = torch.randint(len(pictures.rgb), (batch,), generator=generator)
-    mirrored = torch.rand(batch, generator=generator) < 0.5
+    mirrored = (torch.rand(batch, generator=generator) < 0.5).to(device)
     rgb, answers = _take(pictures, which.numpy(), device)
-    shown, ranges = (torch.where(_like(mirrored, part), _mirror(part), part) for part in answers)
-    return torch.where(mirrored.to(device)[:, None, None, None], rgb.flip(2), rgb), Answers(shown, ranges)
-
-
-def _like(mirrored: Tensor, part: Tensor) -> Tensor:
-    return mirrored.to(part.device).unsqueeze(1)
+    shown, ranges = (torch.where(mirrored[:, None], _mirror(part), part) for part in answers)
+    return torch.where(mirrored[:, None, None, None], rgb.flip(2), rgb), Answers(shown, ranges)
 
 
 def _mirror(cells: Tensor) -> Tensor:
@@ -133,12 +131,11 @@ def _take(pictures: Pictures, which: Any, device: str) -> tuple[Tensor, Answers]
     return rgb, Answers(shown, ranges)
 
 
-def _loss(encoder: PictureEncoder, rgb: Tensor, answers: Answers, config: Config) -> Tensor:
+def _loss(encoder: PictureEncoder, rgb: Tensor, answers: Answers, weight: Tensor, range_weight: float) -> Tensor:
+    """``weight``: (classes,) of the cells that show each class."""
     logits, ranges = encoder.read(encoder.features(encoder.compress(rgb)))
-    weight = torch.ones(len(CLASSES), device=rgb.device)
-    weight[_small(rgb.device)] = config.small
     named = F.cross_entropy(logits.flatten(0, 1), answers.shown.flatten(), weight)
-    return named + config.range * (ranges - answers.ranges).abs().mean()
+    return named + range_weight * (ranges - answers.ranges).abs().mean()
 
 
 def _small(device: torch.device) -> Tensor:

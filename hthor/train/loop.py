@@ -1,8 +1,7 @@
-"""The loop of every training: batches of episodes, the optimizer, the learning rate, and a state to go on from."""
+"""Trainings of networks that act: their configuration, the network before it, and batches of episodes."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Protocol, TypeVar
@@ -17,7 +16,8 @@ from hthor.agents.skills.savn_network import Network, NetworkConfig
 from hthor.agents.skills.semantic_cells import CLASSES, GOALS
 from hthor.errors import HthorError
 from hthor.train.grid_worlds import DONE, GridWorlds
-from hthor.train.training_state import TrainingState, load_state, save_state
+from hthor.train.optimization import Report, Schedule, optimize
+from hthor.train.training_state import TrainingState
 from hthor.train.words import word_vectors
 
 
@@ -54,10 +54,6 @@ class Learner(Protocol[_Config]):
     ) -> tuple[Tensor, int, dict[str, float]]:
         """The loss, the number of actions in the batch, and what was measured."""
         ...
-
-
-Report = Callable[[int, Network, dict[str, float] | None], None]
-"""Is called after each batch with the number of actions so far, and every so often with means of what was measured."""
 
 
 def make_network(config: LoopConfig, begin: Checkpoint | None = None, encoder: bytes | None = None) -> Network:
@@ -107,16 +103,16 @@ def train(
     *,
     stops: Callable[[], bool] = lambda: False,
     every: int = 500_000,
-) -> Network | None:
+) -> bool:
     """Train a network, going on from where a training in the same folder stopped.
 
     Args:
         network: before training. worlds: the batches come from each of them in turn. folder: of the checkpoint and the
-            training's state.
-        stops: whether to stop after this batch, as after a signal. every: actions between two reports of means.
+            training's state. report, stops: see `hthor.train.optimization.optimize`.
+        every: actions between two reports of means.
 
     Returns:
-        The network, or None when it stopped before the end; the state is kept either way.
+        Whether it has come to its end; the state is kept either way.
 
     Raises:
         HthorError: when the state in the folder is damaged, or of another network. FloatingPointError: when the loss is
@@ -126,28 +122,12 @@ def train(
     network.to(device)
     optimizer = torch.optim.Adam(network.parameters(), lr=config.learning_rate, amsgrad=True)
     generator = torch.Generator(device).manual_seed(config.seed)
-    state = TrainingState(network=network, optimizer=optimizer, generator=generator)
-    load_state(folder, state)
-    while state.frames < config.frames:
-        if stops():
-            save_state(folder, state)
-            return None
-        for group in optimizer.param_groups:
-            group["lr"] = config.learning_rate * (1.0 - 0.9 * state.frames / config.frames)
-        loss, played, measured = learner(network, worlds[state.batches % len(worlds)], config, generator)
-        optimizer.zero_grad()
-        loss.backward()
-        measured["gradient"] = float(torch.nn.utils.clip_grad_norm_(network.parameters(), config.clip))
-        optimizer.step()
-        measured["loss"] = float(loss.detach())
-        if not math.isfinite(measured["loss"]):
-            raise FloatingPointError(f"the loss is {measured['loss']} after {state.frames} actions")
-        before, state.frames, state.batches = state.frames, state.frames + played, state.batches + 1
-        state.add(measured)
-        if state.frames // every > before // every or state.frames >= config.frames:
-            report(state.frames, network, state.take_means())
-            save_state(folder, state)
-            savn_checkpoint.save(folder, Checkpoint(network=network, classes=CLASSES))
-        else:
-            report(state.frames, network, None)
-    return network
+    return optimize(
+        TrainingState(network=network, optimizer=optimizer, generator=generator),
+        lambda number: learner(network, worlds[number % len(worlds)], config, generator),
+        Schedule(frames=config.frames, every=every, learning_rate=config.learning_rate, clip=config.clip),
+        folder,
+        report=report,
+        save=lambda: savn_checkpoint.save(folder, Checkpoint(network=network, classes=CLASSES)),
+        stops=stops,
+    )

@@ -90,7 +90,7 @@ def run(learner: loop.Learner[Any], config: loop.LoopConfig, setup: Setup, watch
     del grids  # which the worlds hold once more
     metrics = Metrics(setup.out, load_frames(setup.out))
 
-    def report(frames: int, network: Network, means: dict[str, float] | None) -> None:
+    def report(frames: int, means: dict[str, float] | None) -> None:
         watcher.training(frames, config.frames)
         if means is not None:
             row: dict[str, Any] = {"frames": frames, "train": means}
@@ -100,7 +100,7 @@ def run(learner: loop.Learner[Any], config: loop.LoopConfig, setup: Setup, watch
 
     with signals() as stops, metrics:
         finished = loop.train(learner, config, network, worlds, setup.out, report, stops=stops, every=setup.every)
-    return None if finished is None else metrics.last
+    return metrics.last if finished else None
 
 
 def _choose_encoder(config: loop.LoopConfig, setup: Setup, begin: Checkpoint | None) -> bytes | None:

@@ -44,8 +44,8 @@ class TrainingState(Struct, kw_only=True, eq=False):
     """Everything that changes in a training.
 
     Attributes:
-        frames: actions so far. batches: of them. sums: of what was measured since the last means. summed: over how many
-            batches.
+        frames: actions or pictures so far. batches: of them. sums: of what was measured since the last means. summed:
+            over how many batches.
     """
 
     network: nn.Module

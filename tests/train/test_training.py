@@ -190,8 +190,8 @@ def test_learning_finds_what_is_to_be_found(tmp_path: Path) -> None:
     network = msgspec.structs.replace(TINY, hidden=32, fused=8, updates=0)
     config = savn.Config(network=network, frames=40_000, batch=32, horizon=20, learning_rate=1e-2)
 
-    def report(frames: int, network: Any, means: dict[str, float] | None) -> None:
-        del frames, network
+    def report(frames: int, means: dict[str, float] | None) -> None:
+        del frames
         if means is not None:
             found.append(means["success"])
 
