@@ -77,9 +77,13 @@ TRIALS = {
 }
 """Trials with the oracle, in the bodies that the kind of task is made for: a task, whose suite is its first word."""
 LEARNED = {"savn_success.png": "smoke/rowan/manipulation-03", "savn_failure.png": "smoke/juniper/manipulation-01"}
-"""Trials with the network that ships, `_LEARNED_OF` decides what it does."""
+"""Trials with the robot savn; `_LEARNED_OF` are the files that decide what it does."""
 _LEARNED_OF = [
-    *(f"hthor/agents/{part}.py" for part in ("savn", "skills/network_search", "skills/detector_noise")),
+    "hthor/agents/savn.py",
+    *(
+        f"hthor/agents/skills/{part}.py"
+        for part in ("detector_noise", "network_search", "savn_network", "semantic_cells")
+    ),
     *(f"hthor/agents/checkpoints/savn/{part}" for part in ("config.json", "model.safetensors")),
 ]
 TASKS = {"vln_task.png": "vln/juniper/01"}

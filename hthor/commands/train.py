@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 app = typer.Typer(no_args_is_help=True, help="Train robots that learn to find things (needs the extra torch).")
 
 _HOUSES = {"slim": 96, "paper": 12}
-"""How many houses to train in unless told: pictures take 40 MB a house, and a minute of two processors to draw."""
+"""How many houses to train in unless told: codes of pictures take 40 MB an arrangement, and half a minute to make."""
 _UNITS = {"k": 1_000, "M": 1_000_000}
 
 

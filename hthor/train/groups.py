@@ -64,7 +64,7 @@ def find_encoder(groups: Sequence[Group]) -> bytes | None:
     """The weights of the encoder of pictures that all networks see with; None if they read labels.
 
     Raises:
-        HthorError: when they do not all see with the same eyes.
+        HthorError: when some read labels and others pictures, or pictures with another encoder.
     """
     found = {
         picture_encoder.dump(network.encoder) if network.config.profile == "paper" else None: group.name
@@ -74,8 +74,8 @@ def find_encoder(groups: Sequence[Group]) -> bytes | None:
     if len(found) > 1:
         names = " and ".join(sorted(set(found.values())))
         raise HthorError(
-            f"{names}: networks that read labels (slim) and such that read pictures (paper), or pictures with another "
-            "encoder, cannot be compared in one call; give those that see alike"
+            f"{names} do not all read the same: labels (slim), or pictures (paper) with the same encoder. They cannot be "
+            "compared in one call; compare those that read the same"
         )
     return next(iter(found))
 
