@@ -124,7 +124,7 @@ def compare(groups: Sequence[Group], setup: Setup, watcher: Watcher) -> Comparis
         groups: networks. The first ones are also tried in variants, and compared with all others.
 
     Raises:
-        HthorError: when no house has room for its objects, or the networks do not all read the same, see `find_encoder`.
+        HthorError: when no house has room for its objects, or some networks read labels and others pictures.
     """
     torch.set_num_threads(1)  # more threads wait for each other longer than they compute
     arenas: list[Arena] = []

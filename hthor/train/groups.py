@@ -74,8 +74,8 @@ def find_encoder(groups: Sequence[Group]) -> bytes | None:
     if len(found) > 1:
         names = " and ".join(sorted(set(found.values())))
         raise HthorError(
-            f"{names} do not all read the same: labels (slim), or pictures (paper) with the same encoder. They cannot be "
-            "compared in one call; compare those that read the same"
+            f"{names} do not all read the same: labels (slim), or pictures (paper) with the same encoder. They cannot "
+            "be compared in one call; compare those that read the same"
         )
     return next(iter(found))
 
