@@ -11,10 +11,14 @@ JOBS ?= $(shell nproc 2>/dev/null || echo 1)
 # compiled files save each of the thousands of processes that tests start most of its start
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo test check nightly fmt lint docs bench install torch clean python
+.PHONY: demo savn test check nightly fmt lint docs bench install torch clean python
 
 demo: .venv/.installed
 	$(BIN)/hthor eval --agent none --agent frontier --agent oracle --humans proxy --suite smoke
+
+# the same tasks with a robot that learned, and with one that goes to the nearest unknown place
+savn: .venv/.installed-torch
+	$(BIN)/hthor eval --agent none --agent nearest --agent frontier --agent savn --agent oracle --humans proxy --suite smoke
 
 test: lint
 	@# a file's tests share worlds and runs, so one process does them all
