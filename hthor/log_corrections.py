@@ -18,6 +18,8 @@ from hthor.errors import RunError
 from hthor.types import HUMAN
 from hthor.types.events import AdoptionJudged, Event, Voided
 
+CODE_ROOT = "scoring"
+
 NAME = "corrections.jsonl"
 LOG_NAME = "trials.jsonl"
 """The log that they are about, in the same folder."""

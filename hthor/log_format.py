@@ -1,6 +1,7 @@
 """How a line of a log is read: its version, and events of kinds that a later version has added.
 
-Logs of this major version can be read: fields and kinds of events that this version does not know are skipped.
+Logs of this and the last major version can be read: fields and kinds of events that this version does not know are
+skipped. The lines of the last one also have ``metrics``, which nothing reads.
 """
 
 import re
@@ -17,9 +18,10 @@ from hthor import activity, documents
 from hthor.documents import Unreadable
 from hthor.types.events import Event, JournalEntry
 
-SCHEMA = "hthor.trial/1.1"
+SCHEMA = "hthor.trial/2.0"
 """The version of the log that is written."""
-_MAJOR = "hthor.trial/1."
+_MAJORS = ("hthor.trial/1.", "hthor.trial/2.")
+"""The beginnings of the versions that are read."""
 _MISSING = re.compile(r"Object missing required field `([^`]+)`")
 _NUMBERED = re.compile(r"(events|journal)\[(\d+)\]")
 
@@ -83,7 +85,7 @@ class LineDecoder(Generic[_Line]):
                 record = self._decoder.decode(line)
         except Unreadable as error:
             return self._decode_known(line, skipped, error)
-        if not record.schema.startswith(_MAJOR):
+        if not record.schema.startswith(_MAJORS):
             raise OtherVersion(record.schema)
         return record
 
@@ -93,7 +95,7 @@ class LineDecoder(Generic[_Line]):
             header, document = documents.decode(line, _Header), documents.decode(line, dict[str, Any])
         except Unreadable:
             raise error from None
-        if not header.schema.startswith(_MAJOR) and (header.schema or header.key):
+        if not header.schema.startswith(_MAJORS) and (header.schema or header.key):
             raise OtherVersion(header.schema)
         unknown, places = Counter[str](), dict[str, list[int]]()
         for name, kinds in _KINDS.items():

@@ -9,21 +9,25 @@ import shutil
 from pathlib import Path
 from typing import Any
 
+import eval_fakes
 import pytest
 
 from hthor import code_identity, plugins, tasks
 from hthor.code_identity import PICTURES, SIMULATION, Sources, syntax
 from hthor.eval.config import sessions
-from hthor.eval.metrics import trial_metrics
-from hthor.eval.records import trial_record
+from hthor.eval.records import scored_trial, trial_record
+from hthor.eval.results import estimates, paired_difference, pairing
 from hthor.eval.runner import trial_runner
 
 _OWN = (("human model", "proxy"), ("agent", "frontier"), ("robot", "scout"))
 ROOTS = (
-    *(trial_runner.__name__, trial_metrics.__name__, trial_record.__name__),
-    *(plugins.module_name("metric", name) for name in plugins.names("metric")),
+    *(trial_runner.__name__, trial_record.__name__),
     *(plugins.module_name("task kind", name) for name in ("mobile_manipulation", "object_goal_navigation")),
     *(plugins.module_name(sort, name) for sort, name in _OWN),
+)
+SCORING = (
+    *code_identity.roots("scoring"),
+    *(plugins.module_name("metric", name) for name in plugins.names("metric")),
 )
 
 
@@ -203,13 +207,42 @@ def test_processes_and_printing_do_not_count(sources: Sources, whole: str) -> No
         assert name not in sources.closure(ROOTS)
 
 
-def test_switching_an_import_counts(sources: Sources, whole: str) -> None:
+def test_switching_an_import_counts(sources: Sources) -> None:
     """Two modules that both count have something of the same name: taking it from the other is another program."""
     text = text_of(sources, "hthor.eval.metrics.definitions.success")
     line = "from hthor.eval.metrics.definitions import time_spent"
     assert line in text
     other = text.replace(line, line.replace("time_spent", "trust as time_spent"))
-    assert edited(sources, {"hthor.eval.metrics.definitions.success": other}).sha256(ROOTS) != whole
+    changed = edited(sources, {"hthor.eval.metrics.definitions.success": other})
+    assert changed.sha256(SCORING) != sources.sha256(SCORING)
+
+
+def test_what_only_judges_trials_counts_apart(sources: Sources, whole: str) -> None:
+    """A change of metrics or statistics changes no trial, and another scoring version."""
+    judging = ("hthor.eval.metrics", "hthor.eval.statistics", "hthor.eval.results", "hthor.eval.comparison")
+    counted = sources.closure([*code_identity.roots("trial"), *ROOTS])
+    assert not [name for name in counted if name.startswith((*judging, "hthor.report", "hthor.leaderboard"))]
+    for name in ("metrics.definitions.time_spent", "statistics.intervals", "results.estimates", "records.attempts"):
+        module = f"hthor.eval.{name}"
+        other = edited(sources, {module: f"{text_of(sources, module)}\nMORE = 1\n"})
+        assert other.sha256(SCORING) != sources.sha256(SCORING), name
+        assert other.sha256(ROOTS) == whole, name
+
+
+def test_everything_that_scoring_runs_counts(sources: Sources) -> None:
+    """Trials are scored under a profiler: only the record's own fields are from outside of the counted modules."""
+    dealt = eval_fakes.run_of(20)[1]
+    played = [one for session in dealt for one in eval_fakes.records(session)]
+
+    def judge() -> None:
+        scored = [scored_trial.score(one) for one in played]
+        estimates.estimate_metrics(scored)
+        estimates.trust_by_trial(scored)
+        paired_difference.paired_difference(pairing.pair_trials(scored, scored).pairs, "sr")
+
+    called = _called(judge)
+    assert called > {"hthor.eval.metrics.trial_metrics", "hthor.eval.statistics.intervals"}
+    assert called - {pairing.__name__, scored_trial.__name__, trial_record.__name__} <= set(sources.closure(SCORING))
 
 
 def test_a_part_is_one_of_three(sources: Sources) -> None:
@@ -251,8 +284,7 @@ def test_everything_that_a_trial_runs_counts(sources: Sources, suite: str, agent
     with stage.enter(sessions.make_sessions(chosen, agent=agent, robot=robot, humans=model)[0]) as company:
         world = stage.world(trial)
         called = _called(lambda: stage.run(company, trial, world))
-    roots = [trial_runner.__name__, trial_metrics.__name__, trial_record.__name__]
-    roots += [plugins.module_name("metric", name) for name in plugins.names("metric")]
+    roots = [trial_runner.__name__, trial_record.__name__]
     own = (("human model", model), ("agent", agent), ("robot", robot), ("task kind", trial.task.kind))
     counted = set(sources.closure([*roots, *(plugins.module_name(sort, name) for sort, name in own)]))
     assert called > {"hthor.episode.episode", "hthor.world.simulation"}

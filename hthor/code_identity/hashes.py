@@ -1,5 +1,5 @@
-"""The hashes of code that a result depends on: of trials, agents, robots, pictures, and of making tasks; and the folder
-in which numba caches compiled functions of exactly this code.
+"""The hashes of code that a result depends on: of trials, scoring, agents, robots, pictures, and of making tasks; and
+the folder in which numba caches compiled functions of exactly this code.
 """
 
 import contextlib
@@ -11,15 +11,16 @@ from hthor import installation, jsonio, plugins
 from hthor.code_identity.sources import ours
 from hthor.code_identity.syntax import PICTURES, SIMULATION, TOOLS
 
-_TRIAL, _MAKERS = "trial", "makers"
+_TRIAL, _SCORING, _MAKERS = "trial", "scoring", "makers"
 _HEX = 64
 """Number of letters of a hash."""
 
 
 def code_sha256(models: Iterable[str], kinds: Iterable[str]) -> str:
-    """Hash of the code that runs and measures trials: world, episode, human model, task kinds, records, metrics.
+    """Hash of the code that can change a trial: world, episode, human model, task kinds, records.
 
-    Robots have hashes of their own: `agent_sha256`, `robot_sha256`, `pictures_sha256`.
+    Robots have hashes of their own: `agent_sha256`, `robot_sha256`, `pictures_sha256`. So has what can only change how
+    a trial is judged: `scoring_sha256`.
 
     Args:
         models: the human models; a user's own model counts as all built-in ones, which it may use.
@@ -27,8 +28,17 @@ def code_sha256(models: Iterable[str], kinds: Iterable[str]) -> str:
     """
     own = [name for model in dict.fromkeys(models) for name in _modules("human model", model)]
     own += [name for kind in set(kinds) for name in _modules("task kind", kind)]
+    return modules_sha256([*roots(_TRIAL), *own])
+
+
+def scoring_sha256() -> str:
+    """Hash of the code that judges trials from their logs: all metrics, which attempts count, corrections, statistics.
+
+    It also covers all that these import, such as the benchmark's constants and the kinds of events. A change of it
+    changes no trial: results are computed again from the logs.
+    """
     metrics = [plugins.module_name("metric", name) for name in plugins.names("metric")]
-    return modules_sha256([*roots(_TRIAL), *metrics, *own])
+    return modules_sha256([*roots(_SCORING), *metrics])
 
 
 def agent_sha256(name: str) -> str:

@@ -38,8 +38,11 @@ def score(
         output.put_rich(result_tables.result_table(result, everything=everything), shape)
         if everything and len(result.by_kind) > 1:
             output.put_rich(result_tables.kinds_table(result), shape)
-    for note in result_tables.result_notes([result]):
+    for note in (*result_tables.result_notes([result]), f"{result_tables.scoring_note(result)}."):
         output.say(note)
+    if stored is not None and stored.hashes.scoring != result.hashes.scoring:
+        before = stored.hashes.scoring[:10] or "that was not noted"
+        output.say(f"{run / 'result.json'} was made by another scoring version, {before}; these values are new.")
     missing = plan.trials - result.over
     if missing:
         output.say(f"{missing} of {plan.trials} trials are missing, so the result is incomplete and was not stored.")

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from msgspec import Struct
 
-from hthor import rules
+from hthor import code_identity, rules
 from hthor.episode import task_part
 from hthor.errors import HthorError
 from hthor.eval.config import cli_command
@@ -16,7 +16,7 @@ from hthor.eval.config.run_config import RunConfig
 from hthor.eval.records import attempts, corrected_log
 from hthor.eval.records.attempts import VoidedTrial
 from hthor.eval.records.run_folder import RunFolder
-from hthor.eval.records.trial_record import TrialRecord
+from hthor.eval.records.scored_trial import ScoredTrial
 from hthor.eval.results import aggregate, applied_corrections, result_file
 from hthor.eval.results.result_file import RunResult
 from hthor.eval.runner import fault_report
@@ -108,9 +108,8 @@ def _seen(run: Path, root: Path) -> RunSummary:
 def _tally(run: Path, plan: RunConfig) -> tuple[int, float, int]:
     """Trials played, trials in which the goal was met, and trials with a fault: from the result, or else the log."""
     result = None if plan.shard else result_file.load_current(run)
-    if result is not None and result.metrics["sr"].mean is not None and result.hashes.run == plan.sha256:
-        trials = result.counts.trials
-        return trials, result.metrics["sr"].mean * trials, result.counts.faults
+    if result is not None and result.hashes.run == plan.sha256:
+        return result.counts.trials, float(result.counts.successes), result.counts.faults
     kept = attempts.select_records(record for _, record in corrected_log.read(run / "trials.jsonl"))
     return len(kept), float(sum(one.met for one in kept)), sum(bool(one.faults) for one in kept)
 
@@ -136,7 +135,7 @@ class TrialFilter(Struct, frozen=True, kw_only=True):
     met: bool | None = None
     faulty: bool | None = None
 
-    def fits(self, record: TrialRecord) -> bool:
+    def fits(self, record: ScoredTrial) -> bool:
         """Whether the filter takes a trial."""
         task = record.spec.task
         return (
@@ -197,7 +196,11 @@ def view_run(folder: Path, wanted: TrialFilter) -> tuple[RunView, RunResult | No
     total = plan.expected_trials - run.given_up
     whole = len(records) >= total
     stored = result_file.load_current(folder)
-    fresh = stored is not None and (stored.corrections or None) == applied_corrections.applied(run)
+    fresh = (
+        stored is not None
+        and (stored.corrections or None) == applied_corrections.applied(run)
+        and stored.hashes.scoring == code_identity.scoring_sha256()
+    )
     so_far = stored if whole and fresh else aggregate.rescore(folder)[1] if records else None
     lines = tuple(_line(number, one) for number, one in enumerate(played) if not one.log.voided and wanted.fits(one))
     view = RunView(
@@ -214,7 +217,7 @@ def view_run(folder: Path, wanted: TrialFilter) -> tuple[RunView, RunResult | No
     return view, so_far
 
 
-def _line(number: int, record: TrialRecord) -> TrialLine:
+def _line(number: int, record: ScoredTrial) -> TrialLine:
     spec, first = record.spec, record.faults[0] if record.faults else None
     return TrialLine(
         number=number,
@@ -231,7 +234,7 @@ def _line(number: int, record: TrialRecord) -> TrialLine:
     )
 
 
-def _next(folder: Path, plan: RunConfig, records: Sequence[TrialRecord], *, whole: bool) -> Iterator[str]:
+def _next(folder: Path, plan: RunConfig, records: Sequence[ScoredTrial], *, whole: bool) -> Iterator[str]:
     """Commands that the user may want to give next."""
     run = shlex.quote(str(folder))
     if not whole:

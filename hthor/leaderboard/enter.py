@@ -14,7 +14,6 @@ from hthor import code_identity
 from hthor.errors import HthorError, RunError
 from hthor.eval.config import cli_command, task_selection
 from hthor.eval.config.run_config import RunConfig
-from hthor.eval.metrics import trial_metrics
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.results import aggregate, baseline
 from hthor.guest import Manifest
@@ -69,17 +68,16 @@ def make_entry(folder: Path, submission: Submission | None = None) -> Entry:
             f"what a machine plays again, and a correction is a person's judgement. 'hthor correct {folder}' lists "
             "them; withdraw them, or play the run again into another folder."
         )
-    lines, kept = run.lines()
-    _whole(folder, config, len(kept))
+    lines, records = run.lines()
+    _whole(folder, config, len(records))
     if run.voided:
         raise BoardError(
             f"{folder} has {len(run.voided)} voided trials, and cannot stand on the leaderboard: whoever voids a trial "
             "knows how it went. Play it again into another folder."
         )
-    found = overrides.overridden_settings(config, _crew(config), len({one.spec.task.id for one in kept}))
+    found = overrides.overridden_settings(config, _crew(config), len({one.spec.task.id for one in records}))
     if found:
         raise BoardError(overrides.refusal(folder, config, found))
-    records = [msgspec.structs.replace(one, metrics=trial_metrics.measure(one.spec, one.log)) for one in kept]
     gain = baseline.measure_uplift(folder, config, records)
     if gain is None and config.seats:
         raise RunError(

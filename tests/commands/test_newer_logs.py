@@ -16,7 +16,7 @@ def rewrite(log: Path) -> None:
     for line in log.read_bytes().splitlines():
         document = msgspec.json.decode(line)
         del document["check"]
-        document["schema"] = "hthor.trial/1.2"
+        document["schema"] = "hthor.trial/2.1"
         document["events"].insert(0, {"kind": "waved", "tick": 0, "seat": "human", "hand": "left"})
         document["journal"].append({"kind": "pulse", "tick": 0, "seat": "human", "beats": [1.0, 1.1]})
         lines.append(trial_record.sealed(msgspec.json.encode(document)))

@@ -58,7 +58,7 @@ def test_logs_are_valid_by_the_schema(line: bytes) -> None:
     validator.check_schema(validator.schema)
     validator.validate(document)
     wrong: list[dict[str, Any]] = [
-        document | {"schema": "hthor.trial/2.0"},
+        document | {"schema": "hthor.trial/1.1"},
         document | {"events": [*document["events"], {"kind": "sent", "tick": 1, "seat": "robot"}]},
         document | {"events": [*document["events"], {"kind": "waved", "tick": 1, "seat": "robot"}]},
         {name: value for name, value in document.items() if name != "check"},

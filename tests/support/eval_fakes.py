@@ -25,9 +25,9 @@ from hthor.eval.config import human_team, robot_team, run_config, sessions
 from hthor.eval.config.human_team import HumanTeam
 from hthor.eval.config.run_config import RunConfig
 from hthor.eval.config.sessions import Session
-from hthor.eval.records import trial_record
+from hthor.eval.records import scored_trial, trial_record
 from hthor.eval.records.run_folder import RunFolder
-from hthor.eval.records.trial_record import TrialRecord
+from hthor.eval.records.scored_trial import ScoredTrial
 from hthor.eval.runner import engines, worker
 from hthor.eval.runner.engines import SessionFailed
 from hthor.eval.runner.messages import Failed, News, TrialOutcome
@@ -153,9 +153,9 @@ def outcome(trial: TrialSpec, log: EpisodeLog) -> TrialOutcome:
     return TrialOutcome(record=trial_record.make_record(trial, log))
 
 
-def records(session_: Session) -> list[TrialRecord]:
-    """The records of a session that `player` plays."""
-    return [played.record for played in player()(session_)]
+def records(session_: Session) -> list[ScoredTrial]:
+    """The records of a session that `player` plays, with their metrics."""
+    return [scored_trial.score(played.record) for played in player()(session_)]
 
 
 def leaning_player(sources: Sources | None = None) -> Callable[[Session], Iterator[TrialOutcome]]:

@@ -13,7 +13,7 @@ from hthor.episode.clocks import TimedSenses as Timed
 from hthor.eval.config import robot_team
 from hthor.eval.config.robot_team import AgentInfo
 from hthor.eval.config.sessions import Session, make_sessions
-from hthor.eval.records import trial_record
+from hthor.eval.records import scored_trial, trial_record
 from hthor.eval.runner import trial_runner
 from hthor.eval.runner.fault_report import RecordedAgent
 from hthor.guest import Guest
@@ -100,7 +100,7 @@ class ProbeTrials:
         says = [(action.say, seen) for (_, action), seen in zip(done, noted.seen, strict=False)]
         about = [(say.object, seen) for say, seen in says if isinstance(say, Send) and say.object]
         ended = [look.outcome for look, _ in noted.looks if look.idle and look.outcome is not None]
-        kept = trial_record.make_record(trial, log)
+        kept = scored_trial.score(trial_record.make_record(trial, log))
         return ProbeResult(
             line=trial_record.encode(kept),
             faults=log.faults,

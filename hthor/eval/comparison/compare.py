@@ -11,12 +11,13 @@ from hthor.errors import RunError
 from hthor.eval.comparison import verdict
 from hthor.eval.comparison.comparison import ComparedRun, Comparison, Comparisons, GroupSize, LoadedRun, WinCounts
 from hthor.eval.metrics import registry, trial_metrics
-from hthor.eval.records.trial_record import TrialRecord
-from hthor.eval.results import aggregate, group_difference, paired_difference, pairing
+from hthor.eval.records.run_folder import RunFolder
+from hthor.eval.records.scored_trial import ScoredTrial
+from hthor.eval.results import group_difference, paired_difference, pairing
 from hthor.eval.results.paired_difference import Difference
 from hthor.eval.results.pairing import Pair
 
-_BY: dict[str, Callable[[TrialRecord], str]] = {
+_BY: dict[str, Callable[[ScoredTrial], str]] = {
     "kind": lambda found: found.spec.task.kind,
     "split": lambda found: found.spec.task.split,
     "difficulty": lambda found: found.spec.task.difficulty,
@@ -67,20 +68,20 @@ def compare_pairs(read_: Sequence[LoadedRun]) -> tuple[Comparison, ...]:
 
 
 def load_runs(folders: Sequence[Path]) -> tuple[LoadedRun, ...]:
-    """The runs in these folders, with metrics measured again from their events, and a distinct name each."""
-    held = [aggregate.load_measured(folder) for folder in folders]
-    names = _names([run.config.label for run, _ in held], folders)
+    """The runs in these folders, and a distinct name each."""
+    runs = [RunFolder(folder) for folder in folders]
+    names = _names([run.config.label for run in runs], folders)
     return tuple(
         LoadedRun(
             name=name,
             folder=run.path,
             plan=run.config,
-            records=tuple(records),
+            records=tuple(run.records()),
             voided=len(run.voided),
             corrections=len(run.corrections.in_effect),
             given_up=run.given_up,
         )
-        for name, (run, records) in zip(names, held, strict=True)
+        for name, run in zip(names, runs, strict=True)
     )
 
 
@@ -150,11 +151,11 @@ def _groups(one: LoadedRun, other: LoadedRun) -> Comparison:
     )
 
 
-def _people(records: Sequence[TrialRecord]) -> int:
+def _people(records: Sequence[ScoredTrial]) -> int:
     return len({human.participant for record in records for human in record.spec.humans})
 
 
-def _group_parts(one: LoadedRun, other: LoadedRun, value: Callable[[TrialRecord], str]) -> dict[str, Difference]:
+def _group_parts(one: LoadedRun, other: LoadedRun, value: Callable[[ScoredTrial], str]) -> dict[str, Difference]:
     """Differences in success between two groups, by a property of their trials."""
     names = sorted({value(record) for record in (*one.records, *other.records)}, key=_rank)
     parts = {
@@ -179,7 +180,7 @@ def _tally(pairs: Sequence[Pair]) -> WinCounts:
     )
 
 
-def _grouped(pairs: Sequence[Pair], value: Callable[[TrialRecord], str]) -> dict[str, Difference]:
+def _grouped(pairs: Sequence[Pair], value: Callable[[ScoredTrial], str]) -> dict[str, Difference]:
     found = {
         name: paired_difference.paired_difference([pair for pair in pairs if value(pair.one) == name], "sr")
         for name in sorted({value(pair.one) for pair in pairs}, key=_rank)

@@ -6,7 +6,7 @@ import msgspec
 from msgspec import Struct
 
 from hthor.eval.config.run_config import RunConfig, SuiteRef
-from hthor.eval.records.trial_record import TrialRecord
+from hthor.eval.records.scored_trial import ScoredTrial
 from hthor.eval.results.paired_difference import Difference, McNemar
 from hthor.eval.statistics.intervals import LEVEL
 
@@ -112,7 +112,7 @@ class LoadedRun(Struct, frozen=True, kw_only=True):
     name: str
     folder: Path
     plan: RunConfig
-    records: tuple[TrialRecord, ...]
+    records: tuple[ScoredTrial, ...]
     voided: int = 0
     corrections: int = 0
     given_up: int = 0

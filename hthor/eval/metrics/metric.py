@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 from msgspec import UNSET, Struct, UnsetType
 
-from hthor.episode import EpisodeLog
+from hthor.episode.recording.episode_log import EpisodeLog
 from hthor.types import TrialSpec
 
 DIGITS = 6

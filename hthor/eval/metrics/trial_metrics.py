@@ -9,12 +9,13 @@ import numpy as np
 from msgspec import Struct, UnsetType
 from numpy.typing import NDArray
 
-from hthor.episode import EpisodeLog, task_part
+from hthor.episode.recording.episode_log import EpisodeLog
+from hthor.episode.recording.task_part import task_part
 from hthor.eval.metrics import registry
 from hthor.eval.metrics.metric import Trial, Value
 from hthor.types import TrialSpec
 
-CODE_ROOT = "trial"
+CODE_ROOT = "scoring"
 
 
 class MetricValues(Struct, frozen=True, kw_only=True):

@@ -23,7 +23,7 @@ _OWN_KINDS = frozenset({"stick", "head", "attempt", "exposure", "choice", "offer
 
 
 def convert_record(old: OldRecord) -> TrialRecord:
-    """The record of log 1.0, with its key and its metrics computed again.
+    """The record of log 1.0, with its key computed again.
 
     Raises:
         Unreadable: names the event and the field that cannot be converted.

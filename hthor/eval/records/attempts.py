@@ -6,20 +6,29 @@ several attempts the last that was not voided counts.
 A trial can also be voided after it was played, by a correction. It is then repeated only if the correction says so.
 """
 
-from collections.abc import Collection, Iterable
-from typing import TypeVar
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, TypeVar
 
 import msgspec
 from msgspec import UNSET, Struct, UnsetType
 
-from hthor.eval.records.trial_record import TrialRecord
-from hthor.log_corrections import Corrections, VoidTrial
-from hthor.types import TrialSpec
+from hthor.log_corrections import VoidTrial
 from hthor.types.events import Voided
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable
+
+    from hthor.eval.records.trial_record import TrialRecord
+    from hthor.log_corrections import Corrections
+    from hthor.types import TrialSpec
+
+CODE_ROOT = "scoring"
 
 Place = tuple[int, int]
 """A trial of a run: the number of its session, and its index there."""
 _Pair = TypeVar("_Pair")
+_Record = TypeVar("_Record", bound="TrialRecord")
 
 
 class VoidedTrial(Struct, frozen=True, kw_only=True):
@@ -116,9 +125,7 @@ class Attempts:
         return not attempt.voided and attempt.number == self.number(attempt.place)
 
 
-def select(
-    pairs: Iterable[tuple[_Pair, TrialRecord]], given_up: Collection[str] = ()
-) -> list[tuple[_Pair, TrialRecord]]:
+def select(pairs: Iterable[tuple[_Pair, _Record]], given_up: Collection[str] = ()) -> list[tuple[_Pair, _Record]]:
     """Those of some records of a run that count, in their order; each comes with whatever belongs to it.
 
     ``given_up`` has the keys of voided trials that are wanted as well, unless they were repeated.
@@ -128,7 +135,7 @@ def select(
     return [pair for pair, attempt in held if known.counts(attempt)]
 
 
-def select_records(records: Iterable[TrialRecord]) -> list[TrialRecord]:
+def select_records(records: Iterable[_Record]) -> list[_Record]:
     """Those of some records of a run that count, each once, in their order."""
     found = {record.key: record for record in records}
     return [record for _, record in select(found.items())]

@@ -1,6 +1,7 @@
 """Reading a run's log with the corrections of its trials, which are in a file beside it.
 
-Everything that scores, compares, draws or lists trials reads them here, so that a correction counts everywhere.
+Everything that scores, compares, draws or lists trials reads them here, so that a correction counts everywhere. The
+metrics are those of the corrected trial.
 """
 
 from collections.abc import Iterator, Mapping
@@ -10,8 +11,8 @@ import msgspec
 
 from hthor import log_corrections
 from hthor.errors import RunError
-from hthor.eval.metrics import trial_metrics
-from hthor.eval.records import trial_log
+from hthor.eval.records import scored_trial, trial_log
+from hthor.eval.records.scored_trial import ScoredTrial
 from hthor.eval.records.trial_log import Place
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.log_corrections import CorrectAdoption, Corrections, VoidTrial
@@ -19,7 +20,7 @@ from hthor.log_corrections import CorrectAdoption, Corrections, VoidTrial
 _ByTrial = Mapping[str, tuple[VoidTrial | CorrectAdoption, ...]]
 
 
-def read(path: Path) -> Iterator[tuple[bytes, TrialRecord]]:
+def read(path: Path) -> Iterator[tuple[bytes, ScoredTrial]]:
     """As `trial_log.read`: every line as it stands in the log, and its record as corrected.
 
     Raises:
@@ -30,7 +31,7 @@ def read(path: Path) -> Iterator[tuple[bytes, TrialRecord]]:
         yield line, record
 
 
-def places(path: Path) -> Iterator[tuple[Place, bytes, TrialRecord]]:
+def places(path: Path) -> Iterator[tuple[Place, bytes, ScoredTrial]]:
     """As `read`, with the place of each line."""
     known, seen = log_corrections.beside(path), set[str]()
     by_trial = {line.trial: known.of(line.trial) for line in known.lines}
@@ -51,14 +52,13 @@ def check_trials(log: Path, known: Corrections, trials: set[str]) -> None:
             )
 
 
-def corrected(record: TrialRecord, known: Corrections) -> TrialRecord:
-    """A record with these corrections: its events and its metrics."""
+def corrected(record: TrialRecord, known: Corrections) -> ScoredTrial:
+    """A record with these corrections of its events, and its metrics."""
     return _with(record, {record.key: known.of(record.key)})
 
 
-def _with(record: TrialRecord, by_trial: _ByTrial) -> TrialRecord:
-    own = by_trial.get(record.key, ())
-    if not own:
-        return record
-    changed = msgspec.structs.replace(record, events=log_corrections.corrected_events(record.events, record.ticks, own))
-    return msgspec.structs.replace(changed, metrics=trial_metrics.measure(changed.spec, changed.log))
+def _with(record: TrialRecord, by_trial: _ByTrial) -> ScoredTrial:
+    if own := by_trial.get(record.key, ()):
+        events = log_corrections.corrected_events(record.events, record.ticks, own)
+        record = msgspec.structs.replace(record, events=events)
+    return scored_trial.score(record)

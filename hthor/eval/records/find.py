@@ -6,13 +6,14 @@ from collections.abc import Sequence
 from hthor import rules
 from hthor.errors import RunError, UnknownName
 from hthor.eval.records.run_folder import RunFolder
+from hthor.eval.records.scored_trial import ScoredTrial
 from hthor.eval.records.trial_record import TrialRecord
 
 _SHOWN = 10
 _TRACEBACK_LINES = 12
 
 
-def find_trial(folder: RunFolder, name: str) -> TrialRecord:
+def find_trial(folder: RunFolder, name: str) -> ScoredTrial:
     """The trial of a run that ``name`` stands for.
 
     Args:
@@ -45,7 +46,7 @@ def find_trial(folder: RunFolder, name: str) -> TrialRecord:
     raise UnknownName("trial", name, near, more if records else "The run has no trials yet.")
 
 
-def _attempt(folder: RunFolder, name: str, number: int) -> TrialRecord:
+def _attempt(folder: RunFolder, name: str, number: int) -> ScoredTrial:
     """The attempt with this number at the trial that ``name`` stands for, which may have no attempt that counts."""
     tried = folder.attempts()
     mine = [record for record in tried if record.spec.task.id == name]
@@ -59,14 +60,14 @@ def _attempt(folder: RunFolder, name: str, number: int) -> TrialRecord:
     return _only(found, name)
 
 
-def _only(records: Sequence[TrialRecord], name: str) -> TrialRecord:
+def _only(records: Sequence[ScoredTrial], name: str) -> ScoredTrial:
     if len(records) > 1:
         listed = ", ".join(f"{record.key} (session {record.spec.session})" for record in records[:_SHOWN])
         raise RunError(f"'{name}' stands for {len(records)} trials: {listed}. Give a key, or more of it.")
     return records[0]
 
 
-def first_fault(folder: RunFolder) -> TrialRecord:
+def first_fault(folder: RunFolder) -> ScoredTrial:
     """The first trial of a run in which an agent failed; raises LookupError when none did."""
     _, records = folder.digest()
     return next(record for record in records if record.faults)

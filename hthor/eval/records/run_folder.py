@@ -15,6 +15,7 @@ from hthor.eval.config.run_config import OLD_SCHEMA, SCHEMA, RunConfig, differen
 from hthor.eval.records import attempts, corrected_log, platform, run_isolation, session_restarts, trial_log
 from hthor.eval.records.attempts import VoidedTrial
 from hthor.eval.records.platform import Platform
+from hthor.eval.records.scored_trial import ScoredTrial
 from hthor.eval.records.trial_log import Place, TrialLog
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.guest import Isolation
@@ -77,7 +78,7 @@ class RunFolder:
         """The one writer of the run's log; see `TrialLog` for its errors."""
         return TrialLog(self.path)
 
-    def lines(self) -> tuple[list[bytes], list[TrialRecord]]:
+    def lines(self) -> tuple[list[bytes], list[ScoredTrial]]:
         """The line and the record of every trial, in the order of sessions and their trials.
 
         Of several attempts at a trial the one that counts is here; `attempts` has all. Lines are as in the log, records
@@ -89,17 +90,17 @@ class RunFolder:
         pairs = self._counting(corrected_log.read(self.log_file))
         return [line for line, _ in pairs], [record for _, record in pairs]
 
-    def records(self) -> list[TrialRecord]:
+    def records(self) -> list[ScoredTrial]:
         """The record of every trial, in the order of sessions and their trials; errors as in `lines`."""
         return self.lines()[1]
 
-    def attempts(self) -> list[TrialRecord]:
+    def attempts(self) -> list[ScoredTrial]:
         """Every record of the log, of voided attempts too, in the order of sessions, their trials, and attempts."""
         records = sorted((record for _, record in corrected_log.read(self.log_file)), key=_order)
         self._check(records)
         return records
 
-    def played(self) -> list[TrialRecord]:
+    def played(self) -> list[ScoredTrial]:
         """As `records`, and the trials that a correction voided, unless they were repeated: one record for every trial.
 
         The place of a trial in this list is its number on the command line, which corrections do not change.
@@ -112,7 +113,7 @@ class RunFolder:
         """The corrections of the run's trials."""
         return log_corrections.load(self.path)
 
-    def corrected(self, record: TrialRecord) -> TrialRecord:
+    def corrected(self, record: TrialRecord) -> ScoredTrial:
         """A record of one of the run's trials that was played again, with the corrections of that trial."""
         return corrected_log.corrected(record, self.corrections)
 
@@ -127,7 +128,7 @@ class RunFolder:
         """The attempts that were voided and do not count; known without reading again after `lines` or `digest`."""
         return attempts.voided_trials(self.attempts(), self.corrections)
 
-    def digest(self) -> tuple[list[Place], list[TrialRecord]]:
+    def digest(self) -> tuple[list[Place], list[ScoredTrial]]:
         """As `lines`, for runs of any length: lines stay on the disk, and records lack paths and journal."""
         slim = (
             (place, msgspec.structs.replace(record, paths={}, journal=()))
@@ -209,7 +210,7 @@ class RunFolder:
         if others:
             raise RunError(f"{self} is not empty and holds no run ({min(others)}). Choose another folder with --out.")
 
-    def _counting(self, pairs: Iterable[tuple[_Part, TrialRecord]]) -> list[tuple[_Part, TrialRecord]]:
+    def _counting(self, pairs: Iterable[tuple[_Part, ScoredTrial]]) -> list[tuple[_Part, ScoredTrial]]:
         """The pairs whose record counts, in order; checks all."""
         held = sorted(pairs, key=lambda pair: _order(pair[1]))
         records = [record for _, record in held]

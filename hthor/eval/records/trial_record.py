@@ -10,7 +10,6 @@ from msgspec import UNSET, UnsetType, field
 
 from hthor import documents, jsonio, log_format
 from hthor.episode import EpisodeLog, Fault
-from hthor.eval.metrics.trial_metrics import TrialMetrics, measure
 from hthor.guest.agent.manifest import File
 from hthor.log_format import Logged
 from hthor.types import TrialSpec
@@ -29,8 +28,9 @@ _Entry = TypeVar("_Entry", bound=LogEntry)
 
 
 class TrialRecord(Logged, frozen=True, kw_only=True):
-    """A trial's specification, everything that happened in it, and its metrics; one line of `trials.jsonl`.
+    """A trial's specification and everything that happened in it; one line of `trials.jsonl`.
 
+    How the trial is judged is no part of it: `hthor.eval.records.scored_trial` adds the metrics when a log is read.
     Fields that are not listed here are those of `hthor.episode.EpisodeLog`.
 
     Attributes:
@@ -41,7 +41,6 @@ class TrialRecord(Logged, frozen=True, kw_only=True):
 
     key: str
     spec: TrialSpec
-    metrics: TrialMetrics
     ticks: int
     met: bool
     ratings: dict[str, int | None]
@@ -73,16 +72,18 @@ def key(spec: TrialSpec) -> str:
 
 
 def make_record(spec: TrialSpec, log: EpisodeLog) -> TrialRecord:
-    """The record of a trial that was run. Metrics are computed from what is written, after rounding."""
+    """The record of a trial that was run, with rounded numbers."""
     kept = msgspec.structs.replace(
         log, events=tuple(map(_rounded_entry, log.events)), journal=tuple(map(_rounded_entry, log.journal))
     )
     fields = {name: getattr(kept, name) for name in EpisodeLog.__struct_fields__}
-    return TrialRecord(schema=log_format.SCHEMA, key=key(spec), spec=spec, metrics=measure(spec, kept), **fields)
+    return TrialRecord(schema=log_format.SCHEMA, key=key(spec), spec=spec, **fields)
 
 
 def encode(record: TrialRecord) -> bytes:
-    """The record's line, with its checksum as the last field and a newline."""
+    """The record's line, with its checksum as the last field and a newline; without what a subclass adds."""
+    if type(record) is not TrialRecord:
+        record = TrialRecord(**{name: getattr(record, name) for name in TrialRecord.__struct_fields__})
     return sealed(_encoder.encode(record))
 
 

@@ -7,22 +7,22 @@ from pathlib import Path
 
 import msgspec
 
-from hthor import log_corrections
+from hthor import code_identity, log_corrections
 from hthor.errors import RunError
 from hthor.eval.config.run_config import RunConfig
-from hthor.eval.metrics import trial_metrics
 from hthor.eval.records import attempts, corrected_log
 from hthor.eval.records.run_folder import RunFolder
-from hthor.eval.records.trial_record import TrialRecord
+from hthor.eval.records.scored_trial import ScoredTrial
 from hthor.eval.results import group_difference, paired_difference, pairing, result_file
 from hthor.eval.results.result_file import StoredUplift, Uplift
 
 FOLDER = "control"
 """The folder in which a run keeps its own baseline."""
 RECORDED = "the log of the run without a robot was not found; these numbers were recorded when it was there"
+_OTHER_SCORING = "by another scoring version than the other numbers"
 
 
-def uplift_or_stored(folder: Path, plan: RunConfig, records: Sequence[TrialRecord]) -> StoredUplift | None:
+def uplift_or_stored(folder: Path, plan: RunConfig, records: Sequence[ScoredTrial]) -> StoredUplift | None:
     """The uplift of the run in a folder over its baseline.
 
     If no baseline is found, as in a folder that was copied elsewhere, the uplift in the run's stored result is used,
@@ -31,7 +31,7 @@ def uplift_or_stored(folder: Path, plan: RunConfig, records: Sequence[TrialRecor
     return result_file.to_stored(measure_uplift(folder, plan, records)) or _recorded(folder, plan)
 
 
-def measure_uplift(folder: Path, plan: RunConfig, records: Sequence[TrialRecord]) -> Uplift | None:
+def measure_uplift(folder: Path, plan: RunConfig, records: Sequence[ScoredTrial]) -> Uplift | None:
     """The uplift from the baseline's log; None if the run has no robot or no complete baseline is found."""
     found = next(_whole(folder, plan, _anywhere(folder)), None)
     if found is None:
@@ -40,7 +40,7 @@ def measure_uplift(folder: Path, plan: RunConfig, records: Sequence[TrialRecord]
 
 
 def make_uplift(
-    control: Sequence[TrialRecord], records: Sequence[TrialRecord], *, run: str, groups: bool = False
+    control: Sequence[ScoredTrial], records: Sequence[ScoredTrial], *, run: str, groups: bool = False
 ) -> Uplift | None:
     """The uplift of ``records`` over a baseline whose hash is ``run``; None without a trial in common.
 
@@ -58,10 +58,10 @@ def make_uplift(
     return Uplift(control=run, sr=sr, twsr=twsr, time_s=time_s)
 
 
-def find_baseline(folder: Path, plan: RunConfig) -> tuple[RunConfig, list[TrialRecord]] | None:
+def find_baseline(folder: Path, plan: RunConfig) -> tuple[RunConfig, list[ScoredTrial]] | None:
     """The configuration and records of a run's baseline: in the run's folder, or the first by name next to it.
 
-    It must be complete; its metrics are measured again from its events.
+    It must be complete.
     """
     return next(((there, kept) for _, there, kept in _whole(folder, plan, _near(folder))), None)
 
@@ -76,12 +76,16 @@ def _recorded(folder: Path, plan: RunConfig) -> StoredUplift | None:
     if not plan.seats:
         return None
     known = result_file.stored_uplift(folder, run=plan.sha256)
-    return None if known is None else msgspec.structs.replace(known, note=RECORDED)
+    if known is None:
+        return None
+    other = result_file.stored_scoring(folder) != code_identity.scoring_sha256()
+    other = other or (known.note or "").endswith(_OTHER_SCORING)
+    return msgspec.structs.replace(known, note=f"{RECORDED}, {_OTHER_SCORING}" if other else RECORDED)
 
 
 def _whole(
     folder: Path, plan: RunConfig, candidates: Iterable[Path]
-) -> Iterator[tuple[Path, RunConfig, list[TrialRecord]]]:
+) -> Iterator[tuple[Path, RunConfig, list[ScoredTrial]]]:
     """Every complete baseline of a run among these folders, the one named in its result first."""
     if not plan.seats:
         return
@@ -133,13 +137,12 @@ def _runs_in(place: Path, patterns: Sequence[str], *, but: Path) -> Iterator[Pat
         yield from (run for run in runs if run.resolve() != but)
 
 
-def _records(folder: Path) -> tuple[list[TrialRecord], int]:
+def _records(folder: Path) -> tuple[list[ScoredTrial], int]:
     """The records of a run that count, and how many of its trials are over; none if they cannot be read."""
     try:
         given_up = log_corrections.load(folder).given_up
         known = [
-            msgspec.structs.replace(one, metrics=trial_metrics.measure(one.spec, one.log), paths={}, journal=())
-            for _, one in corrected_log.read(folder / "trials.jsonl")
+            msgspec.structs.replace(one, paths={}, journal=()) for _, one in corrected_log.read(folder / "trials.jsonl")
         ]
     except RunError:
         return [], 0

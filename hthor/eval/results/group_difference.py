@@ -4,20 +4,28 @@ No trial has a partner, so the groups' means are compared. Trials of one person 
 one task: the groups do the same tasks, whose difficulty then cancels, as far as they did them equally often.
 """
 
+from __future__ import annotations
+
 import math
-from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import msgspec
 import numpy as np
 
-from hthor.eval.config.run_config import RunConfig
 from hthor.eval.metrics import registry
 from hthor.eval.metrics.metric import mean_limit
-from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import paired_difference
 from hthor.eval.results.paired_difference import Difference
 from hthor.eval.statistics import intervals, variance_components
 from hthor.eval.statistics.variance_components import MeanSpread
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from hthor.eval.config.run_config import RunConfig
+    from hthor.eval.records.scored_trial import ScoredTrial
+
+CODE_ROOT = "scoring"
 
 
 def are_groups(one: RunConfig, other: RunConfig) -> bool:
@@ -28,7 +36,7 @@ def are_groups(one: RunConfig, other: RunConfig) -> bool:
 
 
 def group_difference(
-    one: Sequence[TrialRecord], other: Sequence[TrialRecord], metric: str, *, level: float = intervals.LEVEL
+    one: Sequence[ScoredTrial], other: Sequence[ScoredTrial], metric: str, *, level: float = intervals.LEVEL
 ) -> Difference | None:
     """The second group's mean of a metric minus the first's, with an interval of this level.
 

@@ -1,17 +1,26 @@
 """The difference of two runs in one metric over the same trials: interval, p-value and detectable difference."""
 
+from __future__ import annotations
+
 import math
-from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import msgspec
 import numpy as np
 from msgspec import Struct
 
 from hthor.eval.metrics import registry, trial_metrics
-from hthor.eval.metrics.metric import Metric, mean_limit
-from hthor.eval.results.pairing import Pair
+from hthor.eval.metrics.metric import mean_limit
 from hthor.eval.statistics import intervals, power, variance_components
 from hthor.eval.statistics.variance_components import MeanSpread
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from hthor.eval.metrics.metric import Metric
+    from hthor.eval.results.pairing import Pair
+
+CODE_ROOT = "scoring"
 
 _DIGITS = 6
 

@@ -9,7 +9,7 @@ from msgspec import Struct
 from hthor.errors import RunError
 from hthor.eval.config.run_config import RunConfig
 from hthor.eval.records import trial_record
-from hthor.eval.records.trial_record import TrialRecord
+from hthor.eval.records.scored_trial import ScoredTrial
 from hthor.types import TrialSpec
 
 _SAME = {
@@ -26,8 +26,8 @@ _SAME = {
 class Pair(Struct, frozen=True, kw_only=True):
     """The records of one trial in two runs with different robots."""
 
-    one: TrialRecord
-    other: TrialRecord
+    one: ScoredTrial
+    other: ScoredTrial
 
 
 class PairedTrials(Struct, frozen=True, kw_only=True):
@@ -66,7 +66,7 @@ def check_comparable(one: tuple[Path, RunConfig], other: tuple[Path, RunConfig])
     )
 
 
-def pair_trials(one: Sequence[TrialRecord], other: Sequence[TrialRecord]) -> PairedTrials:
+def pair_trials(one: Sequence[ScoredTrial], other: Sequence[ScoredTrial]) -> PairedTrials:
     """The trials that both runs have, in pairs."""
     first, second = ({pairing_key(found.spec): found for found in some} for some in (one, other))
     return PairedTrials(

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import msgspec
 from msgspec import Struct
@@ -14,9 +13,9 @@ from hthor.eval.config import robot_team
 from hthor.eval.config.human_populations import HumanModelRef
 from hthor.eval.config.run_config import AssetsRef, KindRef, SuiteRef
 from hthor.eval.config.study_design import StudyDesign
-from hthor.eval.metrics import registry
 from hthor.eval.results.paired_difference import Difference
-from hthor.eval.statistics.intervals import NOTHING, Estimate
+from hthor.eval.results.scores import Scores
+from hthor.eval.statistics.intervals import Estimate
 from hthor.guest import Isolation, Manifest
 from hthor.types import RobotSeat
 from hthor.types.specs import LOCKSTEP, Clock
@@ -26,28 +25,6 @@ OLD_SCHEMA = "hthor.result/5"
 """The schema of results that `hthor migrate` converts: ``mode`` had other words."""
 UPLIFT_METRICS = ("sr", "twsr", "time_s")
 """The metrics that an uplift is given in."""
-
-
-class Estimates(Struct, frozen=True, kw_only=True):
-    """Means with intervals by metric: fractions, seconds, trust points and counts per trial, one field per metric."""
-
-    def __getitem__(self, metric: str) -> Estimate:
-        """The estimate of a metric with one value per trial."""
-        estimate: Estimate = getattr(self, metric)
-        return estimate
-
-    def by_seat(self, metric: str) -> dict[str, Estimate]:
-        """The estimates of a metric by seat, or by pair of seats such as "human by robot"."""
-        estimates: dict[str, Estimate] | msgspec.UnsetType = getattr(self, metric)
-        return estimates or {}
-
-
-if TYPE_CHECKING:
-    Scores = Estimates
-if not TYPE_CHECKING:
-    Scores = registry.define_record(
-        "Scores", Estimates, __name__, single=Estimate, default=NOTHING, by_seat=dict[str, Estimate]
-    )
 
 
 class Counts(Struct, frozen=True, kw_only=True):
@@ -92,13 +69,16 @@ class AppliedCorrections(Struct, frozen=True, kw_only=True):
 class Hashes(Struct, frozen=True, kw_only=True):
     """Hashes of what determines the records, and of the records themselves in order of participant and trial.
 
-    ``code`` covers hthor's own code; hashes of a user's own files are with the robots and the kind of task.
+    ``code`` covers hthor's own code that can change a trial; hashes of a user's own files are with the robots and the
+    kind of task. ``scoring`` covers the code that can only change how trials are judged, and made this result of them
+    (`hthor.code_identity.scoring_sha256`); it is empty in results of versions that did not tell the two apart.
     """
 
     run: str
     human: str
     rules: str
     code: str
+    scoring: str = ""
     trials: str
 
 
@@ -193,10 +173,11 @@ def load_current(folder: Path) -> RunResult | None:
 
 class _Named(Struct, frozen=True):
     run: str = ""
+    scoring: str = ""
 
 
 class _Gained(Struct, frozen=True):
-    """The part of a result that `stored_uplift` reads, in every version of the format."""
+    """The part of a result that is read from every version of the format."""
 
     hashes: _Named = _Named()
     uplift: StoredUplift | None = None
@@ -204,11 +185,20 @@ class _Gained(Struct, frozen=True):
 
 def stored_uplift(folder: Path, *, run: str) -> StoredUplift | None:
     """The uplift in a run's stored result of any version; None if it has none for this run's hash."""
-    try:
-        held = documents.decode((folder / "result.json").read_bytes(), _Gained)
-    except (OSError, documents.Unreadable):
-        return None
+    held = _stored_part(folder)
     return held.uplift if held.hashes.run == run else None
+
+
+def stored_scoring(folder: Path) -> str:
+    """The scoring version that made a run's stored result of any version; empty if that is not known."""
+    return _stored_part(folder).hashes.scoring
+
+
+def _stored_part(folder: Path) -> _Gained:
+    try:
+        return documents.decode((folder / "result.json").read_bytes(), _Gained)
+    except (OSError, documents.Unreadable):
+        return _Gained()
 
 
 def to_stored(one: Uplift | None) -> StoredUplift | None:

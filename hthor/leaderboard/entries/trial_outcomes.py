@@ -11,7 +11,7 @@ from hthor import rules
 from hthor.eval.config import sessions
 from hthor.eval.metrics import trial_metrics
 from hthor.eval.metrics.metric import mean_limit
-from hthor.eval.records.trial_record import TrialRecord
+from hthor.eval.records.scored_trial import ScoredTrial
 from hthor.leaderboard.entries import column_packing
 from hthor.leaderboard.entries.entry import Entry, Labels, Trials
 from hthor.tasks import Suite
@@ -77,7 +77,7 @@ def outcome_bytes(row: bytes) -> bytes:
     return row[:-LEAF]
 
 
-def make_outcomes(records: Sequence[TrialRecord], leaves: Iterable[bytes]) -> Outcomes:
+def make_outcomes(records: Sequence[ScoredTrial], leaves: Iterable[bytes]) -> Outcomes:
     """Make the columns from records and the hashes of their lines."""
     values = {
         metric: np.nan_to_num(trial_metrics.column((one.metrics for one in records), metric))

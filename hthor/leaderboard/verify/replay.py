@@ -18,8 +18,8 @@ from hthor.eval.config.robot_team import RobotTeam
 from hthor.eval.config.run_config import RunConfig
 from hthor.eval.config.sessions import Session
 from hthor.eval.config.task_selection import TaskSelection
-from hthor.eval.records import run_isolation, trial_record
-from hthor.eval.records.trial_record import TrialRecord
+from hthor.eval.records import run_isolation, scored_trial, trial_record
+from hthor.eval.records.scored_trial import ScoredTrial
 from hthor.eval.runner import engines
 from hthor.eval.runner.messages import RunnerFactory, SessionAbandoned, TrialDone
 from hthor.eval.runner.run_job import RunJob, make_sources
@@ -55,7 +55,7 @@ class Request(Struct, frozen=True, kw_only=True):
     date: str = ""
 
 
-def replay_trials(entry: Entry, places: Sequence[int], request: Request) -> dict[int, tuple[TrialRecord, bytes]]:
+def replay_trials(entry: Entry, places: Sequence[int], request: Request) -> dict[int, tuple[ScoredTrial, bytes]]:
     """Replay the trials at these places and those before them in their sessions; return their records and log lines.
 
     Raises:
@@ -78,18 +78,18 @@ def replay_trials(entry: Entry, places: Sequence[int], request: Request) -> dict
 
 def run_sessions(
     entry: Entry, wanted: Sequence[Session], make: RunnerFactory, jobs: int | None
-) -> list[tuple[TrialRecord, bytes]]:
+) -> list[tuple[ScoredTrial, bytes]]:
     """Play all trials of these sessions; return their records and log lines.
 
     Raises:
         BoardError: if a trial could not be played; gives the cause.
     """
-    found: list[tuple[TrialRecord, bytes]] = []
+    found: list[tuple[ScoredTrial, bytes]] = []
     lost: list[str] = []
     with closing(engines.find_engine(engines.LOCAL, jobs=jobs).run_sessions(wanted, make)) as stream:
         for news in stream:
             if isinstance(news, TrialDone):
-                found.append((trial_record.decode(news.line), news.line))
+                found.append((scored_trial.score(trial_record.decode(news.line)), news.line))
             elif isinstance(news, SessionAbandoned):
                 lost.append(f"session {news.session}: {news.cause.rstrip('.')}")
     asked = {(one.number, index) for one in wanted for index in range(len(one.trials))}

@@ -10,7 +10,7 @@ from hthor import jsonio
 from hthor.errors import HthorError
 from hthor.eval.config import task_selection
 from hthor.eval.records import platform
-from hthor.eval.records.trial_record import TrialRecord
+from hthor.eval.records.scored_trial import ScoredTrial
 from hthor.leaderboard import board_check
 from hthor.leaderboard.entries import entry_metrics, files, invariants, trial_outcomes, verification
 from hthor.leaderboard.entries.entry import Entry
@@ -79,7 +79,7 @@ def _replayed(entry: Entry, drawn: Sequence[int], request: Request) -> Replayed:
     return judge_replay(entry, drawn, replay.replay_trials(entry, drawn, request))
 
 
-def judge_replay(entry: Entry, drawn: Sequence[int], again: dict[int, tuple[TrialRecord, bytes]]) -> Replayed:
+def judge_replay(entry: Entry, drawn: Sequence[int], again: dict[int, tuple[ScoredTrial, bytes]]) -> Replayed:
     """The verdict on these records, and the probability that a forged entry would have failed."""
     here = platform.this_platform()
     by = entry_tier(entry)

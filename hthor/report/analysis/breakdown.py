@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from hthor.eval.comparison import compare
 from hthor.eval.comparison.comparison import Comparison, LoadedRun
 from hthor.eval.metrics import registry
-from hthor.eval.records.trial_record import TrialRecord
-from hthor.eval.results import aggregate, pairing
+from hthor.eval.records.scored_trial import ScoredTrial
+from hthor.eval.results import estimates, pairing
 from hthor.eval.statistics.intervals import Estimate
 from hthor.report.analysis.document import Group, IncomparablePair, Split
 from hthor.report.analysis.load_runs import Run
@@ -42,7 +42,7 @@ def split_by_population(runs: Sequence[Run]) -> Split | None:
     return Split(word="kind of person", groups=groups) if len(groups) > 1 else None
 
 
-def _split(word: str, runs: Sequence[Run], part: Callable[[TrialRecord], str], order: Sequence[str] = ()) -> Split:
+def _split(word: str, runs: Sequence[Run], part: Callable[[ScoredTrial], str], order: Sequence[str] = ()) -> Split:
     names = sorted({part(record) for run in runs for record in run.records} - {""})
     names.sort(key=lambda name: order.index(name) if name in order else len(order))
     groups = (
@@ -54,9 +54,9 @@ def _split(word: str, runs: Sequence[Run], part: Callable[[TrialRecord], str], o
     return Split(word=word, groups=tuple(groups))
 
 
-def success_rate(records: Sequence[TrialRecord]) -> Estimate:
+def success_rate(records: Sequence[ScoredTrial]) -> Estimate:
     """Success rate with its interval."""
-    return aggregate.estimate_metric(records, registry.get("sr"))
+    return estimates.estimate_metric(records, registry.get("sr"))
 
 
 def compare_labelled(

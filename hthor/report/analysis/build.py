@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from hthor.eval.results import aggregate
+from hthor.eval.results import estimates
 from hthor.report.analysis import (
     breakdown,
     run_provenance,
@@ -65,5 +65,5 @@ def _arm(run: Run) -> Arm:
         people=len({human.participant for record in run.records for human in record.spec.humans}),
         tasks=len({record.spec.task.id for record in run.records}),
         unfinished=run.planned - len(run.records),
-        scores=aggregate.estimate_metrics(run.records),
+        scores=estimates.estimate_metrics(run.records),
     )

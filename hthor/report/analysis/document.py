@@ -10,7 +10,7 @@ from msgspec import Struct
 
 from hthor.eval.comparison.comparison import Comparison
 from hthor.eval.config.run_config import SuiteRef
-from hthor.eval.results.result_file import Scores
+from hthor.eval.results.scores import Scores
 from hthor.eval.statistics.intervals import Estimate
 from hthor.report.analysis.run_provenance import Provenance
 

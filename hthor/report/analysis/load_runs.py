@@ -10,10 +10,9 @@ from msgspec import Struct
 from hthor.errors import RunError
 from hthor.eval.config.robot_team import NO_ROBOT
 from hthor.eval.config.run_config import RunConfig
-from hthor.eval.metrics import trial_metrics
 from hthor.eval.records.attempts import VoidedTrial
 from hthor.eval.records.run_folder import RunFolder
-from hthor.eval.records.trial_record import TrialRecord
+from hthor.eval.records.scored_trial import ScoredTrial
 from hthor.eval.results import baseline
 from hthor.log_corrections import CorrectAdoption, VoidTrial
 
@@ -34,7 +33,7 @@ class Run(Struct, frozen=True, kw_only=True, eq=False):
     folder: Path
     name: str
     plan: RunConfig
-    records: tuple[TrialRecord, ...]
+    records: tuple[ScoredTrial, ...]
     sha256: str
     label: str
     condition: str
@@ -49,12 +48,12 @@ class Run(Struct, frozen=True, kw_only=True, eq=False):
         return self.plan.trials - self.given_up
 
     @property
-    def by_pair(self) -> dict[Pair, TrialRecord]:
+    def by_pair(self) -> dict[Pair, ScoredTrial]:
         """The trials by the key that pairs them with trials of other runs."""
         return {pairing_key(record): record for record in self.records}
 
 
-def pairing_key(record: TrialRecord) -> Pair:
+def pairing_key(record: ScoredTrial) -> Pair:
     """The key by which a trial is paired with that of the same people at the same task with other robots."""
     spec = record.spec
     return (spec.seed, spec.session, spec.index, spec.task.id)
@@ -91,12 +90,11 @@ def _read(folder: Path) -> Run:
     lines, records = run.lines()
     if not records:
         raise RunError(f"{folder / 'trials.jsonl'} has no trials yet. Finish the run with 'hthor eval' first.")
-    fresh = (msgspec.structs.replace(one, metrics=trial_metrics.measure(one.spec, one.log)) for one in records)
     return Run(
         folder=folder,
         name=folder.resolve().name,
         plan=plan,
-        records=tuple(fresh),
+        records=tuple(records),
         sha256=hashlib.sha256(b"".join(lines)).hexdigest(),
         label=plan.name if plan.seats else NONE,
         condition=_condition(plan),

@@ -3,7 +3,7 @@
 import msgspec
 from msgspec import Struct
 
-from hthor import documents
+from hthor import code_identity, documents
 from hthor.errors import RunError
 from hthor.eval.config import cli_command
 from hthor.eval.config.human_populations import HumanModelRef
@@ -46,6 +46,7 @@ class Provenance(Struct, frozen=True, kw_only=True):
     plays the run again; ``alone`` plays the same people and tasks without a robot. ``mode`` is the decision clock.
     ``design`` is the between-subjects study that the run is a group of; absent if it is none.
     ``voided`` counts attempts at trials that do not count, and ``corrections`` lists the corrections in effect.
+    ``code_sha256`` is of the code that played the trials, ``scoring_sha256`` of the code that judged them here.
     """
 
     name: str
@@ -74,6 +75,7 @@ class Provenance(Struct, frozen=True, kw_only=True):
     run_sha256: str
     rules_sha256: str
     code_sha256: str
+    scoring_sha256: str
     trials_sha256: str
 
 
@@ -111,6 +113,7 @@ def run_provenance(run: Run) -> Provenance:
         run_sha256=plan.sha256,
         rules_sha256=plan.rules_sha256,
         code_sha256=plan.code_sha256,
+        scoring_sha256=code_identity.scoring_sha256(),
         trials_sha256=run.sha256,
     )
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from hthor.eval.metrics import trial_metrics
-from hthor.eval.results import aggregate
+from hthor.eval.results import estimates
 from hthor.report.analysis.document import TimeSpent, TrustCurve
 from hthor.report.analysis.load_runs import Run
 
@@ -50,7 +50,7 @@ def trust_curve(run: Run) -> TrustCurve | None:
         arm=run.label,
         trial=tuple(index + 1 for index in indices),
         mean=tuple(round(_mean(values), _DIGITS) for values in by_trial),
-        ci95=tuple(one.ci95 for one in aggregate.trust_by_trial(run.records) if one.ci95 is not None),
+        ci95=tuple(one.ci95 for one in estimates.trust_by_trial(run.records) if one.ci95 is not None),
         sessions=tuple(len(values) for values in by_trial),
         slope=round(_mean(slopes), _DIGITS) if len(slopes) > 1 else None,
         slope_se=_error(slopes),

@@ -6,7 +6,7 @@ from msgspec import Struct
 
 from hthor import documents, rules
 from hthor.eval.config import cli_command
-from hthor.eval.records.trial_record import TrialRecord
+from hthor.eval.records.scored_trial import ScoredTrial
 from hthor.eval.results import group_difference
 from hthor.report.analysis.document import ExampleTrial, FaultGroup
 from hthor.report.analysis.load_runs import Run, pairing_key
@@ -28,7 +28,7 @@ def best_and_worst(run: Run, alone: Run | None, each: int = EACH) -> list[Exampl
     others = alone.by_pair if alone is not None else {}
     ranked = [record for record in run.records if alone is None or pairing_key(record) in others]
 
-    def worth(record: TrialRecord) -> tuple[float, float, str]:
+    def worth(record: ScoredTrial) -> tuple[float, float, str]:
         other, own = others.get(pairing_key(record)), record.metrics
         if other is None:
             return (own.number("twsr"), -own.number("time_s"), record.key)
@@ -43,11 +43,11 @@ def best_and_worst(run: Run, alone: Run | None, each: int = EACH) -> list[Exampl
     ]
 
 
-def _saved_s(record: TrialRecord, alone: TrialRecord) -> float:
+def _saved_s(record: ScoredTrial, alone: ScoredTrial) -> float:
     return round(alone.metrics.number("time_s") - record.metrics.number("time_s"), 6)
 
 
-def _shown(run: Run, rank: str, record: TrialRecord, other: TrialRecord | None) -> ExampleTrial:
+def _shown(run: Run, rank: str, record: ScoredTrial, other: ScoredTrial | None) -> ExampleTrial:
     task = record.spec.task
     return ExampleTrial(
         arm=run.label,
@@ -68,7 +68,7 @@ def _shown(run: Run, rank: str, record: TrialRecord, other: TrialRecord | None) 
     )
 
 
-def replay_command(run: Run, record: TrialRecord) -> str:
+def replay_command(run: Run, record: ScoredTrial) -> str:
     """The command that draws a trial, to be typed in the folder in which the report was written."""
     return shlex.join(["hthor", "replay", str(cli_command.relative_path(run.folder)), record.key])
 
@@ -90,7 +90,7 @@ class _Remains(Struct):
 def fault_summary(run: Run) -> list[FaultGroup]:
     """One entry for each seat and kind of fault, described by its first trial; the most frequent first."""
     agents = {robot.seat: robot.agent.name for robot in run.plan.seats}
-    cases: dict[tuple[str, str], list[TrialRecord]] = {}
+    cases: dict[tuple[str, str], list[ScoredTrial]] = {}
     for record in run.records:
         for seat, kind in dict.fromkeys((fault.seat, fault.kind) for fault in record.faults):
             cases.setdefault((seat, kind), []).append(record)
@@ -98,7 +98,7 @@ def fault_summary(run: Run) -> list[FaultGroup]:
     return sorted(found, key=lambda one: -one.trials)
 
 
-def _failure(run: Run, seat: str, agent: str, kind: str, held: list[TrialRecord]) -> FaultGroup:
+def _failure(run: Run, seat: str, agent: str, kind: str, held: list[ScoredTrial]) -> FaultGroup:
     first = held[0]
     fault = next(one for one in first.faults if (one.seat, one.kind) == (seat, kind))
     remains = _remains(run, first)
@@ -131,7 +131,7 @@ def _here(again: str, run: Run) -> str:
     return shlex.join([*words, str(cli_command.relative_path(run.folder)), key])
 
 
-def _remains(run: Run, record: TrialRecord) -> _Remains:
+def _remains(run: Run, record: ScoredTrial) -> _Remains:
     """What the run kept of a trial's faults; empty if missing or unreadable, because no number depends on it."""
     path = run.folder / _FOLDER / f"{record.key}.json"
     try:

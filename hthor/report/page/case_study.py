@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from hthor import jsonio
 from hthor.errors import HthorError, RunError, UnknownName
-from hthor.eval.records.trial_record import TrialRecord
+from hthor.eval.records.scored_trial import ScoredTrial
 from hthor.eval.results import group_difference
 from hthor.guest import AgentInputs
 from hthor.report.analysis import load_runs
@@ -99,7 +99,7 @@ def _same_people(runs: Sequence[Run]) -> None:
             )
 
 
-def _records(runs: Sequence[Run], task: str, person: int | None) -> list[TrialRecord]:
+def _records(runs: Sequence[Run], task: str, person: int | None) -> list[ScoredTrial]:
     """The same people's trials of the task, one per run."""
     tables = [run.by_pair for run in runs]
     shared = sorted(pair for pair in tables[0] if all(pair in table for table in tables[1:]))

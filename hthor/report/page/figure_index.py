@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from matplotlib.figure import Figure
 from msgspec import Struct
 
-from hthor.eval.records.trial_record import TrialRecord
+from hthor.eval.records.scored_trial import ScoredTrial
 from hthor.report.analysis.document import Findings
 from hthor.report.drawing import trial_trace
 from hthor.report.page.figures import breakdown, scores, session, trial_map
@@ -26,8 +26,8 @@ class NamedFigure(Struct, frozen=True, kw_only=True, eq=False):
 class MapScene(Struct, frozen=True, kw_only=True, eq=False):
     """The content of a map: a trial, the same people's trial without a robot if there is one, and the house."""
 
-    record: TrialRecord
-    alone: TrialRecord | None
+    record: ScoredTrial
+    alone: ScoredTrial | None
     house: HouseSpec
 
 

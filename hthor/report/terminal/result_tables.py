@@ -10,7 +10,8 @@ from hthor.eval.metrics import registry
 from hthor.eval.metrics.metric import NUMBER, SHARE, Unit
 from hthor.eval.results import result_file
 from hthor.eval.results.paired_difference import Difference
-from hthor.eval.results.result_file import RunResult, Scores
+from hthor.eval.results.result_file import RunResult
+from hthor.eval.results.scores import Scores
 from hthor.eval.statistics.intervals import Estimate
 from hthor.report.terminal import corrections
 from hthor.types.specs import LOCKSTEP
@@ -64,8 +65,26 @@ def result_notes(results: Iterable[RunResult]) -> Iterator[str]:
             yield f"note: {voided_words(result.label, result.counts.voided)}."
         if result.corrections:
             yield f"note: {corrections.corrections_note(result.label, result.corrections.count)}."
+        yield from _unmeasured_notes(result)
         if result.uplift is not None and result.uplift.note:
             yield f"note: uplift of {result.label}: {result.uplift.note}."
+
+
+def scoring_note(result: RunResult) -> str:
+    """Which code played the trials of a result, and which scoring version judged them."""
+    return f"trials of code {result.hashes.code[:10]}, judged by scoring version {result.hashes.scoring[:10]}"
+
+
+def _unmeasured_notes(result: RunResult) -> Iterator[str]:
+    """The metrics that every trial of the run should have, and that some have not."""
+    alone, trials = not any(robot.seat for robot in result.robots), result.counts.trials
+    for metric in registry.MAIN:
+        found = result.metrics[metric.name].n
+        if found < trials and not metric.optional and not (metric.needs_robot and alone):
+            yield (
+                f"note: {result.label}: {metric.title} is measured in {found} of {trials} trials; the others do not "
+                "have what it needs."
+            )
 
 
 def voided_words(name: str, count: int) -> str:

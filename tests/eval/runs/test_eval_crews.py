@@ -14,7 +14,7 @@ from hthor import tasks
 from hthor.errors import HthorError, RunError, UnknownName
 from hthor.eval.config import cli_command, robot_team, sessions
 from hthor.eval.config.run_config import team_name
-from hthor.eval.records import find, trial_record
+from hthor.eval.records import find, scored_trial, trial_record
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import aggregate
@@ -148,8 +148,9 @@ def test_two_guests_and_a_built_in_agent_share_a_trial(guests: dict[str, str]):
     assert third.startswith("robot3 of ")
     assert first.split()[-1] != third.split()[-1], "each in a process of its own"
     assert not one.faults
-    assert one.metrics.sent >= 2
-    assert {pair for pair in one.metrics.hindered_by if pair.startswith("human")} == {
+    metrics = scored_trial.score(one).metrics
+    assert metrics.sent >= 2
+    assert {pair for pair in metrics.hindered_by if pair.startswith("human")} == {
         "human by robot",
         "human by robot2",
         "human by robot3",

@@ -15,8 +15,9 @@ from hthor.episode import EpisodeLog
 from hthor.eval.metrics import registry, trial_metrics
 from hthor.eval.metrics.definitions import contribution, interference
 from hthor.eval.metrics.metric import Trial
+from hthor.eval.records.scored_trial import score
 from hthor.eval.records.trial_record import make_record
-from hthor.eval.results import aggregate
+from hthor.eval.results import estimates
 from hthor.types import HUMAN, Goal, HouseSpec, HumanSeat, Job, Placement, Pose, Room, Snapshot, Thing, ThingState
 from hthor.types.events import JournalEntry, LogEntry, Sent
 
@@ -268,7 +269,7 @@ def test_without_a_robot_only_what_concerns_the_person_has_a_value():
 
 def test_scores_have_every_seat_and_every_pair():
     trials = fakes.run_of(10, name="tall+small")[1][0].trials
-    found = aggregate.estimate_metrics([make_record(trial, fakes.episode(trial)) for trial in trials])
+    found = estimates.estimate_metrics([score(make_record(trial, fakes.episode(trial))) for trial in trials])
     assert set(found.work) == {HUMAN, "robot", "robot2"}
     assert len(found.hindered_by) == 6
     assert found.work[HUMAN].n == sum(fakes.episode(trial).met for trial in trials)
@@ -468,8 +469,8 @@ def test_one_person_has_no_values_by_person():
     line = msgspec.json.decode(msgspec.json.encode(trial_metrics.measure(TRIAL, log(idle={HUMAN: 9}))))
     assert not {"adoption_by", "idle_by", "trust_by"} & set(line)
     assert (line["adoption"], line["trust"], line["idle_s"]) == (0, 4, 0.9)
-    trials = [make_record(trial, fakes.episode(trial)) for trial in fakes.run_of(10)[1][0].trials]
-    assert "trust_by" not in msgspec.to_builtins(aggregate.estimate_metrics(trials))
+    trials = [score(make_record(trial, fakes.episode(trial))) for trial in fakes.run_of(10)[1][0].trials]
+    assert "trust_by" not in msgspec.to_builtins(estimates.estimate_metrics(trials))
 
 
 # ------------------------------------------------------------------------------------------------------------ displays

@@ -129,10 +129,10 @@ def test_every_field_of_an_event_has_its_type(kind: str, data: dict[str, object]
 def test_events_of_a_later_version_are_left_out_and_counted():
     whole, skipped = trial_record.decode(_LINE), Counter()
     waved = {"tick": 1, "seat": "robot", "kind": "waved", "hands": 2}
-    line = _with_events(waved, {"kind": "bowed", "tick": 2, "seat": "human"}, waved, schema="hthor.trial/1.7")
+    line = _with_events(waved, {"kind": "bowed", "tick": 2, "seat": "human"}, waved, schema="hthor.trial/2.7")
     back = trial_record.decode(line, skipped)
     assert skipped == {"waved": 2, "bowed": 1}
-    assert back == msgspec.structs.replace(whole, schema="hthor.trial/1.7")
+    assert back == msgspec.structs.replace(whole, schema="hthor.trial/2.7")
 
 
 def test_a_field_that_a_later_version_has_added_is_left_out():
@@ -148,7 +148,7 @@ def test_a_field_that_a_later_version_has_added_is_left_out():
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        (lambda line: line.update(schema="hthor.trial/2.0"), "schema is 'hthor.trial/2.0', this version reads"),
+        (lambda line: line.update(schema="hthor.trial/3.0"), "schema is 'hthor.trial/3.0', this version reads"),
         (lambda line: line.pop("schema"), "was written by an older version of hthor; 'hthor migrate"),
     ],
 )

@@ -15,9 +15,9 @@ from hthor.episode import EpisodeLog
 from hthor.errors import RunError
 from hthor.eval.metrics import trial_metrics
 from hthor.eval.metrics.trial_metrics import TrialMetrics
-from hthor.eval.records import trial_record
+from hthor.eval.records import scored_trial, trial_record
 from hthor.eval.records.run_folder import RunFolder
-from hthor.eval.results import aggregate
+from hthor.eval.results import aggregate, estimates
 from hthor.eval.runner import progress, run
 from hthor.types.events import Accepted, Declined, Event, Sent
 
@@ -49,9 +49,7 @@ GOLDEN = (
 def test_a_small_log_worked_out_by_hand():
     trials = [trial for trial in TRIALS if trial.task.t_star == 8.0][:1] * 3
     made = [
-        msgspec.structs.replace(
-            trial_record.make_record(trial, _log(*case)), spec=msgspec.structs.replace(trial, session=number)
-        )
+        scored_trial.score(trial_record.make_record(msgspec.structs.replace(trial, session=number), _log(*case)))
         for number, (trial, case) in enumerate(zip(trials, GOLDEN, strict=True))
     ]
     main = ("sr", "twsr", "adoption", "time_s", "trust")
@@ -60,7 +58,7 @@ def test_a_small_log_worked_out_by_hand():
         (0, 0.0, 0, 90.0, 2),
         (1, 1.0, 0, 4.0, 4),
     ]
-    found = aggregate.estimate_metrics(made)
+    found = estimates.estimate_metrics(made)
     assert [getattr(found, name).mean for name in main] == [0.666667, 0.5, 0.333333, 36.666667, 4.0]
     assert found.sr.ci95[0] < 0.2
     assert found.sr.ci95[1] > 0.9
@@ -95,7 +93,7 @@ def test_only_a_robots_confirmed_message_is_adopted():
 
 def test_without_a_robot_there_is_neither_adoption_nor_trust():
     plan, dealt = fakes.run_of(10, absent=True)
-    made = [trial_record.make_record(trial, fakes.episode(trial)) for trial in dealt[0].trials]
+    made = fakes.records(dealt[0])
     found = aggregate.make_result(plan, [trial_record.encode(one) for one in made], made)
     assert (found.metrics.adoption.mean, found.metrics.adoption.ci95, found.metrics.adoption.n) == (None, None, 0)
     assert found.metrics.trust.n == 0
@@ -132,9 +130,20 @@ def test_scoring_trusts_events_not_stored_metrics(tmp_path):
     honest = _played(tmp_path)
     path = tmp_path / "trials.jsonl"
     perfect = TrialMetrics(sr=1, twsr=1.0, adoption=1, time_s=1.0, trust=7)
-    lines = [trial_record.decode(line) for line in path.read_bytes().splitlines(keepends=True)]
-    path.write_bytes(b"".join(trial_record.encode(msgspec.structs.replace(one, metrics=perfect)) for one in lines))
+    records = RunFolder(tmp_path).records()
+    lines = [msgspec.json.decode(line) for line in path.read_bytes().splitlines()]
+    path.write_bytes(b"".join(_with_metrics(line, perfect) for line in lines))
+    assert RunFolder(tmp_path).config.code_sha256 == honest.hashes.code
+    assert [one.metrics for one in RunFolder(tmp_path).records()] == [one.metrics for one in records]
     assert aggregate.rescore(tmp_path)[1].metrics == honest.metrics
+    assert _played(tmp_path).metrics == honest.metrics
+    assert b'"metrics"' not in trial_record.encode(records[0])
+
+
+def _with_metrics(line: dict[str, object], metrics: TrialMetrics) -> bytes:
+    """The line as log 1.1 had it: with values of metrics."""
+    del line["check"]
+    return trial_record.sealed(msgspec.json.encode({**line, "schema": "hthor.trial/1.1", "metrics": metrics}))
 
 
 def test_a_line_of_another_run_is_refused(tmp_path):

@@ -15,7 +15,7 @@ from law_cases import cases
 from benchmarks import bounded
 from hthor.eval.metrics import registry
 from hthor.eval.metrics.metric import AMOUNTS
-from hthor.eval.results import aggregate, paired_difference
+from hthor.eval.results import estimates, paired_difference
 from hthor.eval.statistics import intervals, variance_components
 
 METRICS = ("sr", "twsr", "adoption", "progress", "precision", "trust", "time_s", "idle_s", "first_useful_s", "sent")
@@ -139,7 +139,7 @@ def test_a_runs_times_are_held_within_their_limits():
         )
         for k, one in enumerate(kept)
     ]
-    low, high = aggregate.estimate_metrics(slow).time_s.ci95
+    low, high = estimates.estimate_metrics(slow).time_s.ci95
     assert low < 82.0 < high <= 90.0
 
 

@@ -11,7 +11,7 @@ from msgspec import UNSET
 
 from hthor import rules
 from hthor.comms import claims
-from hthor.episode import EpisodeLog
+from hthor.episode.recording.episode_log import EpisodeLog
 from hthor.eval.metrics.metric import HIGHER, LOWER, SECONDS, SHARE, Metric, Trial
 from hthor.types import is_person
 from hthor.types.events import Accepted, AdoptionJudged, Covered, Declined, Offer, Sent, Shown

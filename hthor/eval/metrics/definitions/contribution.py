@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
-from hthor.episode import EpisodeLog
+from hthor.episode.recording.episode_log import EpisodeLog
 from hthor.eval.metrics.metric import SHARE, Metric, Trial
 from hthor.types import WALKERS, TrialSpec
 from hthor.types.events import Closed, Dropped, Event, Lifted, Lowered, Opened, Picked, Placed, Progress, Success

@@ -6,7 +6,7 @@ import statistics
 from collections.abc import Callable, Iterable, Iterator
 
 from hthor import rules
-from hthor.episode import EpisodeLog
+from hthor.episode.recording.episode_log import EpisodeLog
 from hthor.eval.metrics.metric import LOWER, SECONDS, Metric, Trial
 from hthor.types import is_person
 from hthor.types.events import InWay

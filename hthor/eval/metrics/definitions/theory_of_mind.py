@@ -5,7 +5,7 @@ import math
 import statistics
 from collections.abc import Iterator, Mapping
 
-from hthor.episode import EpisodeLog
+from hthor.episode.recording.episode_log import EpisodeLog
 from hthor.eval.metrics.metric import HIGHER, SHARE, Metric, Trial
 from hthor.types.events import Believed, Predicted
 

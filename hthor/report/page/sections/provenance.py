@@ -128,7 +128,8 @@ _FIELDS: dict[str, Callable[[Provenance], Piece]] = {
     "humans": lambda one: Code(one.humans.sha256[:12]),
     "tasks": lambda one: Code(one.suite.sha256[:12]),
     "rules": lambda one: Code(one.rules_sha256[:12]),
-    "code": lambda one: Code(one.code_sha256[:12]),
+    "code of the trials": lambda one: Code(one.code_sha256[:12]),
+    "scoring": lambda one: Code(one.scoring_sha256[:12]),
     "furniture": lambda one: f"{one.assets.name} {one.assets.sha256[:12]}",
     "log": lambda one: Code(one.trials_sha256[:12]),
 }
