@@ -111,6 +111,7 @@ def make_entry(folder: Path, submission: Submission | None = None) -> Entry:
             faults_by_kind=result.counts.faults_by_kind,
             replays=result.counts.replays,
         ),
+        scoring_sha256=code_identity.scoring_sha256(),
         metrics=Metrics(**entry_metrics.entry_scores(columns, participants, alone=not config.seats)),
         splits=entry_metrics.split_scores(columns, participants),
         uplift=gain,
@@ -179,6 +180,8 @@ def _same_files(folder: Path, agents: Sequence[Manifest], submission: Submission
 def _there(entry: Entry, path: Path) -> bool:
     """Whether the board already has this entry, no matter at which commit it was added.
 
+    An entry of the same log whose outcomes were measured by other metrics than the present ones is brought up to date.
+
     Raises:
         BoardError: if it has a different entry of the same run, which may be the true one and is not overwritten.
     """
@@ -187,6 +190,9 @@ def _there(entry: Entry, path: Path) -> bool:
     there = files.read_entry(path)
     if there.digest == msgspec.structs.replace(entry, harness=there.harness).digest:  # whichever commit adds it
         return True
+    same_log = there.hashes.trials == entry.hashes.trials and there.trials.leaves == entry.trials.leaves
+    if same_log and there.trials.metrics_sha256 != entry.trials.metrics_sha256:
+        return False
     other = itertools.islice(invariants.differences("", there, entry), _SHOWN)
     shown = "; ".join(f"{field.lstrip('.')} {problem}" for field, problem in other)
     raise BoardError(

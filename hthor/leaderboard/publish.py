@@ -1,10 +1,11 @@
-"""Builds the list, the schema and the page from the entries, and recomputes entries after changes in statistics."""
+"""Builds the list, the schema and the page from the entries, and recomputes entries after changes of scoring."""
 
 from pathlib import Path
 
 import msgspec
+from msgspec import UNSET
 
-from hthor import jsonio
+from hthor import code_identity, jsonio
 from hthor.errors import HthorError
 from hthor.leaderboard import board_check, schema
 from hthor.leaderboard.entries import entry_metrics, files, trial_outcomes, verification
@@ -56,7 +57,10 @@ def differences(board: Path) -> list[Problem]:
 
 
 def rescore(board: Path) -> list[Path]:
-    """Rewrite every entry whose numbers change, and return the paths; the outcomes of trials do not change.
+    """Rewrite every entry whose numbers or scoring version change, and return the paths.
+
+    The outcomes of trials do not change. An entry whose outcomes were measured by other metrics than the present ones
+    gets no scoring version; see `measured_otherwise`.
 
     Raises:
         BoardError: if an entry cannot be read.
@@ -73,12 +77,20 @@ def rescore(board: Path) -> list[Path]:
     return changed
 
 
+def measured_otherwise(board: Path) -> list[Path]:
+    """Entries whose outcomes were not measured by the present metrics; their runs' logs are needed to do that."""
+    here = trial_outcomes.metrics_sha256()
+    return [path for path in files.entry_paths(board) if files.read_entry(path).trials.metrics_sha256 != here]
+
+
 def _rescored(entry: Entry, control: Entry | None) -> Entry:
     columns = trial_outcomes.unpack(entry.trials)
     participants = entry_metrics.trial_participants(entry.trials.count, entry.run.participants)
+    current = entry.trials.metrics_sha256 == trial_outcomes.metrics_sha256()
     scores: dict[str, object] = {**entry_metrics.entry_scores(columns, participants, alone=entry.alone)}
     return msgspec.structs.replace(
         entry,
+        scoring_sha256=code_identity.scoring_sha256() if current else UNSET,
         metrics=msgspec.structs.replace(entry.metrics, **scores),
         splits=entry_metrics.split_scores(columns, participants),
         uplift=entry_metrics.entry_uplift(entry, columns, control, trial_outcomes.unpack(control.trials))

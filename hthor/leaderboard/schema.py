@@ -24,7 +24,7 @@ _NEVER = {RunConfig.__name__: "shard", HumanModelRef.__name__: "people"}
 """The field of each record that entries never have: an entry is a whole run, with one person in a trial."""
 _MAYBE = {
     record.__name__: {field.name for field in msgspec.structs.fields(record) if field.default is msgspec.UNSET}
-    for record in (RunConfig, RobotSeat, Trials)
+    for record in (RunConfig, RobotSeat, Trials, Entry)
 }
 """Fields that may be left out."""
 _SHOWN = 60

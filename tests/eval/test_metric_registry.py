@@ -44,6 +44,7 @@ SCRIPT = """
 import json, sys
 from pathlib import Path
 from typer.testing import CliRunner
+from hthor import code_identity
 from hthor.cli import app
 import metrics_reference
 from hthor.eval.records import trial_record
@@ -62,6 +63,8 @@ print(json.dumps({
     "json": json.loads(typed("compare", alone, helper, "--json")),
     "page": page.render(found, {}),
     "docs": metrics_reference.page(docs.read_text()),
+    "code": code_identity.code_sha256(["proxy"], ["mobile_manipulation"]),
+    "scoring": code_identity.scoring_sha256(),
 }))
 """
 
@@ -103,6 +106,9 @@ def test_a_metric_is_added_by_one_file(tmp_path: Path) -> None:
         "| `gestures_per_min` | human gestures | Gestures a minute that the human made while it worked. |"
         in seen["docs"]
     )
+    assert seen["code"] == code_identity.code_sha256(["proxy"], ["mobile_manipulation"]), "it changes no trial"
+    assert seen["scoring"] != code_identity.scoring_sha256()
+    assert json.loads((helper / "result.json").read_bytes())["hashes"]["scoring"] == seen["scoring"]
 
 
 def test_the_table_in_the_docs_is_made_from_the_records() -> None:

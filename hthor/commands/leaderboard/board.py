@@ -123,7 +123,10 @@ def build(
 
 @app.command("rescore")
 def rescore(board: Board = BOARD, json: Json = False) -> None:
-    """Recompute the numbers of entries from their trials, after a change of hthor's statistics; nothing is played."""
+    """Recompute the numbers of entries from their trials, after a change of scoring; nothing is played.
+
+    An entry whose trials were measured by other metrics needs its run: 'hthor leaderboard add RUN' measures it again.
+    """
     from hthor.leaderboard import publish
 
     changed = publish.rescore(board)
@@ -131,6 +134,11 @@ def rescore(board: Board = BOARD, json: Json = False) -> None:
     _put_entries(changed, json)
     if not json:
         sys.stderr.write(f"{len(changed)} of {len(list(board.glob('entries/*.json')))} entries have changed\n")
+    for path in publish.measured_otherwise(board):
+        output.say(
+            f"{path}: its trials were not measured by the present metrics, or it does not say by which. With the run's "
+            f"folder, 'hthor leaderboard add RUN --board {board}' measures them again."
+        )
 
 
 @app.command("open")

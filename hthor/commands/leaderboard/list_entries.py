@@ -23,7 +23,7 @@ def list_entries(
     json: Json = False,
 ) -> None:
     """Show the board as tables, one for each group of comparable entries."""
-    from hthor import documents
+    from hthor import code_identity, documents
     from hthor.errors import HthorError
     from hthor.leaderboard.entries import files
     from hthor.leaderboard.ranking.board import Board
@@ -42,6 +42,12 @@ def list_entries(
         for part in found.sections:
             output.put_line(f"{part.suite.name}, {part.trials} trials, {part.humans} people", shape)
             output.put_table(headings, map(_cells, part.rows), shape)
+            if part.scoring != (here := code_identity.scoring_sha256()):
+                by = f"version {part.scoring[:10]}" if part.scoring else "a version that was not noted"
+                output.say(
+                    f"scored by {by}, not by the present one, {here[:10]}; 'hthor leaderboard rescore --board {board}' "
+                    "brings entries up to date"
+                )
 
 
 def _cells(row: Row) -> tuple[object, ...]:

@@ -1,5 +1,6 @@
 """All metrics, found by the files of `hthor.eval.metrics.definitions`, in the order of tables."""
 
+from collections.abc import Iterable
 from typing import Any
 
 import msgspec
@@ -41,6 +42,11 @@ def define_record(
 
     fields: list[Any] = [field(metric) for metric in METRICS]
     return msgspec.defstruct(name, fields, bases=(base,), module=module, frozen=True, kw_only=True)
+
+
+def modules(names: Iterable[str]) -> list[str]:
+    """The modules that define these metrics, for a hash of their code."""
+    return sorted({get(name).formula.__module__ for name in names})
 
 
 def get(name: str) -> Metric:

@@ -13,7 +13,7 @@ from hthor.guest import File, Isolation, Manifest
 from hthor.types.specs import LOCKSTEP, Clock
 
 SCHEMA: Final = "hthor.entry/7"
-_FOLLOW = ("metrics", "splits", "uplift")
+_FOLLOW = ("metrics", "splits", "uplift", "scoring_sha256")
 
 Sha256 = Annotated[str, Meta(pattern="^[0-9a-f]{64}$")]
 Word = Annotated[str, Meta(min_length=1, max_length=120, pattern=r"^[^\x00-\x1f\x7f]*$(?!\n)")]
@@ -76,7 +76,8 @@ class Trials(Struct, frozen=True, kw_only=True):
     in millionths (3 bytes), ``time`` in tenths of a second (2 bytes), ``trust`` (1 byte, 0 for none). Numbers of
     robots' messages: ``sent`` (2 bytes), ``accepted`` by the person, and ``useful``: accepted, true and new to the
     person (1 byte each, 255 for 255 or more). ``leaves`` are the first 8 bytes of the SHA-256 of each line of the log.
-    ``time_limit_s`` is the mean time limit of the tasks [s].
+    ``time_limit_s`` is the mean time limit of the tasks [s]. ``metrics_sha256`` is the hash of the code of the metrics
+    in the columns; older entries do not have it.
     """
 
     count: Annotated[int, Meta(ge=1)]
@@ -92,6 +93,7 @@ class Trials(Struct, frozen=True, kw_only=True):
     leaves: Base64
     labels: dict[str, Labels]
     time_limit_s: Annotated[float, Meta(gt=0)] | UnsetType = UNSET
+    metrics_sha256: Sha256 | UnsetType = UNSET
 
 
 class Group(Struct, frozen=True, kw_only=True):
@@ -142,6 +144,8 @@ class Entry(Struct, frozen=True, kw_only=True):
         overrides: settings other than the benchmark's; empty in a valid entry.
         platforms: where the run was played; empty if it did not record this. isolation: how the agent was isolated.
         Both are claims unless an official run made the entry.
+        scoring_sha256: the scoring version that made all numbers of the entry from its log; absent if no single version
+        did, or it was not noted. What can change a trial is in ``run.code_sha256``.
         splits: scores by property and value, such as "difficulty" and "hard".
         uplift: over the same people at the same tasks without a robot; None if the run has no robot.
     """
@@ -161,6 +165,7 @@ class Entry(Struct, frozen=True, kw_only=True):
     platforms: tuple[Platform, ...] = ()
     isolation: Isolation | None = None
     counts: Counts
+    scoring_sha256: Sha256 | UnsetType = UNSET
     metrics: Metrics
     splits: dict[str, dict[str, Group]]
     uplift: Uplift | None = None

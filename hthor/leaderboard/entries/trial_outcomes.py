@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from msgspec import UNSET, Struct
 
-from hthor import rules
+from hthor import code_identity, rules
 from hthor.eval.config import sessions
-from hthor.eval.metrics import trial_metrics
+from hthor.eval.metrics import registry, trial_metrics
 from hthor.eval.metrics.metric import mean_limit
 from hthor.eval.records.scored_trial import ScoredTrial
 from hthor.leaderboard.entries import column_packing
@@ -28,6 +28,8 @@ _SIZES = {"twsr": 3, "time": 2, "trust": 1, "sent": 2, "accepted": 1, "useful": 
 """Bytes per number in each column."""
 _LEAF, _NODE = b"\x00", b"\x01"  # so that an inner node cannot be taken for a row
 _MESSAGES = ("sent", "accepted", "useful")
+_METRICS = ("sr", "adoption", "twsr", "time_s", "trust", *_MESSAGES)
+"""The metrics in the columns."""
 
 
 class Unreadable(ValueError):
@@ -80,8 +82,7 @@ def outcome_bytes(row: bytes) -> bytes:
 def make_outcomes(records: Sequence[ScoredTrial], leaves: Iterable[bytes]) -> Outcomes:
     """Make the columns from records and the hashes of their lines."""
     values = {
-        metric: np.nan_to_num(trial_metrics.column((one.metrics for one in records), metric))
-        for metric in ("sr", "adoption", "twsr", "time_s", "trust", *_MESSAGES)
+        metric: np.nan_to_num(trial_metrics.column((one.metrics for one in records), metric)) for metric in _METRICS
     }
     return Outcomes(
         met=values["sr"].astype(bool),
@@ -95,6 +96,11 @@ def make_outcomes(records: Sequence[ScoredTrial], leaves: Iterable[bytes]) -> Ou
         labels=task_labels([one.spec.task for one in records]),
         time_limit_s=mean_limit([one.spec.task.time_limit for one in records]) if records else None,
     )
+
+
+def metrics_sha256() -> str:
+    """Hash of the code of the metrics that the columns of `make_outcomes` have; other metrics do not count."""
+    return code_identity.modules_sha256([trial_metrics.__name__, *registry.modules(_METRICS)])
 
 
 def task_labels(tasks: Sequence[TaskSpec]) -> dict[str, tuple[tuple[str, ...], np.ndarray]]:
@@ -114,8 +120,9 @@ def leaf_hash(line: bytes) -> bytes:
 
 
 def pack(held: Outcomes) -> Trials:
-    """Pack the columns for an entry."""
+    """Pack columns that were just measured for an entry."""
     return Trials(
+        metrics_sha256=metrics_sha256(),
         count=len(held.met),
         met=column_packing.pack_bits(held.met),
         adopted=column_packing.pack_bits(held.adopted),

@@ -43,6 +43,10 @@ _DEVELOPMENT = (
 )
 _NONE = "There is no ranked entry yet. 'How to get a ranked entry' below says what it takes."
 _UNFITTED = "The people are not calibrated for this suite: compare agents, but do not take a score as a prediction."
+_SCORED = (
+    "Other entries at the same trials were scored by another version, and stand in a section of their own: they are "
+    "not compared until 'hthor leaderboard rescore' brings them together."
+)
 _HOW = (
     "A rank is one more than the number of agents that are significantly better in success (paired trial by trial, "
     "over tasks and people, adjusted by Holm for all pairs); below it are the ranks that are not excluded at 95 %, "
@@ -89,7 +93,10 @@ _HEAD: tuple[tuple[str, int], ...] = (
 def render(found: Board) -> str:
     """The page; the same list gives the same bytes."""
     ranked = any(row.ranks for one in found.sections for row in one.rows)
-    body = [_section(number, one) for number, one in enumerate(found.sections, 1)]
+    body = [
+        _section(number, one, several=sum(_trials(one) == _trials(other) for other in found.sections) > 1)
+        for number, one in enumerate(found.sections, 1)
+    ]
     title = "hthor leaderboard"
     made = (
         "Made by hthor leaderboard build from the entries and the keeper's verifications alone; every number is in "
@@ -110,7 +117,12 @@ def render(found: Board) -> str:
     return m.page(title, main, style.css(_RULES), code=cells.SORT, sealed=True)
 
 
-def _section(number: int, one: Section) -> Markup:
+def _trials(one: Section) -> tuple[object, ...]:
+    """What decides the trials of a section, apart from how they are scored."""
+    return one.suite, one.humans, one.humans_sha256, one.seed, one.mode, one.code, one.rules
+
+
+def _section(number: int, one: Section, *, several: bool) -> Markup:
     suite = one.suite
     ranked = one.standing == "ranked"
     title = f"{suite.name}: {one.trials} tasks, {one.people} {one.humans} people"
@@ -118,7 +130,8 @@ def _section(number: int, one: Section) -> Markup:
         "suite": f"version {suite.version}, {suite.sha256[:10]}",
         "people": f"{one.humans}, {one.humans_sha256[:10]}, seed {one.seed}",
         "clock": "the world waits for the agent" if one.mode == "lockstep" else "thinking takes time",
-        "code": f"{one.code[:10]}, rules {one.rules[:10]}",
+        "code of the trials": f"{one.code[:10]}, rules {one.rules[:10]}",
+        "scoring": one.scoring[:10] or "not noted",
     }
     said = cells.ties(one)
     return _titled(
@@ -128,6 +141,7 @@ def _section(number: int, one: Section) -> Markup:
         tag("p", _RANKED if ranked else _DEVELOPMENT, class_="note"),
         tag("dl", *(part for name, value in facts.items() for part in (tag("dt", name), tag("dd", value)))),
         m.NOTHING if one.calibrated else tag("p", _UNFITTED, class_="note"),
+        tag("p", _SCORED, class_="note") if several else m.NOTHING,
         _ranking(one),
         tag("p", said, class_="soft") if said else m.NOTHING,
         cells.fold("By difficulty and kind of task", _splits(one)),

@@ -93,12 +93,15 @@ class Row(Struct, frozen=True, kw_only=True):
 
 
 class Section(Struct, frozen=True, kw_only=True):
-    """Entries that played the same trials with the same code, best first; only entries of one section can be compared.
+    """Entries that played the same trials with the same code and were scored by one version, best first.
+
+    Only entries of one section can be compared.
 
     Attributes:
         standing: "ranked", or "development" if the tasks are public, so that no agent has a rank.
         humans: name and hash of the human population. calibrated: whether it is calibrated for the suite.
-        rules, code: hashes of the benchmark's constants and of the code that affects scores.
+        rules, code: hashes of the benchmark's constants and of the code that can change a trial.
+        scoring: hash of the code that judged the trials; empty if it was not noted.
         mode: as in the entries. trials, people: how many of them.
     """
 
@@ -113,6 +116,7 @@ class Section(Struct, frozen=True, kw_only=True):
     people: int
     rules: Sha256
     code: Sha256
+    scoring: str = ""
     rows: tuple[Row, ...]
 
 

@@ -16,7 +16,9 @@ from hthor.leaderboard.ranking.admission import Admission
 from hthor.leaderboard.ranking.board import Board, Checked, Gain, Ranks, Row, Section, Standing, Struck
 
 _NO_ROBOT = "no robot"
-Key = tuple[str, str, str, str, int, str, str, str]
+Key = tuple[str, str, str, str, int, str, str, str, str, str]
+_SCORING = 2
+"""How many parts at the end of a key are about scoring; the others are about the trials."""
 ALIKE = 0.9
 """Two agents count as one if this share of their trials has the same success and nearly the same time. No robot and
 the frontier robot, the most similar references, agree in about half of the trials of ``standard``; see
@@ -29,7 +31,8 @@ def comparison_key(entry: Entry) -> Key:
     """The properties that entries must share to be compared."""
     run = entry.run
     people = (run.humans.name, run.humans.sha256, run.seed)
-    return (run.suite.name, run.suite.sha256, *people, entry.mode, run.code_sha256, run.rules_sha256)
+    scoring = (entry.scoring_sha256 or "", entry.trials.metrics_sha256 or "")
+    return (run.suite.name, run.suite.sha256, *people, entry.mode, run.code_sha256, run.rules_sha256, *scoring)
 
 
 def make_board(
@@ -46,15 +49,26 @@ def make_board(
     keys = sorted(
         {comparison_key(entry) for entry in standing}, key=lambda one: (_stands(one, taken) != admission.RANKED, one)
     )
-    groups = ([entry for entry in standing if comparison_key(entry) == one] for one in keys)
+    groups = {one: [entry for entry in standing if comparison_key(entry) == one] for one in keys}
+    leading = _leading(groups)
     return Board(
-        sections=tuple(_section(group, kept, _stands(comparison_key(group[0]), taken)) for group in groups),
+        sections=tuple(
+            _section(group, kept, _stands(one, taken), leading=one in leading) for one, group in groups.items()
+        ),
         refuted=tuple(
             Struck(id=entry.id, name=display_name(entry), why=struck[entry.id].why)
             for entry in sorted(entries, key=lambda one: one.id)
             if entry.id in struck
         ),
     )
+
+
+def _leading(groups: Mapping[Key, Sequence[Entry]]) -> set[Key]:
+    """Of the groups at the same trials that were scored by different versions, the one with the most entries."""
+    best: dict[Key | tuple[object, ...], Key] = {}
+    for one in sorted(groups, key=lambda key: (len(groups[key]), key)):
+        best[one[:-_SCORING]] = one
+    return set(best.values())
 
 
 def display_name(entry: Entry) -> str:
@@ -67,9 +81,9 @@ def _stands(one: Key, taken: Admission | None) -> admission.Standing:
     return suites.get(one[1], "development")
 
 
-def _section(entries: Sequence[Entry], kept: KeeperRecords, standing: admission.Standing) -> Section:
+def _section(entries: Sequence[Entry], kept: KeeperRecords, standing: admission.Standing, *, leading: bool) -> Section:
     controls = {entry.hashes.run for entry in entries if entry.alone}
-    reasons = {entry.id: _unranked(entry, kept, standing, controls) for entry in entries}
+    reasons = {entry.id: _unranked(entry, kept, standing, controls, leading=leading) for entry in entries}
     can = sorted((entry for entry in entries if not reasons[entry.id]), key=lambda one: one.id)
     same = representatives(can, [trial_outcomes.unpack(entry.trials) for entry in can])
     ranks = _ranks([entry for entry in can if same[entry.id] == entry.id])
@@ -87,11 +101,14 @@ def _section(entries: Sequence[Entry], kept: KeeperRecords, standing: admission.
         people=run.participants,
         rules=run.rules_sha256,
         code=run.code_sha256,
+        scoring=entries[0].scoring_sha256 or "",
         rows=tuple(sorted(rows, key=lambda row: (-(row.sr.mean or 0.0), -(row.twsr.mean or 0.0), row.id))),
     )
 
 
-def _unranked(entry: Entry, kept: KeeperRecords, standing: admission.Standing, controls: set[str]) -> str:
+def _unranked(
+    entry: Entry, kept: KeeperRecords, standing: admission.Standing, controls: set[str], *, leading: bool
+) -> str:
     """The reason why an entry has no rank; empty if it can have a rank."""
     found = kept.verification_of(entry)
     if entry.reference:
@@ -100,6 +117,8 @@ def _unranked(entry: Entry, kept: KeeperRecords, standing: admission.Standing, c
         return "refuted, or its control was"
     if standing != admission.RANKED:
         return "public tasks"
+    if not leading or not entry.scoring_sha256:
+        return "to be rescored"
     if found is None:
         return "not verified"
     if entry.uplift is None or entry.uplift.control not in controls:

@@ -40,10 +40,13 @@ def verify_entry(path: Path, board: Path, request: Request) -> tuple[Entry, Veri
         raise BoardError(f"{path} is not a file; give an entry, such as leaderboard/entries/NAME.json.")
     files.raise_problems(board_check.check_board(board, [path]))
     entry = files.read_entry(path)
+    _measured_alike(entry)
     _noted(entry, request)
     _sorts(path, entry, request)
     drawn = draw_sample(request.word, entry.digest, entry.trials.count, _size(entry, request))
     control = verification.find_control(board, entry)
+    if control is not None:
+        _measured_alike(control)
     found = Verification(
         id=entry.id,
         entry=entry.digest,
@@ -117,6 +120,17 @@ def _size(entry: Entry, request: Request) -> int:
     if request.sample is not None:
         return request.sample
     return entry.trials.count if entry_tier(entry) == "V3" else SAMPLE
+
+
+def _measured_alike(entry: Entry) -> None:
+    """Require outcomes that were measured by the present metrics: a difference of scoring refutes nobody."""
+    there, here = entry.trials.metrics_sha256, trial_outcomes.metrics_sha256()
+    if there and there != here:
+        raise BoardError(
+            f"{entry.id}: trials.metrics_sha256: is {there[:10]}, and here it is {here[:10]}: the outcomes were "
+            "measured by other metrics than those here. 'hthor leaderboard add RUN' measures them again from the run's "
+            "log; or use the version of hthor that made the entry."
+        )
 
 
 def _noted(entry: Entry, request: Request) -> None:

@@ -3,22 +3,26 @@
 from __future__ import annotations
 
 import json
+import shutil
 
 import eval_fakes as fakes
 import msgspec
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from typer.testing import CliRunner
 
-from hthor import jsonio
+from hthor import code_identity, jsonio
+from hthor.cli import app
 from hthor.episode import EpisodeLog
 from hthor.errors import RunError
 from hthor.eval.metrics import trial_metrics
 from hthor.eval.metrics.trial_metrics import TrialMetrics
 from hthor.eval.records import scored_trial, trial_record
 from hthor.eval.records.run_folder import RunFolder
-from hthor.eval.results import aggregate, estimates
+from hthor.eval.results import aggregate, estimates, result_file
 from hthor.eval.runner import progress, run
+from hthor.report.terminal import result_tables
 from hthor.types.events import Accepted, Declined, Event, Sent
 
 pytestmark = pytest.mark.usefixtures("no_workers")
@@ -136,8 +140,43 @@ def test_scoring_trusts_events_not_stored_metrics(tmp_path):
     assert RunFolder(tmp_path).config.code_sha256 == honest.hashes.code
     assert [one.metrics for one in RunFolder(tmp_path).records()] == [one.metrics for one in records]
     assert aggregate.rescore(tmp_path)[1].metrics == honest.metrics
-    assert _played(tmp_path).metrics == honest.metrics
     assert b'"metrics"' not in trial_record.encode(records[0])
+
+
+def test_a_run_goes_on_after_trials_that_other_metrics_scored(tmp_path):
+    whole = _played(tmp_path / "whole")
+    part = tmp_path / "part"
+    shutil.copytree(tmp_path / "whole", part, ignore=shutil.ignore_patterns("result.json", "control"))
+    lines = [msgspec.json.decode(line) for line in (part / "trials.jsonl").read_bytes().splitlines()]
+    older = TrialMetrics(sr=0, twsr=0.0, adoption=None, time_s=1.0, trust=1)
+    (part / "trials.jsonl").write_bytes(b"".join(_with_metrics(line, older) for line in lines[:7]))
+    done = _played(part)
+    assert (done.metrics, done.counts) == (whole.metrics, whole.counts)
+    assert done.hashes.scoring == code_identity.scoring_sha256()
+
+
+def test_a_result_of_another_scoring_version_is_made_anew_and_said_to_be(tmp_path):
+    now = _played(tmp_path)
+    sr = msgspec.structs.replace(now.metrics.sr, mean=1.0)
+    older = msgspec.structs.replace(
+        now,
+        metrics=msgspec.structs.replace(now.metrics, sr=sr),
+        hashes=msgspec.structs.replace(now.hashes, scoring="78" * 32),
+    )
+    result_file.store_result(tmp_path, older)
+    said = CliRunner().invoke(app, ["score", str(tmp_path)], env={"COLUMNS": "400"}, catch_exceptions=False).output
+    assert f"trials of code {now.hashes.code[:10]}, judged by scoring version {now.hashes.scoring[:10]}" in said
+    assert f"was made by another scoring version, {'78' * 5}" in said
+    assert result_file.load_result(tmp_path) == now
+
+
+def test_a_metric_that_old_logs_cannot_have_is_a_gap_that_is_said(tmp_path):
+    result = _played(tmp_path)
+    assert not [note for note in result_tables.result_notes([result]) if "measured" in note]
+    fewer = msgspec.structs.replace(result.metrics.trust, n=12)
+    part = msgspec.structs.replace(result, metrics=msgspec.structs.replace(result.metrics, trust=fewer))
+    (note,) = (note for note in result_tables.result_notes([part]) if "measured" in note)
+    assert "trust (1 to 7) is measured in 12 of 20 trials; the others do not have what it needs." in note
 
 
 def _with_metrics(line: dict[str, object], metrics: TrialMetrics) -> bytes:
