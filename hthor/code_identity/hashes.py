@@ -3,6 +3,7 @@ the folder in which numba caches compiled functions of exactly this code.
 """
 
 import contextlib
+import functools
 import os
 from collections.abc import Iterable, Sequence
 from pathlib import Path
@@ -31,6 +32,7 @@ def code_sha256(models: Iterable[str], kinds: Iterable[str]) -> str:
     return modules_sha256([*roots(_TRIAL), *own])
 
 
+@functools.cache
 def scoring_sha256() -> str:
     """Hash of the code that judges trials from their logs: all metrics, which attempts count, corrections, statistics.
 

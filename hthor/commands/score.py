@@ -12,6 +12,7 @@ from hthor.console.formats import Format, Shape
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from pathlib import Path
 
     from hthor.eval.results.result_file import RunResult
 
@@ -21,6 +22,9 @@ def score(
     everything: Annotated[
         bool, typer.Option("--all", help="Also show messages, idle time, interference and shares of the work.")
     ] = False,
+    trials: Annotated[
+        bool, typer.Option("--trials", help="Show the values of every trial instead; write nothing.")
+    ] = False,
     shape: Shape = Format.TABLE,
     json: Json = False,
 ) -> None:
@@ -29,6 +33,9 @@ def score(
     from hthor.eval.results import result_file
     from hthor.report.terminal import result_tables
 
+    if trials:
+        _put_trials(run, everything, shape, json=formats.asks_json(json, shape))
+        return
     plan, result, stored = scoring.rescore(run)
     if formats.asks_json(json, shape):
         output.put_json(result)
@@ -41,8 +48,8 @@ def score(
     for note in (*result_tables.result_notes([result]), f"{result_tables.scoring_note(result)}."):
         output.say(note)
     if stored is not None and stored.hashes.scoring != result.hashes.scoring:
-        before = stored.hashes.scoring[:10] or "that was not noted"
-        output.say(f"{run / 'result.json'} was made by another scoring version, {before}; these values are new.")
+        before = f"scoring version {stored.hashes.scoring[:10]}" if stored.hashes.scoring else "an older version"
+        output.say(f"{run / 'result.json'} was made by {before} of hthor; these values are new.")
     missing = plan.trials - result.over
     if missing:
         output.say(f"{missing} of {plan.trials} trials are missing, so the result is incomplete and was not stored.")
@@ -55,6 +62,23 @@ def score(
         output.say(f"equal to {run / 'result.json'}.")
         return
     result_file.store_result(run, result)
+
+
+def _put_trials(run: Path, everything: bool, shape: Format, *, json: bool) -> None:
+    """Print the values of every trial: all of them to a program, and to people the main metrics unless they ask."""
+    from hthor.eval.metrics import registry
+    from hthor.eval.results import trial_scores
+
+    found = trial_scores.score_trials(run)
+    if json:
+        output.put_json(found)
+        return
+    rows = found.rows()
+    if shape is Format.CSV:
+        output.put_records(rows)
+        return
+    shown = ("key", "task", *(metric.name for metric in (registry.SINGLE if everything else registry.MAIN)))
+    output.put_table(shown, [["–" if row[name] is None else row[name] for name in shown] for row in rows], shape)
 
 
 def _rows(result: RunResult, everything: bool) -> Iterator[dict[str, object]]:

@@ -1,5 +1,6 @@
 """Outcomes of trials as columns: made from records, packed into an entry, and unpacked again."""
 
+import functools
 import hashlib
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
@@ -98,6 +99,7 @@ def make_outcomes(records: Sequence[ScoredTrial], leaves: Iterable[bytes]) -> Ou
     )
 
 
+@functools.cache
 def metrics_sha256() -> str:
     """Hash of the code of the metrics that the columns of `make_outcomes` have; other metrics do not count."""
     return code_identity.modules_sha256([trial_metrics.__name__, *registry.modules(_METRICS)])
