@@ -2,7 +2,7 @@
 
 Every trial is played twice, with new people and robots for each session: by `hthor.episode.play`, and step by step
 through the environment, where each robot's action is turned into arrays and back. The two records, with events, paths,
-journals, ratings and metrics, have to be equal byte for byte. It also compares the CPU times.
+journals and ratings, have to be equal byte for byte. It also compares the CPU times.
 """
 
 from __future__ import annotations

@@ -74,6 +74,12 @@ def test_outcomes_of_other_metrics_are_no_refutation_and_are_measured_again_from
     entry = files.read_entry(path)
     older = msgspec.structs.replace(entry, trials=msgspec.structs.replace(entry.trials, metrics_sha256=OTHER))
     files.write_document(path, older)
+    (problem,) = board_check.check_board(board)
+    assert problem.line.endswith(
+        f"scoring_sha256: is the present one, but 'trials' was measured by other metrics, {OTHER[:10]}"
+    )
+    older = msgspec.structs.replace(older, scoring_sha256=OTHER)
+    files.write_document(path, older)
     with pytest.raises(BoardError, match=r"trials\.metrics_sha256: .* measured by other metrics"):
         verify.verify_entry(path, board, replay.Request(word="chance"))
     assert publish.measured_otherwise(board) == [path]

@@ -82,7 +82,7 @@ def make_record(spec: TrialSpec, log: EpisodeLog) -> TrialRecord:
 
 def encode(record: TrialRecord) -> bytes:
     """The record's line, with its checksum as the last field and a newline; without what a subclass adds."""
-    if type(record) is not TrialRecord:
+    if isinstance(record, TrialRecord) and type(record) is not TrialRecord:  # workers also send other records
         record = TrialRecord(**{name: getattr(record, name) for name in TrialRecord.__struct_fields__})
     return sealed(_encoder.encode(record))
 

@@ -10,13 +10,13 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from hthor import rules
+from hthor import code_identity, rules
 from hthor.eval.config.sessions import sessions_needed
 from hthor.eval.metrics.definitions import success
 from hthor.eval.metrics.metric import DIGITS
 from hthor.eval.statistics.intervals import Estimate
 from hthor.guest import File
-from hthor.leaderboard.entries import entry_metrics, overrides
+from hthor.leaderboard.entries import entry_metrics, overrides, trial_outcomes
 from hthor.leaderboard.entries.entry import Entry
 from hthor.leaderboard.entries.trial_outcomes import Outcomes, task_labels
 from hthor.types import TaskSpec
@@ -35,6 +35,11 @@ def check_hashes(entry: Entry, held: Outcomes) -> Problems:
         yield "id", f"does not end in the first ten digits of hashes.run, '{entry.hashes.run[:10]}'"
     if (now := held.merkle) != entry.hashes.merkle:
         yield "hashes.merkle", f"is {entry.hashes.merkle[:10]}, but the root of what 'trials' holds is {now[:10]}"
+    measured, now = entry.trials.metrics_sha256, trial_outcomes.metrics_sha256()
+    if entry.scoring_sha256 and not measured:
+        yield "scoring_sha256", "is there, but 'trials' does not say by which metrics it was measured"
+    if entry.scoring_sha256 == code_identity.scoring_sha256() and measured and measured != now:
+        yield "scoring_sha256", f"is the present one, but 'trials' was measured by other metrics, {measured[:10]}"
 
 
 def check_sizes(entry: Entry, held: Outcomes) -> Problems:
