@@ -261,7 +261,13 @@ def test_an_older_result_does_not_lose_its_uplift_either(tmp_path: Path, monkeyp
     text = (whole / "result.json").read_text(encoding="utf-8").replace(result_file.SCHEMA, "hthor.result/2")
     shutil.rmtree(tmp_path / "runs" / "alone")
     (whole / "result.json").write_text(text, encoding="utf-8")
-    assert aggregate.rescore(whole)[1].uplift.note == baseline.RECORDED
+    kept = aggregate.rescore(whole)[1]
+    assert kept.uplift.note == baseline.RECORDED
+    older = msgspec.structs.replace(kept, hashes=msgspec.structs.replace(kept.hashes, scoring="78" * 32))
+    for _ in range(2):  # scored once more, the uplift is still as old as it is
+        result_file.store_result(whole, older)
+        older = aggregate.rescore(whole)[1]
+        assert older.uplift.note == f"{baseline.RECORDED}, by another scoring version than the other numbers"
 
 
 def test_a_finished_run_that_is_evaluated_again_without_its_control_keeps_its_uplift(tmp_path: Path, monkeypatch):

@@ -17,6 +17,7 @@ from hthor.cli import app
 from hthor.leaderboard import board_check, enter, publish
 from hthor.leaderboard.entries import files, trial_outcomes
 from hthor.leaderboard.entries.files import BoardError
+from hthor.leaderboard.page import page
 from hthor.leaderboard.ranking import admission, listing
 from hthor.leaderboard.verify import replay, verify
 
@@ -64,6 +65,7 @@ def test_entries_of_different_scoring_versions_are_not_ranked_together(whole: Pa
     assert sorted((one.scoring, len(one.rows)) for one in found.sections) == sorted(
         [(OTHER, 1), (code_identity.scoring_sha256(), 2)]
     )
+    assert page.render(found).count("until &#x27;hthor leaderboard rescore&#x27; brings them together") == 2
     rows = {row.name: row for section in found.sections for row in section.rows}
     assert (rows["helper"].ranks, rows["helper"].unranked) == (None, "to be rescored")
     assert rows["clumsy"].ranks is not None
