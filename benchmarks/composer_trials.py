@@ -16,10 +16,10 @@ from collections.abc import Iterator, Mapping
 from hthor import code_identity, tasks
 from hthor.envs import encode_action, trial_environment
 from hthor.episode import EpisodeLog, play
-from hthor.eval.config.sessions import Session, make_sessions
 from hthor.eval.records import trial_record
-from hthor.eval.runner.trial_runner import TrialRunner
 from hthor.humans.model import HumanModel
+from hthor.trials import TrialRunner
+from hthor.trials.sessions import Session, make_sessions
 from hthor.types import Action, Mind, TrialSpec
 from hthor.world import World
 

@@ -25,13 +25,12 @@ import numpy as np
 from hthor import jsonio, seeds
 from hthor.agents import frontier, oracle
 from hthor.episode import play
-from hthor.eval.config import sessions
 from hthor.eval.metrics import trial_metrics
-from hthor.eval.runner import trial_runner
 from hthor.humans.communication import message_reading
 from hthor.humans.core import trial_context
 from hthor.humans.population.participant import Participant
 from hthor.tasks.suites import library
+from hthor.trials import TrialRunner, sessions
 from hthor.types import Action, Mind, Observation
 
 LATE_TICKS = 50
@@ -66,7 +65,7 @@ AGENTS: dict[str, tuple[str, type[Mind] | None]] = {
 def played(agent: str, way: str, suite: str, people: int) -> dict[str, list[float]]:
     """Each metric of each trial, and who did it."""
     found: dict[str, list[float]] = {name: [] for name in ("person", *METRICS)}
-    (name, make), stage = AGENTS[agent], trial_runner.TrialRunner()
+    (name, make), stage = AGENTS[agent], TrialRunner()
     hands = sessions.make_sessions(library.load_suite(suite), agent=name)[:people]
     with drawing(way):
         for hand in hands:

@@ -9,9 +9,9 @@ from typing import Any
 from benchmarks.scenes import hands
 from benchmarks.table import Clock, Row
 from hthor.episode import Episode, EpisodeLog, play
-from hthor.eval.config.sessions import Session
-from hthor.eval.runner import trial_runner
 from hthor.humans.model import HumanModel
+from hthor.trials import TrialRunner
+from hthor.trials.sessions import Session
 from hthor.types import Mind, TrialSpec
 from hthor.world import World
 
@@ -27,7 +27,7 @@ def rows(suite: str, pairs: int) -> Iterator[Row]:
     Args:
         pairs: how many pairs of sessions are played, one of each sort, in alternating order.
     """
-    runner, sessions = trial_runner.TrialRunner(), hands(suite, "frontier")
+    runner, sessions = TrialRunner(), hands(suite, "frontier")
     _cost(runner, sessions[0], play)  # compiles
     ratios = []
     for number in range(pairs):
@@ -55,7 +55,7 @@ def drive(trial: TrialSpec, world: World, humans: Mapping[str, HumanModel], robo
     return episode.log(ratings, {seat: getattr(human, "journal", ()) for seat, human in humans.items()})
 
 
-def _cost(runner: trial_runner.TrialRunner, session: Session, player: Player) -> float:
+def _cost(runner: TrialRunner, session: Session, player: Player) -> float:
     """CPU time [ms] of a session's trials."""
     cost = 0.0
     with runner.enter(session) as people:

@@ -18,12 +18,10 @@ import numpy as np
 from benchmarks.scenes import hands
 from benchmarks.table import Row
 from hthor.episode import play
-from hthor.eval.config import robot_team
-from hthor.eval.config.sessions import Session
-from hthor.eval.runner import trial_runner
-from hthor.eval.runner.trial_runner import Sources
 from hthor.guest import Guest
 from hthor.guest.process_tools import resource_usage
+from hthor.trials import Sources, TrialRunner, robot_team
+from hthor.trials.sessions import Session
 from hthor.types import BodySpec, Briefing, Observation, Pose
 
 STATE_BAR_US, PICTURE_BAR_US, SHARE_BAR = 60.0, 100.0, 15.0
@@ -145,8 +143,8 @@ def _trials(home: Path, suite: str, count: int, persistent: bool) -> Iterator[Ro
     path.write_text(_SAME.format(persistent))
     guest = robot_team.load_agent_info(str(path))
     inside, outside = (
-        trial_runner.TrialRunner(),
-        trial_runner.TrialRunner(Sources(agent_paths={"robot": guest.path})),
+        TrialRunner(),
+        TrialRunner(Sources(agent_paths={"robot": guest.path})),
     )
     ours, theirs = hands(suite, "frontier"), hands(suite, robot_team.form_team(["scout"], [guest]))
     took: list[tuple[Spent, Spent]] = []
@@ -166,9 +164,7 @@ Spent = tuple[float, float]
 """Wall time and CPU time [s]."""
 
 
-def _together(
-    one: tuple[trial_runner.TrialRunner, Session], other: tuple[trial_runner.TrialRunner, Session]
-) -> Iterator[tuple[Spent, Spent]]:
+def _together(one: tuple[TrialRunner, Session], other: tuple[TrialRunner, Session]) -> Iterator[tuple[Spent, Spent]]:
     """What two sessions' trials take, each trial of one followed by the same of the other."""
     with one[0].enter(one[1]) as mine, other[0].enter(other[1]) as yours:
         for first, second in zip(one[1].trials, other[1].trials, strict=True):

@@ -17,12 +17,12 @@ import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from hthor.eval.config.sessions import Session
 from hthor.eval.records import trial_log
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import aggregate, result_file
 from hthor.eval.runner import engines, progress, run
+from hthor.trials.sessions import Session
 
 
 def player(path: Path) -> Callable[[Session], Iterator[TrialRecord]]:

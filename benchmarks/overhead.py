@@ -17,13 +17,13 @@ from pathlib import Path
 
 from rich.console import Console
 
-from hthor.eval.config.sessions import Session
 from hthor.eval.records import trial_log, trial_record
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import baseline, result_file
-from hthor.eval.runner import collector, experiment, progress, run, run_options, trial_runner
+from hthor.eval.runner import collector, experiment, progress, run, run_options, session_runner
 from hthor.eval.runner.messages import TrialOutcome
+from hthor.trials.sessions import Session
 
 
 def player(folder: Path, sources: object = None) -> Callable[[Session], Iterator[TrialRecord]]:
@@ -48,7 +48,7 @@ def main(folder: Path) -> None:
     spent: dict[str, float] = {}
     for place, name in ((collector.Collector, "collect"), (run, "_score")):
         setattr(place, name, _timed(getattr(place, name), name, spent))
-    trial_runner.make_runner = functools.partial(player, folder.resolve())  # type: ignore[assignment]
+    session_runner.make_runner = functools.partial(player, folder.resolve())  # type: ignore[assignment]
     with tempfile.TemporaryDirectory() as scratch:
         options = run_options.RunOptions(
             agents=tuple(robot.agent.name for robot in plan.robots),

@@ -28,11 +28,12 @@ import numpy as np
 
 from benchmarks import readme_film
 from hthor import houses, jsonio, rules, tasks
-from hthor.eval.config import robot_team, sessions, task_selection
+from hthor.eval.config import task_selection
 from hthor.eval.records.trial_record import TrialRecord
-from hthor.eval.runner import trial_runner
+from hthor.eval.runner import session_runner
 from hthor.report.drawing import figure_file, trial_figure
 from hthor.report.drawing.person_display import panel_picture
+from hthor.trials import robot_team, sessions
 from hthor.types import TaskSpec
 from hthor.types.events import Sent
 from hthor.world import World
@@ -213,7 +214,7 @@ def likeness(before: Any, after: Any) -> str:
 
 def played(task_id: str, agent: str = "oracle") -> TrialRecord:
     """The trial of a task with an agent, as `hthor eval` plays it with the seed 0."""
-    return [done.record for done in trial_runner.make_runner()(session_until(task_id, agent))][-1]
+    return [done.record for done in session_runner.make_runner()(session_until(task_id, agent))][-1]
 
 
 def session_until(task_id: str, agent: str = "oracle") -> sessions.Session:

@@ -19,15 +19,16 @@ import numpy as np
 from PIL import Image
 
 from hthor import houses, rules
-from hthor.eval.config.sessions import Session
 from hthor.eval.records.trial_record import TrialRecord
-from hthor.eval.runner.trial_runner import TrialRunner
+from hthor.eval.runner import session_runner
 from hthor.report.drawing import floor_plan, text_fit, trial_trace
 from hthor.report.drawing.film import frame_words
 from hthor.report.drawing.film.frame_words import bgr
 from hthor.report.drawing.overviews import framing
 from hthor.report.drawing.person_display.display_pictures import DisplayPictures
 from hthor.report.page.camera_frames import CameraFrames
+from hthor.trials import TrialRunner
+from hthor.trials.sessions import Session
 from hthor.types import HUMAN, Vec3, is_person
 from hthor.types.events import Accepted, Event, Opened, Picked, Placed, Sent
 from hthor.world.rendering.viewpoint import Viewpoint
@@ -327,7 +328,7 @@ def _play(session: Session, watch: Callable[[Any], Any]) -> TrialRecord:
         for trial in session.trials[:-1]:
             stage.run(company, trial)
         last = session.trials[-1]
-        return stage.run(company, last, watch(stage.world(last))).record
+        return session_runner.run_trial(stage, company, last, watch(stage.world(last))).record
 
 
 def _even(speeds: Sequence[float]) -> list[float]:

@@ -22,13 +22,13 @@ from hthor.calibration.from_logs.models.priors import to_scale
 from hthor.calibration.simulation import design_points
 from hthor.calibration.simulation.session_simulation import run_trials
 from hthor.calibration.simulation.trial_table import AGENTS
-from hthor.eval.config.sessions import make_sessions
 from hthor.eval.records import trial_record
 from hthor.eval.records.trial_record import TrialRecord
-from hthor.eval.runner.trial_runner import Sources, TrialRunner
 from hthor.humans.population import parameter_registry
 from hthor.humans.population.parameters import Parameters
 from hthor.tasks import Suite
+from hthor.trials import Sources, TrialRunner
+from hthor.trials.sessions import make_sessions
 
 BARS = {"v_pace": 0.8, "omega": 0.8, "t_manip": 0.8, "mu0": 0.8, READING: 0.6, "a0": 0.6}
 """The least correlation between true and estimated values, over populations drawn from the prior."""

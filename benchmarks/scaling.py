@@ -11,7 +11,7 @@ from multiprocessing import get_context
 from benchmarks.scenes import hands
 from benchmarks.table import Clock, Row
 from hthor.episode import play
-from hthor.eval.runner import trial_runner
+from hthor.trials import TrialRunner
 
 AGENT = "frontier"
 
@@ -33,13 +33,13 @@ def rows(suite: str, trials: int) -> Iterator[Row]:
     yield Row(part="processes", what="two / one, CPU time a trial", value=costs[2] / costs[1], unit="x")
 
 
-_STAGES: dict[str, trial_runner.TrialRunner] = {}
+_STAGES: dict[str, TrialRunner] = {}
 
 
 def _play(order: tuple[str, int]) -> float:
     """Play the first trials of the suite; CPU time [ms] without building worlds."""
     suite, count = order
-    stage, spent = _STAGES.setdefault(suite, trial_runner.TrialRunner()), 0.0
+    stage, spent = _STAGES.setdefault(suite, TrialRunner()), 0.0
     trials = [(session, trial) for session in hands(suite, AGENT) for trial in session.trials]
     for session in dict.fromkeys(id(session) for session, _ in trials):
         mine = [pair for pair in trials[: max(count, 1)] if id(pair[0]) == session]

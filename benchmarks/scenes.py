@@ -7,11 +7,11 @@ from collections.abc import Iterator
 from msgspec import Struct
 
 from hthor import rules, tasks
-from hthor.eval.config.robot_team import RobotTeam
-from hthor.eval.config.sessions import Session, make_sessions
-from hthor.eval.runner import trial_runner
 from hthor.houses.space.geodesic import house_geodesics
 from hthor.navigation.path_follower import Follower
+from hthor.trials import TrialRunner
+from hthor.trials.robot_team import RobotTeam
+from hthor.trials.sessions import Session, make_sessions
 from hthor.types import HUMAN, Motion, TaskSpec, Vec2, Wait
 from hthor.world import World
 
@@ -32,7 +32,7 @@ class Scene(Struct, frozen=True):
 
 def scenes(suite: str) -> tuple[Scene, ...]:
     """One for every house of the suite, with its first task."""
-    stage, found = trial_runner.TrialRunner(), {}
+    stage, found = TrialRunner(), {}
     for session in make_sessions(tasks.load_suite(suite), agent="frontier"):
         for trial in session.trials:
             if trial.task.house not in found:

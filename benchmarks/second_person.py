@@ -18,10 +18,9 @@ from msgspec import Struct
 
 from hthor import rules, tasks
 from hthor.episode import EpisodeLog, play
-from hthor.eval.config import robot_team
-from hthor.eval.config.sessions import Session, make_sessions
-from hthor.eval.runner.trial_runner import TrialRunner
 from hthor.tasks.suite import make_suite
+from hthor.trials import TrialRunner, robot_team
+from hthor.trials.sessions import Session, make_sessions
 from hthor.types import TrialSpec
 from hthor.types.events import InWay, Progress
 

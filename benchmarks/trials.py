@@ -9,9 +9,8 @@ from collections.abc import Iterator
 from benchmarks.scenes import TICKS, hands
 from benchmarks.table import Clock, Row
 from hthor.episode import play
-from hthor.eval.config import robot_team
-from hthor.eval.config.robot_team import RobotTeam
-from hthor.eval.runner import trial_runner
+from hthor.trials import TrialRunner, robot_team
+from hthor.trials.robot_team import RobotTeam
 
 AGENTS = {"none": "no robot that does anything", "frontier": "frontier robot", "oracle": "oracle robot"}
 BAR_MS = 90.0
@@ -56,7 +55,7 @@ def _row(what: str, suite: str, agent: str | RobotTeam, each: int, bar: float | 
 
 def cost(suite: str, agent: str | RobotTeam, each: int) -> dict[str, list[float]]:
     """Scene -> CPU times [ms] of its trials, scaled to 90 s; the very first trial is played twice, to compile."""
-    stage, costs = trial_runner.TrialRunner(), defaultdict(list)
+    stage, costs = TrialRunner(), defaultdict(list)
     sessions = hands(suite, agent)
     with stage.enter(sessions[0]) as company:
         first = sessions[0].trials[0]

@@ -23,6 +23,12 @@ def freeze_existing() -> None:
     gc.freeze()
 
 
+def collect_frozen() -> None:
+    """Free what nobody refers to any longer, among the objects that were frozen too."""
+    gc.unfreeze()
+    gc.collect()
+
+
 def unfreeze_after(owner: object) -> None:
     """Scan everything again once ``owner`` is gone."""
     weakref.finalize(owner, gc.unfreeze).atexit = False

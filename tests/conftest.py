@@ -51,10 +51,6 @@ def samples() -> list[Path]:
     return files
 
 
-_WORLDS: dict[Any, Any] = {}
-_MOST_WORLDS = 16
-
-
 @pytest.fixture(scope="module", autouse=True)
 def shared_worlds() -> Iterator[None]:
     """Trials in this process share the worlds of the houses that ship with hthor: each takes a third of a second.
@@ -62,20 +58,27 @@ def shared_worlds() -> Iterator[None]:
     A trial does not depend on those before it in its world, which `test_real_episode`, where they share none, and the
     main job's tests show.
     """
-    from hthor.eval.runner.trial_runner import Sources, TrialRunner
+    from hthor.trials import Sources, TrialRunner
 
     begin = TrialRunner.__init__
 
-    def begin_with_worlds(self: TrialRunner, sources: Sources | None = None, pool: Any = None) -> None:
-        begin(self, sources, pool)
-        if sources is None or not (sources.robot_paths or sources.houses or sources.assets):
-            if len(_WORLDS) > _MOST_WORLDS:
-                _WORLDS.clear()
-            self._worlds = _WORLDS
+    def begin_with_worlds(
+        self: TrialRunner, sources: Sources | None = None, pool: Any = None, worlds: Any = None, loop: Any = None
+    ) -> None:
+        if worlds is None and (sources is None or not (sources.robot_paths or sources.houses or sources.assets)):
+            worlds = process_worlds()
+        begin(self, sources, pool, worlds, loop)
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(TrialRunner, "__init__", begin_with_worlds)
         yield
+
+
+@functools.cache
+def process_worlds() -> Any:
+    from hthor.trials import Worlds
+
+    return Worlds(most_bytes=600_000_000)
 
 
 @pytest.fixture(scope="module")

@@ -14,10 +14,9 @@ import pytest
 
 from hthor import code_identity, plugins, tasks
 from hthor.code_identity import PICTURES, SIMULATION, Sources, syntax
-from hthor.eval.config import sessions
 from hthor.eval.records import scored_trial, trial_record
 from hthor.eval.results import estimates, paired_difference, pairing
-from hthor.eval.runner import trial_runner
+from hthor.trials import TrialRunner, sessions, trial_runner
 
 _OWN = (("human model", "proxy"), ("agent", "frontier"), ("robot", "scout"))
 ROOTS = (
@@ -279,7 +278,7 @@ def test_a_circle_of_modules_has_a_hash(tmp_path: Path) -> None:
 def test_everything_that_a_trial_runs_counts(sources: Sources, suite: str, agent: str, robot: str, model: str) -> None:
     """A trial is played under a profiler: no function outside of the counted modules is called."""
     chosen = tasks.load_suite(suite)
-    stage = trial_runner.TrialRunner()
+    stage = TrialRunner()
     trial = sessions.make_sessions(chosen, agent=agent, robot=robot, humans=model)[0].trials[0]
     with stage.enter(sessions.make_sessions(chosen, agent=agent, robot=robot, humans=model)[0]) as company:
         world = stage.world(trial)

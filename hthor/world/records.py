@@ -124,10 +124,14 @@ class EngineRecord(Struct, frozen=True):
 
 
 class WorldRecord(Struct, frozen=True):
-    """The whole world. ``events`` are those that the next `advance` will return; ``steps`` of the tick are done."""
+    """The whole world. ``events`` are those that the next `advance` will return; ``steps`` of the tick are done.
+
+    ``spares`` are the objects that were not in the house when the episode began.
+    """
 
     tick: int
     seed: int
+    spares: tuple[str, ...]
     steps: int
     events: tuple[Event, ...]
     bodies: dict[str, BodyRecord]

@@ -58,12 +58,13 @@ class StateKeeper:
     ) -> None:
         self._parts, self._house, self._bodies, self._detectors = parts, house, bodies, detectors
 
-    def save(self, tick: int, seed: int, events: Iterable[Event]) -> bytes:
+    def save(self, tick: int, seed: int, spares: Iterable[str], events: Iterable[Event]) -> bytes:
         """The state of the parts, and of the simulation itself."""
         parts = self._parts
         world = WorldRecord(
             tick=tick,
             seed=seed,
+            spares=tuple(sorted(spares)),
             steps=parts.driven.steps,
             events=tuple(events),
             bodies={seat: self._body(body) for seat, body in parts.seats.items()},

@@ -30,7 +30,7 @@ from hthor.world import numbers
 from hthor.world.editable_simulation import EditableSimulation
 from hthor.world.model import inventory
 from hthor.world.perception import view_frustum
-from hthor.world.rendering.lazy_images import LazyImages, Size
+from hthor.world.rendering.lazy_images import LabelKey, LazyImages, Size
 from hthor.world.rendering.viewpoint import Viewpoint
 from hthor.world.seat_senses import FrozenSenses, SeatSenses
 
@@ -101,7 +101,7 @@ class SensingSimulation(EditableSimulation):
         found = self.detections(seat)
         seen = {one.id: self.sighting(seat, one.id) for one in found if one.family == "object"}
         scan, camera = self.scan(seat), self.camera(seat)
-        return FrozenSenses(found, scan, camera, seen, self._pictures.frozen(seat, self._seed))
+        return FrozenSenses(found, scan, camera, seen, self._pictures.frozen(seat, self._label_key))
 
     def detections(self, seat: str) -> tuple[Detection, ...]:
         """Detections of the seat's detector now, by id, with the detector's errors."""
@@ -143,7 +143,7 @@ class SensingSimulation(EditableSimulation):
                 other.pose = _OUT_OF_SIGHT
             self._mocap.rewrite()
             first, second = itertools.tee(poses)
-            pictures = self._pictures.survey(seat, second, self._seed, colours)
+            pictures = self._pictures.survey(seat, second, self._label_key, colours)
             for body.pose, (rgb, depth, segmentation) in zip(first, pictures, strict=True):
                 yield SurveyReading(self._visibility.detections(body), depth, segmentation, rgb)
         finally:
@@ -154,12 +154,16 @@ class SensingSimulation(EditableSimulation):
     # ------------------------------------------------------------------------------------------------------ pictures
 
     @property
+    def _label_key(self) -> LabelKey:
+        return LabelKey(self._seed, self._spares)
+
+    @property
     def names(self) -> tuple[str, ...]:
         """Ids that the numbers of a segmentation stand for: of things, seats, rooms, walls and openings.
 
         Every episode shuffles the numbers by its seed.
         """
-        return self._pictures.names(self._seed)
+        return self._pictures.names(self._label_key)
 
     @property
     def label_kinds(self) -> tuple[str, ...]:
@@ -189,11 +193,11 @@ class SensingSimulation(EditableSimulation):
             ValueError: when mode, size or profile is invalid.
             RenderingUnavailable: when the profile is nice and no OpenGL back end works.
         """
-        return self._pictures.view(seat, mode, size, profile, self._seed)
+        return self._pictures.view(seat, mode, size, profile, self._label_key)
 
     def look(self, seat: str, size: Size = None, profile: str | None = None) -> View:
         """All three pictures of this moment, and the camera that took them; see `picture`."""
-        return self._pictures.look(seat, size, profile, self._seed)
+        return self._pictures.look(seat, size, profile, self._label_key)
 
     def camera(self, seat: str, size: Size = None) -> Camera:
         """The pose of the seat's camera now, and its projection for pictures of ``size`` (width, height) [pixels]."""

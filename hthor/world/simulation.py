@@ -100,6 +100,16 @@ class Simulation:
         return self._env.model
 
     @property
+    def nbytes(self) -> int:
+        """About how much memory it takes: the engine's buffers and the arena that it reserves, which it hardly fills.
+
+        Everything else takes as much again as the arena: 13 to 38 MB were measured for each house that ships, for which
+        this gives 25 to 43 MB.
+        """
+        model, data = self._env.model, self._env.data
+        return int(model.nbuffer + data.nbuffer + data.narena)
+
+    @property
     def environment(self) -> LazyComposerEnv:
         """The composer environment in which everything is, for `hthor.envs` and for programs that use dm_control."""
         return self._env
@@ -133,6 +143,7 @@ class Simulation:
                 begin[id] = (placed.position, placed.yaw, placed.support)
             elif movable.home is not None:
                 begin[id] = (movable.home, movable.yaw, movable.support)
+        self._spares = frozenset(movables.keys() - begin.keys())
         self._task.starts = {id: begin[id][:2] for id in placements}
         self._env.begin()
         self._objects.reset(begin)
@@ -267,7 +278,7 @@ class Simulation:
 
     def save_state(self) -> bytes:
         """The whole state of the world, for `load_state`; pictures and readings of sensors are not in it."""
-        return self._keeper.save(self.tick, self._seed, self._events)
+        return self._keeper.save(self.tick, self._seed, self._spares, self._events)
 
     def load_state(self, state: bytes) -> None:
         """Go back to a state that `save_state` returned: the same motions then have the same results, byte for byte.
@@ -279,6 +290,7 @@ class Simulation:
         """
         record = self._keeper.load(state)
         self._seed, self._events = record.seed, list(record.events)
+        self._spares = frozenset(record.spares)
         self._episode += 1
         self._begin_moment(record.tick)
 

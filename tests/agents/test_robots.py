@@ -15,9 +15,7 @@ from world_house import COUNTER, TABLE, do, on, reason, task
 
 from hthor import catalog, code_identity, plugins, rules
 from hthor.errors import HthorError, UnknownName
-from hthor.eval.config import robot_team
-from hthor.eval.runner import trial_runner
-from hthor.eval.runner.trial_runner import Sources
+from hthor.trials import Sources, TrialRunner, robot_team
 from hthor.types import Close, Move, Open, Part, Pick, Place, Pose, RobotSpec, Rotate
 from hthor.world import World
 from hthor.world.model.bodies import avatar, bodies
@@ -322,7 +320,7 @@ def test_a_run_knows_the_file_and_notices_a_change(tmp_path: Path) -> None:
     assert (shape.name, shape.path) == ("rover_that_changes", str(file))
     (seat,) = robot_team.form_team([shape], ["frontier"]).seats
     assert seat.robot_sha256 == plugins.sha256(str(file))
-    stage = trial_runner.TrialRunner(Sources(robot_paths={"robot": shape.path}))
+    stage = TrialRunner(Sources(robot_paths={"robot": shape.path}))
     assert stage._robot(seat) == bodies.load_robot(str(file))
     file.write_text(file.read_text() + "# faster")
     with pytest.raises(HthorError, match="was changed while its run was going on"):

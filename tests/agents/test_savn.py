@@ -31,10 +31,10 @@ from hthor.agents.skills.savn_network import Network, NetworkConfig  # noqa: E40
 from hthor.agents.skills.semantic_cells import CLASSES  # noqa: E402
 from hthor.episode import EpisodeLog, play  # noqa: E402
 from hthor.errors import AgentError  # noqa: E402
-from hthor.eval.config.sessions import make_sessions  # noqa: E402
-from hthor.eval.runner import trial_runner  # noqa: E402
 from hthor.guest import Guest, GuestConfig  # noqa: E402
 from hthor.tasks.suite import make_suite  # noqa: E402
+from hthor.trials import TrialRunner  # noqa: E402
+from hthor.trials.sessions import make_sessions  # noqa: E402
 from hthor.types import Briefing, Move, Observation, Pose, Receipt, Rotate, Send, Wait  # noqa: E402
 from hthor.types.events import Adapted  # noqa: E402
 from hthor.world import World  # noqa: E402
@@ -174,7 +174,7 @@ def trials(agent: str, count: int = 2) -> list[EpisodeLog]:
     smoke = tasks.load_suite("smoke")
     few = make_suite("few", 1, tuple(task for task in smoke.tasks if task.house == "hazel"))
     session = make_sessions(few, agent=agent)[0]
-    stage = trial_runner.TrialRunner()
+    stage = TrialRunner()
     with stage.enter(session) as company:
         some = session.trials[:count]
         return [play(trial, stage.world(trial), company.humans, company.ready_agents()) for trial in some]

@@ -21,12 +21,11 @@ from hthor.calibration.pipeline import config, run, stages, terminal
 from hthor.calibration.simulation import design_points, session_simulation, session_store, simulate, trial_table
 from hthor.cli import app
 from hthor.errors import HthorError, MissingExtra, RunError, UnknownName
-from hthor.eval.config import robot_team
-from hthor.eval.config.sessions import make_sessions
 from hthor.eval.runner import progress
-from hthor.eval.runner.trial_runner import TrialRunner
 from hthor.humans.population import parameter_registry, population_file
 from hthor.tasks.suite import make_suite
+from hthor.trials import TrialRunner
+from hthor.trials.sessions import make_sessions, make_setup
 
 PAPER = tasks.load_suite("paper")
 TINY = make_suite("tiny", 1, tuple(task for task in PAPER.tasks if task.house == "elder")[:2])
@@ -105,8 +104,8 @@ def test_a_session_is_what_an_evaluation_would_have_played():
 
     point = design_points.sobol_points(1, len(parameter_registry.free_parameter_names()), 0, "x")[0]
     one = simulate.make_session_spec(TINY, session_store.trials_identity(TINY), 5, 0, point.tolist(), 1)
-    stage, seats = TrialRunner(), robot_team.form_team(["scout"], ["frontier"]).seats
-    rows = list(session_simulation.run_session(one, TINY, seats, stage))
+    stage, setup = TrialRunner(), make_setup(["mobile_manipulation"], agent="frontier")
+    rows = list(session_simulation.run_session(one, TINY, setup, stage))
 
     dealt = make_sessions(TINY, agent="frontier", seed=5, participants=1)[0]
     traits = participant.add_random_effects(parameter_registry.parameters_at(point.tolist()), participant_root(5, 0))

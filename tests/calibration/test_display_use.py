@@ -13,9 +13,9 @@ from hthor.calibration.from_logs import display_habits, estimate_all, trial_feat
 from hthor.calibration.from_logs.features import display_use
 from hthor.calibration.from_logs.models import priors
 from hthor.eval.records.trial_record import TrialRecord, make_record
-from hthor.eval.runner import trial_runner
 from hthor.humans.population.parameters import Parameters
 from hthor.tasks.suite import make_suite
+from hthor.trials import TrialRunner
 from hthor.types import HUMAN
 
 TRIAL = fakes.run_of(10, name="small")[1][0].trials[0]
@@ -90,7 +90,7 @@ def test_logs_of_proxies_tell_how_often_they_walk_with_the_map_hidden(share: flo
     smoke = tasks.load_suite("smoke")
     few = make_suite("few", 1, tuple(task for task in smoke.tasks if task.house == "elder")[:4])
     population = Parameters(a0=6.0, map_hidden=share)
-    records = recovery.simulate_logs(population, few, trial_runner.TrialRunner(), seed=7, people=6)
+    records = recovery.simulate_logs(population, few, TrialRunner(), seed=7, people=6)
     sessions = trial_features.sessions_of(records)
     follows = [follow for one in trial_features.extract_features(sessions) for follow in one.follows]
     found = {one.name: one for one in estimate_all.estimate_parameters(sessions, priors.prior_beliefs())}

@@ -26,12 +26,12 @@ from hthor.calibration.from_logs.update_population import update_draws
 from hthor.errors import RunError
 from hthor.eval.records import trial_record
 from hthor.eval.records.trial_record import TrialRecord
-from hthor.eval.runner import trial_runner
 from hthor.humans.communication.trust import Experience as Lived
 from hthor.humans.communication.trust import Trust, initial_trust
 from hthor.humans.population import population_file
 from hthor.humans.population.parameters import Parameters
 from hthor.tasks.suite import make_suite
+from hthor.trials import TrialRunner
 
 BELIEFS = priors.prior_beliefs()
 PEOPLE = 12
@@ -265,7 +265,7 @@ def played() -> tuple[Parameters, list[TrialRecord]]:
     smoke = tasks.load_suite("smoke")
     few = make_suite("few", 1, tuple(task for task in smoke.tasks if task.house == "elder")[:4])
     population = Parameters(v_pace=0.45, omega=1.2, t_manip=1.6, t_read=4.2, sigma=0.1, a0=3.0)
-    return population, recovery.simulate_logs(population, few, trial_runner.TrialRunner(), seed=5, people=6)
+    return population, recovery.simulate_logs(population, few, TrialRunner(), seed=5, people=6)
 
 
 def test_real_logs_tell_what_people_were_made_of(played: tuple[Parameters, list[TrialRecord]]) -> None:

@@ -12,7 +12,7 @@ import typer
 from command_line import Said
 
 from hthor import cli, tasks
-from hthor.eval.runner import trial_runner
+from hthor.eval.runner import session_runner
 
 _GET_COMMAND = functools.cache(typer.main.get_command)
 """Reading the signatures of all commands takes a tenth of a second, which a process pays once."""
@@ -46,5 +46,5 @@ def hthor(monkeypatch: pytest.MonkeyPatch, say: Callable[..., Said]) -> Callable
     """Run a command in this process, with a fake umpire and a fake suite called ``fake``."""
     real = tasks.load_suite
     monkeypatch.setattr(tasks, "load_suite", lambda name: fakes.suite(20) if name == "fake" else real(name))
-    monkeypatch.setattr(trial_runner, "make_runner", fakes.player)
+    monkeypatch.setattr(session_runner, "make_runner", fakes.player)
     return say

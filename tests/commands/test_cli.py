@@ -16,9 +16,9 @@ import pytest
 
 from hthor import __version__, houses
 from hthor.console import output, python_version
-from hthor.eval.config import robot_team
-from hthor.eval.runner import trial_runner
+from hthor.eval.runner import session_runner
 from hthor.report.drawing import render_trial
+from hthor.trials import robot_team
 
 
 @pytest.fixture
@@ -161,7 +161,7 @@ def test_the_control_is_played_too_once_and_the_uplift_is_reported(hthor, tmp_pa
 
 
 def test_runs_are_compared_and_a_worse_one_fails(hthor, tmp_path: Path, monkeypatch):
-    monkeypatch.setattr(trial_runner, "make_runner", fakes.leaning_player)
+    monkeypatch.setattr(session_runner, "make_runner", fakes.leaning_player)
     real = robot_team.load_agent_info
     monkeypatch.setattr(
         robot_team, "load_agent_info", lambda name, _: real(name) if name == "none" else fakes.character(name)

@@ -28,10 +28,11 @@ from typer.testing import CliRunner
 from hthor import code_identity, houses, plugins, tasks
 from hthor.cli import app
 from hthor.console import completion, exit_status
-from hthor.eval.config import human_populations, robot_team
-from hthor.eval.runner import engines, progress, trial_runner
+from hthor.eval.config import human_populations
+from hthor.eval.runner import engines, progress, session_runner
 from hthor.guest.confinement import LEVELS
 from hthor.humans.population import kinds, population_file
+from hthor.trials import robot_team
 from scripts import cli_reference
 
 WITHOUT_JSON = {
@@ -55,7 +56,7 @@ Hthor = Callable[..., Said]
 
 def played(hthor: Hthor, player: Callable[[], object], *words: str) -> tuple[int, object, str]:
     """Like `run`, in this process: exit code, the one document on standard output, and what is said to people."""
-    with mock.patch.object(trial_runner, "make_runner", player):
+    with mock.patch.object(session_runner, "make_runner", player):
         said = hthor(*words, "--json")
     return said.code, json.loads(said.out), said.err
 

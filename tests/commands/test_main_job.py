@@ -26,14 +26,11 @@ from command_line import Said
 from benchmarks import forging
 from hthor import guest, houses, jsonio, rules, tasks
 from hthor.errors import AgentError
-from hthor.eval.config import robot_team
-from hthor.eval.config.sessions import Session, make_sessions
 from hthor.eval.records import find, run_isolation, scored_trial
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_log import TrialLog
 from hthor.eval.records.trial_record import TrialRecord
-from hthor.eval.runner import trial_runner
-from hthor.eval.runner.trial_runner import Sources
+from hthor.eval.runner import session_runner
 from hthor.leaderboard import enter
 from hthor.leaderboard.entries import entry_metrics, files, trial_outcomes
 from hthor.leaderboard.entries.entry import Entry
@@ -41,6 +38,8 @@ from hthor.leaderboard.entries.trial_outcomes import outcome_bytes
 from hthor.leaderboard.verify.verify import draw_sample
 from hthor.tasks.suite import encode_suite, make_suite
 from hthor.tasks.suites.commitment import Commitment
+from hthor.trials import Sources, robot_team
+from hthor.trials.sessions import Session, make_sessions
 from hthor.types import HUMAN
 
 HOUSES = ("alder", "elder")
@@ -279,7 +278,7 @@ def dealt(agent: str, count: int = 2) -> tuple[Sources, Session]:
 
 def played(agent: str, count: int = 2) -> list[TrialRecord]:
     sources, session = dealt(agent, count)
-    return [done.record for done in trial_runner.make_runner(sources)(session)]
+    return [done.record for done in session_runner.make_runner(sources)(session)]
 
 
 def test_the_example_works(root: Path):
@@ -350,7 +349,7 @@ def test_harmless_agents_have_no_faults(name: str, tmp_path: Path, idle_robot: l
 
 def test_a_robot_that_does_nothing_is_as_no_robot_until_its_body_is_in_the_way(idle_robot: list[TrialRecord]):
     _, session = dealt("silent")
-    alone = [done.record for done in trial_runner.make_runner()(session)]
+    alone = [done.record for done in session_runner.make_runner()(session)]
     assert [one.spec.task for one in alone] == [one.spec.task for one in idle_robot]
     for none, idle in zip(alone, idle_robot, strict=True):
         met = [event.tick for event in idle.events if event.kind == "in_way"]
@@ -433,7 +432,7 @@ def test_a_file_that_changes_during_its_run_ends_it(tmp_path: Path):
     sources, session = dealt(written(tmp_path))
     written(tmp_path, act="return None")
     with pytest.raises(AgentError, match=r"agent\.py was changed while its run was going on"):
-        list(trial_runner.make_runner(sources)(session))
+        list(session_runner.make_runner(sources)(session))
 
 
 # ----------------------------------------------------------------------------------------------------- what a run holds

@@ -22,9 +22,9 @@ from hthor import tasks
 from hthor.envs import encode_action, trial_environment
 from hthor.episode import play
 from hthor.errors import HthorError, TaskError, UnknownName
-from hthor.eval.config.sessions import make_sessions
-from hthor.eval.runner.trial_runner import TrialRunner
 from hthor.tasks.suite import make_suite
+from hthor.trials import TrialRunner
+from hthor.trials.sessions import make_sessions
 from hthor.types import Action, Move, Observation, Pick, Pose, Rotate, Send, TrialSpec
 from hthor.world import World
 

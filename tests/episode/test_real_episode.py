@@ -9,9 +9,9 @@ import pytest
 from benchmarks.driving import drive
 from hthor import tasks
 from hthor.episode import Charged, Concurrent, Episode, EpisodeLog, play
-from hthor.eval.config.sessions import Session, make_sessions
-from hthor.eval.runner.trial_runner import TrialRunner
 from hthor.tasks.suite import make_suite
+from hthor.trials import TrialRunner
+from hthor.trials.sessions import Session, make_sessions
 from hthor.types import Action
 
 TRIALS = 2

@@ -12,9 +12,10 @@ from hypothesis import strategies as st
 
 from hthor.errors import HthorError
 from hthor.eval.comparison import population_matrix
-from hthor.eval.config import human_team, robot_team, run_config
+from hthor.eval.config import run_config
 from hthor.eval.results import aggregate, result_file
 from hthor.eval.statistics import intervals
+from hthor.trials import human_team, robot_team
 
 CREWS = {
     "silent": robot_team.form_team(["scout"], [eval_fakes.character("silent", absent=True)]),

@@ -12,11 +12,11 @@ import pytest
 
 from hthor.episode import Fault
 from hthor.errors import RunError
-from hthor.eval.config.sessions import Session
 from hthor.eval.runner import fault_report
 from hthor.eval.runner.fault_report import RecordedAgent
 from hthor.eval.runner.messages import TrialDone, TrialOutcome
 from hthor.eval.runner.worker import SessionPlayer
+from hthor.trials.sessions import Session
 from hthor.types import Action, Observation, Pose
 
 TRIAL = fakes.run_of()[1][0].trials[0]

@@ -22,15 +22,15 @@ from hthor import tasks
 from hthor.cli import app
 from hthor.errors import HthorError, RunError
 from hthor.eval import dry_run
-from hthor.eval.config import cli_command, robot_team, run_config, sessions, task_selection
-from hthor.eval.config.sessions import Session
+from hthor.eval.config import cli_command, run_config, task_selection
 from hthor.eval.records import trial_record
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.results import pairing
-from hthor.eval.runner import engines, run_options, trial_runner
-from hthor.eval.runner.trial_runner import Sources
+from hthor.eval.runner import engines, run_options, session_runner
 from hthor.guest import GuestFault
 from hthor.leaderboard.entries import overrides
+from hthor.trials import Sources, TrialRunner, robot_team, sessions
+from hthor.trials.sessions import Session
 from hthor.types import Action
 
 pytestmark = pytest.mark.usefixtures("no_workers")
@@ -131,7 +131,7 @@ def test_an_agent_that_takes_longer_than_the_limit_fails(tmp_path: Path, seconds
     slow = robot_team.load_agent_info(str(tmp_path / "slow.py"))
     who = robot_team.form_team(["scout"], [slow])
     trials = sessions.make_sessions(suite(1), agent=who, humans="greedy", step_limit_s=seconds)[0].trials
-    with trial_runner.TrialRunner(Sources(agent_paths=who.agent_paths, manifests=who.manifests)).enter(
+    with TrialRunner(Sources(agent_paths=who.agent_paths, manifests=who.manifests)).enter(
         Session(number=0, trials=trials)
     ) as company:
         mind = company.ready_agents()["robot"]
@@ -196,7 +196,7 @@ def shelf(tmp_path_factory: pytest.TempPathFactory, no_workers: None) -> Path:
     load = tasks.load_suite
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(tasks, "load_suite", lambda word: suite(20) if word == "fake" else load(word))
-        patch.setattr(trial_runner, "make_runner", player)
+        patch.setattr(session_runner, "make_runner", player)
         patch.setattr(robot_team, "load_agent_info", lambda word, *_: character(word))
         told(*words, "--agent", "helper", "--name", "good", "--out", str(folder / "whole"))
         told(*words, "--agent", "clumsy", "--out", str(folder / "deep" / "half"))

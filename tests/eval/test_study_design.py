@@ -15,9 +15,8 @@ from hypothesis import strategies as st
 from hthor import code_identity
 from hthor.errors import HthorError, RunError
 from hthor.eval.comparison import compare, sample_size
-from hthor.eval.config import cli_command, run_config, sessions, study_design
+from hthor.eval.config import cli_command, run_config, shards, study_design
 from hthor.eval.config.run_config import RunConfig
-from hthor.eval.config.sessions import Session
 from hthor.eval.config.study_design import StudyDesign, assign_conditions
 from hthor.eval.merge import merge_shards
 from hthor.eval.records.run_folder import RunFolder
@@ -28,6 +27,8 @@ from hthor.leaderboard.entries import overrides
 from hthor.report.analysis import build, load_runs
 from hthor.report.page import case_study, headline, sentences
 from hthor.report.terminal import result_tables
+from hthor.trials import sessions
+from hthor.trials.sessions import Session
 
 COUNT = 20
 CONDITIONS = ("helper", "none", "rival")
@@ -76,7 +77,7 @@ def condition(name: str, participants: int = 6, *, seed: int = 0) -> tuple[RunCo
     ):
         design = design_of(name, participants)
         plan = run_config.build_config(tasks, who, humans="proxy", seed=seed, participants=None, design=design)
-        return plan, sessions.make_sessions(tasks, agent=who, seed=seed, design=design)
+        return plan, sessions.make_sessions(tasks, agent=who, seed=seed, numbers=design.sessions(seed, 1))
 
 
 def test_groups_do_the_same_tasks_with_different_people() -> None:
@@ -206,7 +207,7 @@ def test_shards_of_a_group_are_merged(tmp_path: Path) -> None:
     whole = played(tmp_path / "whole", "helper", 12)
     parts = []
     for words in ("1/2", "2/2"):
-        shard = run_config.shard_config(plan, sessions.parse_shard(words), COUNT)
+        shard = run_config.shard_config(plan, shards.parse_shard(words), COUNT)
         part = RunFolder(tmp_path / words[0])
         run.run_evaluation(
             shard,

@@ -43,7 +43,7 @@ SCRIPT = """
 import json
 import guest_agents
 from hthor.errors import HthorError
-from hthor.eval.config import robot_team
+from hthor.trials import robot_team
 from hthor.guest import Guest, GuestConfig
 from hthor.guest.agent.inputs import parse_inputs
 

@@ -29,14 +29,14 @@ from typer.testing import CliRunner
 from hthor import guest
 from hthor.cli import app
 from hthor.errors import AgentError, HthorError, RunError
-from hthor.eval.config import robot_team
-from hthor.eval.runner import trial_runner
+from hthor.eval.runner import session_runner
 from hthor.guest import AgentInputs, Guest, GuestConfig, GuestFault
 from hthor.guest.agent import agent_files, manifest
 from hthor.guest.agent import inputs as giving
 from hthor.guest.agent.agent_paths import AgentPaths
 from hthor.guest.agent.manifest import File
 from hthor.guest.client import file_recorder
+from hthor.trials import Participants, TrialRunner, robot_team
 from tests.support.guest_agents import BRIEFING, HEAD, look
 
 
@@ -420,12 +420,12 @@ in_force = functools.cache(guest.in_force)
 """Each command asks this by starting a guest; here the first answer counts for all."""
 
 
-class Quick(trial_runner.TrialRunner):
+class Quick(TrialRunner):
     """Trials of some dozen ticks in a world without an engine."""
 
-    def enter(self, session: Any) -> trial_runner.Participants:
+    def enter(self, session: Any) -> Participants:
         make = lambda seat: self._make_agent(seat, None)  # noqa: E731
-        return trial_runner.Participants({"human": episode_fakes.Mind()}, session.trials[0].robots, make)
+        return Participants({"human": episode_fakes.Mind()}, session.trials[0].robots, make)
 
     def world(self, trial: Any) -> Any:
         return guest_fakes.Stage(seen=20 + trial.index)
@@ -435,7 +435,7 @@ class Quick(trial_runner.TrialRunner):
 def evaluate(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[..., Any]:
     """`hthor eval` with real agents, logs and results, in a world without an engine."""
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(trial_runner, "TrialRunner", Quick)
+    monkeypatch.setattr(session_runner, "TrialRunner", Quick)
     monkeypatch.setattr(guest, "in_force", in_force)
     eval_fakes.play_here(monkeypatch)
 

@@ -9,9 +9,9 @@ import pytest
 
 from hthor import tasks
 from hthor.episode import EpisodeLog, play
-from hthor.eval.config.sessions import make_sessions
-from hthor.eval.runner import trial_runner
 from hthor.tasks.suite import make_suite
+from hthor.trials import Participants, TrialRunner
+from hthor.trials.sessions import make_sessions
 from hthor.types import Action, Briefing, Observation, TrialSpec
 from hthor.types.events import Event
 
@@ -103,7 +103,7 @@ class Shut:
         return getattr(self._world, name)
 
 
-def trials(agent: str, stage: trial_runner.TrialRunner, *, veiled: bool) -> list[EpisodeLog]:
+def trials(agent: str, stage: TrialRunner, *, veiled: bool) -> list[EpisodeLog]:
     smoke = tasks.load_suite("smoke")
     few = make_suite("few", 1, tuple(task for task in smoke.tasks if task.house == "elder"))
     session, logs = make_sessions(few, agent=agent, seed=2)[0], []
@@ -113,9 +113,7 @@ def trials(agent: str, stage: trial_runner.TrialRunner, *, veiled: bool) -> list
     return logs
 
 
-def _one(
-    trial: TrialSpec, stage: trial_runner.TrialRunner, company: trial_runner.Participants, veiled: bool
-) -> EpisodeLog:
+def _one(trial: TrialSpec, stage: TrialRunner, company: Participants, veiled: bool) -> EpisodeLog:
     world = stage.world(trial)
     if not veiled:
         return play(trial, world, company.humans, company.ready_agents())
@@ -124,12 +122,12 @@ def _one(
 
 
 @pytest.fixture(scope="module")
-def stage() -> trial_runner.TrialRunner:
-    return trial_runner.TrialRunner()
+def stage() -> TrialRunner:
+    return TrialRunner()
 
 
 @pytest.mark.parametrize("agent", [pytest.param("silent", marks=pytest.mark.nightly), "oracle"])
-def test_a_person_plays_on_without_the_truth(agent: str, stage: trial_runner.TrialRunner) -> None:
+def test_a_person_plays_on_without_the_truth(agent: str, stage: TrialRunner) -> None:
     veiled, plain = trials(agent, stage, veiled=True), trials(agent, stage, veiled=False)
     assert veiled == plain, "what was hidden had been used"
     assert sum(log.ticks for log in veiled) > 4 * 50
@@ -138,7 +136,7 @@ def test_a_person_plays_on_without_the_truth(agent: str, stage: trial_runner.Tri
     assert ("offer" in kinds) == (agent == "oracle")
 
 
-def test_the_veil_holds(stage: trial_runner.TrialRunner) -> None:
+def test_the_veil_holds(stage: TrialRunner) -> None:
     """The guard itself: whoever looks at the truth is caught."""
 
     class Cheat:

@@ -16,7 +16,7 @@ from hthor import seeds, tasks
 from hthor.calibration.from_logs import one_person, trial_features
 from hthor.cli import app
 from hthor.errors import HthorError, UnknownName
-from hthor.eval.config import cli_command, human_populations, human_team, run_config, sessions
+from hthor.eval.config import cli_command, human_populations, run_config, shards
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.replay import human_trace
 from hthor.eval.replay.session_history import RunFiles
@@ -24,6 +24,7 @@ from hthor.eval.runner import experiment, progress, run_options
 from hthor.leaderboard.entries import overrides
 from hthor.report.drawing import trial_trace
 from hthor.tasks.suite import encode_suite, make_suite
+from hthor.trials import human_team, sessions
 from hthor.types import HUMAN
 from hthor.types.events import Shown
 
@@ -99,10 +100,10 @@ def test_the_number_of_participants_comes_out_even() -> None:
     assert build(suite, crew, humans="proxy,proxy", seed=0, participants=8).sessions == 4
     with pytest.raises(HthorError, match="must be a multiple of 2, such as 6"):
         build(suite, crew, humans="proxy,proxy", seed=0, participants=5)
-    part = run_config.shard_config(plan, sessions.parse_shard("3/3"), 30)
+    part = run_config.shard_config(plan, shards.parse_shard("3/3"), 30)
     assert part.shard.trials == 10
     with pytest.raises(HthorError, match="has 3 sessions, so there can be 3 shards at most"):
-        run_config.shard_config(plan, sessions.parse_shard("1/4"), 30)
+        run_config.shard_config(plan, shards.parse_shard("1/4"), 30)
 
 
 def test_run_json_has_each_of_them() -> None:

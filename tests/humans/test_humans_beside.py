@@ -11,8 +11,6 @@ from still_person import StillPerson
 
 from hthor import houses, tasks
 from hthor.episode import EpisodeLog, play
-from hthor.eval.config.sessions import make_sessions
-from hthor.eval.runner.trial_runner import TrialRunner
 from hthor.houses.space.free_space import FreeSpace
 from hthor.humans.core.other_people import OtherPeople
 from hthor.humans.core.trial_context import HumanContext
@@ -20,6 +18,8 @@ from hthor.humans.memory.spatial_memory import SpatialMemory
 from hthor.humans.motor.locomotion import Walker
 from hthor.humans.population.parameters import Parameters
 from hthor.tasks.suite import make_suite
+from hthor.trials import TrialRunner
+from hthor.trials.sessions import make_sessions
 from hthor.types import Action, Briefing, Detection, Goal, HumanSeat, Observation, Pose, TaskSpec, TrialSpec, Vec2, Wait
 from hthor.types.events import InWay
 from hthor.world import World

@@ -15,13 +15,13 @@ from world_house import COFFEE, COUNTER, on
 from hthor import episode as umpire
 from hthor import plugins, rules
 from hthor.errors import HthorError
-from hthor.eval.config import sessions
 from hthor.eval.records import trial_record
 from hthor.humans.models import _logged_trials, greedy, proxy, random, replay
 from hthor.humans.population.parameters import Parameters
 from hthor.humans.population.participant import Participant
 from hthor.tasks.suite import make_suite
 from hthor.tasks.suites import library
+from hthor.trials import sessions
 from hthor.types import (
     HUMAN,
     Action,
@@ -224,15 +224,15 @@ def elder() -> World:
 
 @pytest.mark.parametrize("suite", SUITES)
 def test_both_ends_play_every_kind_of_task(suite, elder):
-    from hthor.eval.runner import trial_runner
+    from hthor.trials import TrialRunner
 
     task = msgspec.structs.replace(elder_task(suite), time_limit=30.0, phases=())
     one = sessions.make_sessions(make_suite("one", 1, (task,)), agent="oracle", robot="tender", humans="greedy")[0]
-    stage = trial_runner.TrialRunner()
+    stage = TrialRunner()
     for made in (greedy.Model, random.Model):
         with stage.enter(one) as company:
             company.humans[HUMAN] = made(Participant(seed=0, number=0, traits=QUICK))
-            done = trial_runner._run_trial(elder, company, one.trials[0])
+            done = stage.run(company, one.trials[0], elder).log
         assert done.met or done.ticks == round(task.time_limit / rules.TICK_S)
         assert not done.faults
         answers = {event.kind for event in done.events if event.kind in ("accepted", "declined")}

@@ -7,9 +7,9 @@ import pytest
 
 from hthor import rules, tasks
 from hthor.episode import EpisodeLog, play
-from hthor.eval.config.sessions import make_sessions
-from hthor.eval.runner import trial_runner
 from hthor.tasks.suite import make_suite
+from hthor.trials import TrialRunner
+from hthor.trials.sessions import make_sessions
 from hthor.types import HUMAN, Action, Briefing, Move, Observation, Rotate
 
 PEOPLE = 2
@@ -40,26 +40,26 @@ class Spinner:
 
 
 @pytest.fixture(scope="module")
-def stage() -> trial_runner.TrialRunner:
-    return trial_runner.TrialRunner()
+def stage() -> TrialRunner:
+    return TrialRunner()
 
 
 @pytest.fixture(scope="module")
-def alone(stage: trial_runner.TrialRunner) -> list[EpisodeLog]:
+def alone(stage: TrialRunner) -> list[EpisodeLog]:
     return first_trials("silent", stage)
 
 
 @pytest.fixture(scope="module")
-def spun(stage: trial_runner.TrialRunner) -> list[EpisodeLog]:
+def spun(stage: TrialRunner) -> list[EpisodeLog]:
     return first_trials("frontier", stage, Spinner())
 
 
 @pytest.fixture(scope="module")
-def wandered(stage: trial_runner.TrialRunner) -> list[EpisodeLog]:
+def wandered(stage: TrialRunner) -> list[EpisodeLog]:
     return first_trials("frontier", stage, Wanderer())
 
 
-def first_trials(agent: str, stage: trial_runner.TrialRunner, mind: object = None) -> list[EpisodeLog]:
+def first_trials(agent: str, stage: TrialRunner, mind: object = None) -> list[EpisodeLog]:
     """The first trials of a few people, in a few houses."""
     smoke, logs = tasks.load_suite("smoke"), []
     few = make_suite("few", 1, tuple(task for task in smoke.tasks if task.house in HOUSES))
@@ -84,9 +84,7 @@ def meeting(log: EpisodeLog) -> int:
 
 
 @pytest.mark.parametrize("agent", ["frontier", "oracle"])
-def test_until_they_meet_the_person_is_alone(
-    agent: str, stage: trial_runner.TrialRunner, alone: list[EpisodeLog]
-) -> None:
+def test_until_they_meet_the_person_is_alone(agent: str, stage: TrialRunner, alone: list[EpisodeLog]) -> None:
     apart = 0
     for without, together in zip(alone, first_trials(agent, stage), strict=True):
         until = min(meeting(together), without.ticks)

@@ -14,12 +14,12 @@ from hypothesis import strategies as st
 from hthor import rules, tasks
 from hthor.calibration.from_logs import trial_features
 from hthor.calibration.from_logs.features import locomotion
-from hthor.eval.config.sessions import Session, make_sessions
 from hthor.eval.records import trial_record
 from hthor.eval.records.trial_record import TrialRecord
-from hthor.eval.runner import trial_runner
+from hthor.eval.runner import session_runner
 from hthor.humans.core.behaviour_log import BehaviourRecorder
 from hthor.tasks.suite import make_suite
+from hthor.trials.sessions import Session, make_sessions
 from hthor.types import HUMAN, Move, Rotate, Wait
 from hthor.types.events import Attempt, Event, JournalEntry, Picked
 from hthor.world.model.bodies.avatar import HUMAN as BODY
@@ -94,7 +94,7 @@ def played() -> list[TrialRecord]:
     smoke = tasks.load_suite("smoke")
     few = make_suite("few", 1, tuple(task for task in smoke.tasks if task.house == "elder"))
     whole = make_sessions(few, agent="oracle", seed=3)[0]
-    return [done.record for done in trial_runner.make_runner()(Session(number=whole.number, trials=whole.trials[:4]))]
+    return [done.record for done in session_runner.make_runner()(Session(number=whole.number, trials=whole.trials[:4]))]
 
 
 def test_nobody_goes_farther_than_the_stick_says(played: list[TrialRecord]) -> None:

@@ -21,11 +21,10 @@ from rich.console import Console
 from hthor import cli, plugins, rules, tasks
 from hthor.errors import HthorError, PopulationError, UnknownName
 from hthor.eval.comparison import population_matrix
-from hthor.eval.config import human_populations, human_team, sessions
+from hthor.eval.config import human_populations
 from hthor.eval.config.human_populations import HumanModelRef
 from hthor.eval.results import result_file
-from hthor.eval.runner import experiment, progress, run_options, trial_runner
-from hthor.eval.runner.trial_runner import Sources
+from hthor.eval.runner import experiment, progress, run_options, session_runner
 from hthor.humans.population import (
     describe,
     kinds,
@@ -38,6 +37,7 @@ from hthor.humans.population import (
 from hthor.humans.population.parameters import Parameters
 from hthor.humans.population.population import Population, Validity
 from hthor.report.terminal import result_tables
+from hthor.trials import Sources, TrialRunner, human_team, sessions
 
 pytestmark = pytest.mark.usefixtures("no_workers")
 
@@ -275,7 +275,7 @@ def test_every_robot_meets_the_same_people(files: Path):
         fakes.crew("none", absent=True),
     ]
     dealt = [sessions.make_sessions(suite, agent=crew, humans=word, seed=4) for crew in crews]
-    stage = trial_runner.TrialRunner(Sources(humans=resolve.resolve_humans(word).word))
+    stage = TrialRunner(Sources(humans=resolve.resolve_humans(word).word))
     met = []
     for run in dealt:
         whole = []
@@ -319,13 +319,13 @@ def test_a_file_that_changes_during_a_run_stops_it(files: Path):
         fakes.suite(10), agent=fakes.crew("helper"), humans=human_team.form_team([found])
     )
     population_file.save_population(small(suite="other"), files / "pop")  # says something else of the same people
-    assert trial_runner.TrialRunner(Sources(humans=found.word))._people_of(one.trials[0]).sha256 == found.sha256
+    assert TrialRunner(Sources(humans=found.word))._people_of(one.trials[0]).sha256 == found.sha256
     rows = [[0.4, 0.2]]
     population_file.save_population(
         Population.make("pop", rows, names=("v_pace", "sigma"), purpose="", seed=0, command=""), files / "pop"
     )
     with pytest.raises(HthorError, match=r"pop\.npz was changed while its run was going on"):
-        trial_runner.TrialRunner(Sources(humans=found.word))._people_of(one.trials[0])
+        TrialRunner(Sources(humans=found.word))._people_of(one.trials[0])
 
 
 # ---------------------------------------------------------------------------------------------------------- validity
@@ -402,7 +402,7 @@ def fake(monkeypatch: pytest.MonkeyPatch) -> None:
     """A suite called ``fake`` of twenty tasks, played in no time."""
     real = tasks.load_suite
     monkeypatch.setattr(tasks, "load_suite", lambda name: fakes.suite(20) if name == "fake" else real(name))
-    monkeypatch.setattr(trial_runner, "make_runner", fakes.player)
+    monkeypatch.setattr(session_runner, "make_runner", fakes.player)
 
 
 @pytest.mark.usefixtures("fake")
@@ -440,7 +440,7 @@ def test_each_people_is_a_run_of_its_own(files: Path):
 
 @pytest.mark.usefixtures("fake")
 def test_the_bracket_says_what_becomes_of_each_conclusion(files: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr(trial_runner, "make_runner", fakes.leaning_player)
+    monkeypatch.setattr(session_runner, "make_runner", fakes.leaning_player)
     words, agents = (f"bracket@{files}/pop.npz", f"slow@{files}/pop.npz"), ("none", "frontier")
     options = run_options.RunOptions(agents=agents, humans=words, suite="fake", jobs=1, out=files / "out")
     whole = population_matrix.make_matrix(
@@ -500,10 +500,10 @@ def test_a_worker_finds_files_by_path(files: Path):
     found = resolve.resolve_humans(f"{files}/mine.py@{files}/pop.npz")
     (one,) = sessions.make_sessions(suite, agent="none", humans=human_team.form_team([found]), participants=1)
     code = (
-        "import sys, msgspec\nfrom hthor.eval.runner import trial_runner\n"
-        "from hthor.eval.runner.trial_runner import Sources\nfrom hthor.types import TrialSpec\n"
+        "import sys, msgspec\nfrom hthor.trials import Sources, TrialRunner\n"
+        "from hthor.types import TrialSpec\n"
         "trial = msgspec.json.decode(sys.stdin.buffer.read(), type=TrialSpec)\n"
-        "found = trial_runner.TrialRunner(Sources(humans=sys.argv[1]))._people_of(trial).members[0]\n"
+        "found = TrialRunner(Sources(humans=sys.argv[1]))._people_of(trial).members[0]\n"
         "print(type(found.make_model(trial.seed, 0)).__module__, found.participant(0, 0).traits.v_pace)\n"
     )
     said = subprocess.run(

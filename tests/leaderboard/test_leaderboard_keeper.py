@@ -16,7 +16,6 @@ from law_cases import cases
 
 from benchmarks import forging
 from hthor import jsonio
-from hthor.eval.config import sessions
 from hthor.eval.runner.messages import SessionAbandoned
 from hthor.leaderboard import board_check, enter, publish
 from hthor.leaderboard.entries import column_packing, entry_metrics, files, trial_outcomes, verification
@@ -26,6 +25,7 @@ from hthor.leaderboard.entries.verification import KeeperRecords, Verification
 from hthor.leaderboard.ranking import admission, listing
 from hthor.leaderboard.ranking.board import Row
 from hthor.leaderboard.verify import detection_power, fresh_tasks, performance_drop, replay, verdict, verify
+from hthor.trials import sessions
 
 
 def entries_of(board: Path) -> list[Entry]:

@@ -18,31 +18,29 @@ from typing import Any
 import msgspec
 
 from hthor import guest, jsonio, tasks
-from hthor.eval.config import robot_team, run_config, sessions
+from hthor.eval.config import run_config
 from hthor.eval.records import run_isolation
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_log import read
-from hthor.eval.runner import fault_report, progress, run, trial_runner, worker
-from hthor.eval.runner.run_job import make_sources
-from hthor.eval.runner.trial_runner import Sources
+from hthor.eval.runner import fault_report, progress, run, session_runner, worker
 from hthor.eval.runner.worker import News
 from hthor.guest import Guest, GuestConfig, GuestPool, IsolationError
 from hthor.tasks.suite import make_suite
+from hthor.trials import Sources, TrialRunner, Worlds, make_sources, robot_team, sessions
 from hthor.types import HUMAN, AgentRef
 from tests.redteam.agents import HONEST, HOSTILE, NO_FAULT, Case, source
 from tests.redteam.play import SECRET, lay_out, listening
 
 NOP = Case("nop", "pass", (NO_FAULT,), "")
 _TASK, _LIMIT_S = "smoke/alder/manipulation-01", 3.0
-_WORLDS: dict[object, Any] = {}
+_WORLDS = Worlds()
 
 
-class _Stage(trial_runner.TrialRunner):
+class _Runner(TrialRunner):
     """Keeps its world for the next run too, which saves building it for every agent."""
 
     def __init__(self, sources: Sources | None = None, pool: GuestPool | None = None) -> None:
-        super().__init__(sources, pool)
-        self._worlds = _WORLDS
+        super().__init__(sources, pool, _WORLDS)
 
 
 class _Here:
@@ -57,7 +55,7 @@ class _Here:
 def main(levels: list[str], wanted: list[str]) -> None:
     """Play the agents of these names, or all, at each level, with one that does nothing first."""
     os.environ["HTHOR_SALT"] = SECRET
-    trial_runner.TrialRunner = _Stage  # type: ignore[misc]
+    session_runner.TrialRunner = _Runner  # type: ignore[misc]
     cases = [one for one in (*HOSTILE, *HONEST) if not wanted or one.name in wanted]
     told: list[dict[str, Any]] = []
     missing: dict[str, str] = {}
@@ -91,7 +89,7 @@ def _play(home: Path, case: Case, text: str, held: guest.Isolation) -> dict[str,
     plan = run_config.build_config(suite, crew, humans="proxy", seed=0, participants=None)
     hidden = (str(home / "runs"), str(home / "official.json"))
     config = GuestConfig(isolation=held.level, hidden=hidden)
-    make = functools.partial(trial_runner.make_runner, make_sources(crew, guests=config))
+    make = functools.partial(session_runner.make_runner, make_sources(crew, guests=config))
     result = run.run_evaluation(
         plan,
         sessions.make_sessions(suite, agent=crew),

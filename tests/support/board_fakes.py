@@ -12,7 +12,6 @@ import msgspec
 import pytest
 
 from hthor import code_identity, jsonio
-from hthor.eval.config import robot_team
 from hthor.eval.records import trial_record
 from hthor.leaderboard import enter, publish
 from hthor.leaderboard.entries import files
@@ -20,6 +19,7 @@ from hthor.leaderboard.entries.entry import Entry
 from hthor.leaderboard.entries.verification import KeeperRecords, Replayed, Verification
 from hthor.leaderboard.ranking import admission
 from hthor.tasks.suites.commitment import Commitment
+from hthor.trials import robot_team
 from hthor.types import AgentRef
 
 COUNT = 20

@@ -10,8 +10,8 @@ from hthor import seeds
 from hthor.calibration.simulation import design_points, simulate, trial_table
 from hthor.calibration.simulation.trial_table import Table
 from hthor.calibration.targets import CONDITIONS
-from hthor.eval.config.sessions import assign_tasks
 from hthor.humans.population import parameter_registry
+from hthor.trials.sessions import assign_tasks
 
 NAMES = parameter_registry.free_parameter_names()
 V, LAM, A0 = (NAMES.index(name) for name in ("v_pace", "lam0", "a0"))

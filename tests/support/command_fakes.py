@@ -22,12 +22,12 @@ def main(name: str) -> None:
     import eval_fakes
 
     from hthor import cli, tasks
-    from hthor.eval.config import robot_team
-    from hthor.eval.runner import engines, trial_runner
+    from hthor.eval.runner import engines, session_runner
+    from hthor.trials import robot_team
 
     real, introduce = tasks.load_suite, robot_team.load_agent_info
     tasks.load_suite = lambda word: eval_fakes.suite(20) if word == "fake" else real(word)
-    trial_runner.make_runner = functools.partial(command_fakes.perform, name)
+    session_runner.make_runner = functools.partial(command_fakes.perform, name)
     robot_team.load_agent_info = lambda word, *_: (
         eval_fakes.character(word) if word in ("helper", "clumsy") else introduce(word)
     )

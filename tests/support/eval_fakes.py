@@ -21,22 +21,22 @@ import msgspec
 from hthor import code_identity, seeds
 from hthor.episode import EpisodeLog, Fault
 from hthor.errors import KILLED, AgentKilled
-from hthor.eval.config import human_team, robot_team, run_config, sessions
-from hthor.eval.config.human_team import HumanTeam
+from hthor.eval.config import run_config
 from hthor.eval.config.run_config import RunConfig
-from hthor.eval.config.sessions import Session
 from hthor.eval.records import scored_trial, trial_record
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.scored_trial import ScoredTrial
 from hthor.eval.runner import engines, worker
 from hthor.eval.runner.engines import SessionFailed
 from hthor.eval.runner.messages import Failed, News, TrialOutcome
-from hthor.eval.runner.trial_runner import Sources
 from hthor.humans.population import resolve
 from hthor.humans.population.population import Population, Validity
 from hthor.humans.population.resolve import ParticipantSource
 from hthor.tasks import Suite
 from hthor.tasks.suite import make_suite
+from hthor.trials import Sources, human_team, robot_team, sessions
+from hthor.trials.human_team import HumanTeam
+from hthor.trials.sessions import Session
 from hthor.types import AgentRef, Goal, Placement, Pose, TaskSpec, TrialSpec
 from hthor.types.events import Accepted, Sent, Success, Timeout
 

@@ -11,9 +11,9 @@ import msgspec
 
 from hthor import guest
 from hthor.episode import play
-from hthor.eval.config.sessions import Session
-from hthor.eval.runner import trial_runner
 from hthor.eval.runner.messages import TrialOutcome
+from hthor.trials import Participants
+from hthor.trials.sessions import Session
 from hthor.types import HUMAN, RobotSeat, Snapshot, TaskSpec
 
 AGENT = """
@@ -52,7 +52,7 @@ def player(agent: str, level: str) -> Callable[[Session], Iterator[TrialOutcome]
         return guest.Guest(agent, config=guest.GuestConfig(isolation=level))
 
     def perform(session: Session) -> Iterator[TrialOutcome]:
-        with trial_runner.Participants({HUMAN: episode_fakes.Mind()}, session.trials[0].robots, mind) as company:
+        with Participants({HUMAN: episode_fakes.Mind()}, session.trials[0].robots, mind) as company:
             for memory, trial in enumerate(session.trials):
                 task = msgspec.structs.replace(trial.task, kind="object_goal_navigation")
                 stage = Stage(seen=fakes.episode(trial, memory).ticks // 10)

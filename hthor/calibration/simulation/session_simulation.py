@@ -7,19 +7,21 @@ people, and does ten tasks one after the other with the robot of a condition, or
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
+import msgspec
 from msgspec import Struct
 
 from hthor import plugins, rules
-from hthor.episode import EpisodeLog, play, task_part
+from hthor.episode import EpisodeLog, task_part
 from hthor.errors import HthorError
 from hthor.eval.runner.messages import TrialOutcome
-from hthor.eval.runner.trial_runner import Sources, TrialRunner
 from hthor.humans.models.proxy import Model
 from hthor.humans.population import parameter_registry
 from hthor.humans.population.parameters import Parameters
 from hthor.humans.population.participant import Participant, add_random_effects, participant_root
 from hthor.tasks import Suite
-from hthor.types import HUMAN, HumanSeat, RobotSeat, TaskSpec, TrialSpec
+from hthor.trials import Participants, Sources, TrialRunner
+from hthor.trials.sessions import StudySetup, make_setup
+from hthor.types import HUMAN, TrialSpec
 from hthor.types.events import Picked, Sent
 
 CODE_ROOT = "sessions"
@@ -61,17 +63,19 @@ class SessionOutcome(Struct, frozen=True, kw_only=True):
 
 
 def make_session_runner(
-    suite: Suite, robots: tuple[tuple[RobotSeat, ...], ...]
+    suite: Suite, agents: Sequence[str], robot: str
 ) -> Callable[[SessionSpec], Iterator[TrialOutcome]]:
-    """A function that runs sessions in a worker, with each condition's robots: it reports each trial, then the session.
+    """A function that runs sessions in a worker, with each condition's agent: it reports each trial, then the session.
 
     The function is called in the worker; it keeps worlds for later sessions.
     """
+    kinds = sorted({task.kind for task in suite.tasks})
+    setups = [make_setup(kinds, agent=agent, robot=robot) for agent in agents]
     runner = TrialRunner(Sources(houses=str(suite.houses.folder or "")))
 
     def run(spec: SessionSpec) -> Iterator[TrialOutcome]:
         rows = []
-        for row in run_session(spec, suite, robots[spec.condition], runner):
+        for row in run_session(spec, suite, setups[spec.condition], runner):
             rows.append(row)
             yield _message(SessionOutcome(rows=(row,)))
         yield _message(SessionOutcome(key=spec.key, rows=tuple(rows)))
@@ -84,11 +88,10 @@ def _message(outcome: Any) -> TrialOutcome:
     return TrialOutcome(record=outcome)
 
 
-def run_session(
-    spec: SessionSpec, suite: Suite, robots: tuple[RobotSeat, ...], runner: TrialRunner
-) -> Iterator[OutcomeRow]:
+def run_session(spec: SessionSpec, suite: Suite, setup: StudySetup, runner: TrialRunner) -> Iterator[OutcomeRow]:
     """Run a session from its first trial to its last; yields a row of `OUTCOMES` per trial."""
-    trials = [_trial(spec, suite.tasks[number], robots, index) for index, number in enumerate(spec.tasks)]
+    setup = msgspec.structs.replace(setup, seed=spec.seed)
+    trials = setup.session(spec.participant, [suite.tasks[number] for number in spec.tasks]).trials
     logs = run_trials(trials, parameter_registry.parameters_at(spec.point), runner)
     for number, trial, log in zip(spec.tasks, trials, logs, strict=True):
         if log.faults:
@@ -101,9 +104,9 @@ def run_trials(trials: Sequence[TrialSpec], population: Parameters, runner: Tria
     seed, participant = trials[0].seed, trials[0].humans[0].participant
     traits = add_random_effects(population, participant_root(seed, participant))
     human = Model(Participant(seed=seed, number=participant, traits=traits))
-    agents = {seat.seat: plugins.load("agent", seat.agent.name)() for seat in trials[0].robots}
+    participants = Participants({HUMAN: human}, trials[0].robots, lambda seat: plugins.load("agent", seat.agent.name)())
     for trial in trials:
-        yield play(trial, runner.world(trial), {"human": human}, agents)
+        yield runner.run(participants, trial).log
 
 
 def outcome_row(number: int, trial: TrialSpec, log: EpisodeLog) -> OutcomeRow:
@@ -118,17 +121,3 @@ def outcome_row(number: int, trial: TrialSpec, log: EpisodeLog) -> OutcomeRow:
     ticks = log.ticks if log.met else round(trial.task.time_limit / rules.TICK_S)
     ticks_of_first = [first.get(kind, -1) for kind in _FIRST]
     return (number, int(log.met), ticks, *ticks_of_first, messages, int("accepted" in first), log.ratings[HUMAN] or 0)
-
-
-def _trial(spec: SessionSpec, task: TaskSpec, robots: tuple[RobotSeat, ...], index: int) -> TrialSpec:
-    return TrialSpec(
-        task=task,
-        robots=robots,
-        humans=(HumanSeat(seat=HUMAN, model="proxy", sha256="", participant=spec.participant),),
-        session=spec.participant,
-        index=index,
-        seed=spec.seed,
-        suite_sha256="",
-        rules_sha256="",
-        code_sha256="",
-    )

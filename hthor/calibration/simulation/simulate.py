@@ -16,7 +16,6 @@ from hthor.calibration.simulation.session_store import SessionStore, TrialIdenti
 from hthor.calibration.simulation.trial_table import AGENTS, Table
 from hthor.calibration.targets import CONDITIONS, Design
 from hthor.errors import RunError
-from hthor.eval.config import robot_team, sessions
 from hthor.eval.runner.collector import InternalFailure
 from hthor.eval.runner.engines import Interrupted, stoppable
 from hthor.eval.runner.engines.local import SessionLost, run_all_sessions
@@ -24,7 +23,7 @@ from hthor.eval.runner.messages import TrialDone
 from hthor.eval.runner.progress import Watcher
 from hthor.humans.population import parameter_registry
 from hthor.tasks import Suite
-from hthor.types import RobotSeat
+from hthor.trials import sessions
 
 _MET = OUTCOMES.index("met")
 
@@ -114,14 +113,9 @@ def make_table(batch: SessionBatch, outcomes: Mapping[str, SessionOutcome], **mo
     return trial_table.build_table(parameter_registry.free_parameter_names(), batch.points, columns)
 
 
-def robots_by_condition() -> tuple[tuple[RobotSeat, ...], ...]:
-    """The robots of each condition."""
-    return tuple(robot_team.form_team([session_store.ROBOT], [agent]).seats for agent in AGENTS)
-
-
 def _run(suite: Suite, left: Sequence[SessionSpec], store: SessionStore, jobs: int, watch: Watcher) -> None:
     # The runner's types are those of evaluations; it hands sessions and outcomes through as they are.
-    make: Any = functools.partial(session_simulation.make_session_runner, suite, robots_by_condition())
+    make: Any = functools.partial(session_simulation.make_session_runner, suite, AGENTS, session_store.ROBOT)
     specs: Any = left
     with stoppable() as stop, closing(run_all_sessions(specs, make, jobs=jobs)) as stream:
         try:

@@ -18,13 +18,13 @@ from hthor.calibration.validation import plan
 from hthor.calibration.validation.plan import SUITE, ValidationOptions, ValidationRun
 from hthor.calibration.validation.report import build, measures, page
 from hthor.calibration.validation.report.findings import Findings, ModelFigures, ModelUnderTest, Setting
-from hthor.eval.config.sessions import sessions_needed
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner import experiment
 from hthor.eval.runner.progress import Watcher
 from hthor.humans.population import resolve
 from hthor.humans.population.resolve import PROXY, ParticipantSource
 from hthor.tasks import Suite
+from hthor.trials.sessions import sessions_needed
 
 TARGETS = "paper"
 JUDGED = 18

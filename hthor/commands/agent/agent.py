@@ -63,7 +63,7 @@ agent.command("run")(agents_of_mine.run)
 def list_robots(shape: Shape = Format.TABLE, json: Json = False) -> None:
     """List the robots."""
     from hthor import plugins
-    from hthor.eval.config import robot_team
+    from hthor.trials import robot_team
 
     rows = []
     for name in plugins.names("robot"):

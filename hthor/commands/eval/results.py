@@ -24,7 +24,7 @@ _ORIGINS = {"COMMANDLINE": "flag", "ENVIRONMENT": "environment", "DEFAULT": "def
 
 def show_run(console: Console, one: FinishedRun) -> None:
     """Print a run's table, its first fault, its files and the next commands."""
-    from hthor.eval.config.sessions import whole_folder
+    from hthor.eval.config.shards import whole_folder
     from hthor.eval.records import find
     from hthor.eval.runner import fault_report
     from hthor.leaderboard.entries import overrides

@@ -13,10 +13,10 @@ from hthor.errors import AgentError, HthorError
 from hthor.eval.agent_check import criteria
 from hthor.eval.agent_check.criteria import Finding
 from hthor.eval.agent_check.probe_trials import ProbeTrials
-from hthor.eval.config import robot_team
-from hthor.eval.config.robot_team import AgentInfo
 from hthor.guest import AgentInputs, Guest, GuestConfig, Isolation
 from hthor.guest.agent import agent_files
+from hthor.trials import robot_team
+from hthor.trials.robot_team import AgentInfo
 from hthor.types.cameras import OWN
 
 SCHEMA = "hthor.check/1"

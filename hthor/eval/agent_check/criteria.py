@@ -10,10 +10,10 @@ from msgspec import Struct
 from hthor import rules
 from hthor.episode import Fault
 from hthor.eval.agent_check.probe_trials import ProbeResult
-from hthor.eval.config.robot_team import AgentInfo
 from hthor.eval.runner.fault_report import redact
 from hthor.guest import File
 from hthor.humans.population.parameters import Parameters
+from hthor.trials.robot_team import AgentInfo
 
 Status = Literal["ok", "broken", "warning", "skipped"]
 _ADVICE = {

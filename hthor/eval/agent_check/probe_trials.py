@@ -8,17 +8,14 @@ import msgspec
 from msgspec import Struct
 
 from hthor import activity, rules, tasks
-from hthor.episode import EpisodeLog, Fault, play
+from hthor.episode import EpisodeLog, Fault
 from hthor.episode.clocks import TimedSenses as Timed
-from hthor.eval.config import robot_team
-from hthor.eval.config.robot_team import AgentInfo
-from hthor.eval.config.sessions import Session, make_sessions
 from hthor.eval.records import scored_trial, trial_record
-from hthor.eval.runner import trial_runner
-from hthor.eval.runner.fault_report import RecordedAgent
 from hthor.guest import Guest
 from hthor.guest.process_tools import resource_usage
-from hthor.tasks.suite import make_suite
+from hthor.trials import Participants, Session, TrialRunner, make_session, robot_team
+from hthor.trials.participants import RecordedAgent
+from hthor.trials.robot_team import AgentInfo
 from hthor.types import Action, Briefing, Detection, Observation, Send, TrialSpec, Wait
 from hthor.types.cameras import OWN
 from hthor.types.events import Accepted, Declined, Sent
@@ -75,13 +72,11 @@ class ProbeTrials:
     """
 
     def __init__(self, character: AgentInfo, robot: str, camera: str = OWN) -> None:
-        self._stage = trial_runner.TrialRunner()
+        self._runner = TrialRunner()
         crew = robot_team.form_team([robot], [character], camera=camera)
         known = {task.id: task for task in tasks.load_suite("smoke").tasks}
         short = [msgspec.structs.replace(known[name], time_limit=_LIMIT_S) for name in _TASKS]
-        dealt = make_sessions(make_suite("rehearsal", 1, tuple(short)), agent=crew, participants=1)[0]
-        by_task = {trial.task.id: trial for trial in dealt.trials}
-        self.a, self.b = (by_task[name] for name in _TASKS)
+        self.a, self.b = make_session(short, agent=crew).trials
 
     def play(self, guest: Guest, trials: Sequence[TrialSpec]) -> list[ProbeResult]:
         """Play trials one after the other with the same guest, each with a person who does not remember the others."""
@@ -92,10 +87,9 @@ class ProbeTrials:
         return found
 
     def _play(self, guest: Guest, trial: TrialSpec) -> ProbeResult:
-        humans = self._stage.enter(Session(number=trial.session, trials=(trial,))).humans
-        noted, world = _Noted(guest), self._stage.world(trial)
-        seat = trial.robots[0].seat
-        log = play(trial, world, humans, {seat: noted})
+        noted, seat = _Noted(guest), trial.robots[0].seat
+        humans = self._runner.enter(Session(number=trial.session, trials=(trial,))).humans
+        log = self._runner.run(Participants(humans, trial.robots, lambda _: noted), trial).log
         done = [(look.tick, action) for look, action in noted.looks if action is not None]
         says = [(action.say, seen) for (_, action), seen in zip(done, noted.seen, strict=False)]
         about = [(say.object, seen) for say, seen in says if isinstance(say, Send) and say.object]

@@ -7,11 +7,11 @@ from pathlib import Path
 import msgspec
 
 from hthor import plugins
-from hthor.eval.config.robot_team import NO_ROBOT_AGENT
 from hthor.eval.config.run_config import PROCEDURAL, RunConfig
-from hthor.eval.config.sessions import whole_folder
+from hthor.eval.config.shards import whole_folder
 from hthor.eval.config.study_design import BETWEEN
 from hthor.guest import Manifest
+from hthor.trials.robot_team import NO_ROBOT_AGENT
 from hthor.types import AgentRef, RobotSeat, cameras
 from hthor.types.detector_specs import OWN
 

@@ -9,13 +9,13 @@ from msgspec import Struct
 
 from hthor import jsonio, plugins, rules
 from hthor.errors import HthorError, UnknownName
-from hthor.eval.config import human_team
-from hthor.eval.config.human_team import HumanTeam
-from hthor.eval.config.robot_team import RobotInfo, RobotTeam
 from hthor.humans.population import kinds, parameter_registry, population_file, resolve
 from hthor.humans.population.population import Validity
 from hthor.humans.population.resolve import ParticipantSource
 from hthor.tasks import Suite
+from hthor.trials import human_team
+from hthor.trials.human_team import HumanTeam
+from hthor.trials.robot_team import RobotInfo, RobotTeam
 from hthor.types import RobotSpec
 
 KINDS, BRACKET = "kinds", "bracket"

@@ -11,15 +11,16 @@ from msgspec import Struct
 
 from hthor import code_identity, installation, jsonio, rules
 from hthor.errors import HthorError
-from hthor.eval.config import human_populations, human_team, robot_team, sessions
+from hthor.eval.config import human_populations
 from hthor.eval.config.human_populations import HumanModelRef
-from hthor.eval.config.human_team import HumanTeam
-from hthor.eval.config.robot_team import RobotTeam
-from hthor.eval.config.sessions import Shard
+from hthor.eval.config.shards import Shard
 from hthor.eval.config.study_design import BETWEEN, StudyDesign
 from hthor.guest.agent.manifest import Manifest
 from hthor.humans.population.resolve import PROXY
 from hthor.tasks import Suite
+from hthor.trials import human_team, robot_team, sessions
+from hthor.trials.human_team import HumanTeam
+from hthor.trials.robot_team import RobotTeam
 from hthor.types import RobotSeat
 from hthor.types.specs import LOCKSTEP, Clock
 
@@ -207,7 +208,7 @@ def build_config(
     """The configuration of a run, with every default resolved.
 
     Args:
-        humans: the people of each trial, or the word by which `hthor.eval.config.human_team` finds them.
+        humans: the people of each trial, or the word by which `hthor.trials.human_team` finds them.
         participants: how many people in all; None for the number that is needed to do every task once.
         assets: the furniture pack that pictures show, with its own hash; None for our own furniture.
         clock, step_limit_s: as in `RunConfig`; without a robot, or submitted agents, they make no difference.

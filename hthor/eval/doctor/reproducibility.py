@@ -31,12 +31,12 @@ class TrialFingerprint(Struct, frozen=True, kw_only=True):
 def run_reference_trial() -> TrialFingerprint:
     """The first trial of the first person of the suite, with the frontier robot."""
     from hthor import tasks
-    from hthor.eval.config import sessions
     from hthor.eval.records import trial_record
-    from hthor.eval.runner import trial_runner
+    from hthor.eval.runner import session_runner
+    from hthor.trials import sessions
 
     first = sessions.make_sessions(tasks.load_suite(_SUITE), agent=_AGENT, humans=_PEOPLE, seed=_SEED)[0]
-    done = next(iter(trial_runner.make_runner()(msgspec.structs.replace(first, trials=first.trials[:1])))).record
+    done = next(iter(session_runner.make_runner()(msgspec.structs.replace(first, trials=first.trials[:1])))).record
     course = msgspec.json.decode(trial_record.encode(done))
     for name in ("schema", "key", "spec", "check"):  # not part of the course of the trial
         del course[name]

@@ -10,7 +10,7 @@ from hthor import documents, jsonio
 from hthor.errors import RunError
 from hthor.eval.config import cli_command, run_config
 from hthor.eval.config.run_config import RunConfig
-from hthor.eval.config.sessions import Shard, whole_folder
+from hthor.eval.config.shards import Shard, whole_folder
 from hthor.eval.merge import merge_corrections
 from hthor.eval.records import (
     attempts,

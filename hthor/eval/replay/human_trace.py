@@ -12,15 +12,16 @@ from msgspec import Struct
 
 from hthor import activity, code_identity
 from hthor.errors import HthorError, UnknownName
-from hthor.eval.config.sessions import Session
 from hthor.eval.records import trial_record
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.replay import session_history
 from hthor.eval.replay.session_history import RunFiles
-from hthor.eval.runner.trial_runner import TrialRunner
+from hthor.eval.runner import session_runner
 from hthor.guest import AgentInputs, GuestConfig
 from hthor.humans.core.thoughts import Aim, HumanThought, TrustNow
+from hthor.trials import TrialRunner
+from hthor.trials.sessions import Session
 from hthor.types import Action, Briefing, HumanSeat, Observation, TrialSpec
 from hthor.types.events import (
     Accepted,
@@ -132,7 +133,7 @@ def trace_human(
         for number, one in enumerate(session.trials, 1):
             activity.say(f"playing trial {number} of {len(session.trials)} again")
             person.recording = one == spec
-            record = runner.run(participants, one).record
+            record = session_runner.run_trial(runner, participants, one).record
         traits = {name: getattr(person.human.traits, name) for name in person.human.traits.__struct_fields__}
     journal = [entry for entry in record.journal if isinstance(entry, _JOURNAL) and entry.seat == human.seat]
     messages = [event for event in record.events if isinstance(event, _MESSAGES) and _reader(event) in ("", human.seat)]

@@ -8,18 +8,18 @@ from msgspec import Struct
 
 from hthor import activity, code_identity, plugins
 from hthor.errors import HthorError, RunError
-from hthor.eval.config import robot_team, run_config
-from hthor.eval.config.robot_team import AgentInfo, RobotInfo, RobotTeam
-from hthor.eval.config.sessions import Session
+from hthor.eval.config import run_config
 from hthor.eval.records import trial_record
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.runner.fault_report import FaultReport
 from hthor.eval.runner.messages import TrialOutcome
-from hthor.eval.runner.run_job import make_sources
-from hthor.eval.runner.trial_runner import Sources, make_runner
+from hthor.eval.runner.session_runner import make_runner
 from hthor.guest import AgentInputs, GuestConfig
 from hthor.guest.agent import manifest
+from hthor.trials import Sources, make_sources, robot_team
+from hthor.trials.robot_team import AgentInfo, RobotInfo, RobotTeam
+from hthor.trials.sessions import Session
 from hthor.types import RobotSeat, TrialSpec
 
 Choose = Callable[[RunFolder, RobotSeat, Sequence[AgentInfo]], AgentInfo]

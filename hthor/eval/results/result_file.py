@@ -9,7 +9,6 @@ from msgspec import Struct
 
 from hthor import documents, jsonio
 from hthor.errors import RunError
-from hthor.eval.config import robot_team
 from hthor.eval.config.human_populations import HumanModelRef
 from hthor.eval.config.run_config import AssetsRef, KindRef, SuiteRef
 from hthor.eval.config.study_design import StudyDesign
@@ -17,6 +16,7 @@ from hthor.eval.results.paired_difference import Difference
 from hthor.eval.results.scores import Scores
 from hthor.eval.statistics.intervals import Estimate
 from hthor.guest import Isolation, Manifest
+from hthor.trials import robot_team
 from hthor.types import RobotSeat
 from hthor.types.specs import LOCKSTEP, Clock
 

@@ -6,7 +6,6 @@ from contextlib import closing
 from dataclasses import dataclass, field
 
 from hthor.errors import HthorError, RunError
-from hthor.eval.config.sessions import Session
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.session_restarts import SessionRestarts
 from hthor.eval.records.trial_log import TrialLog
@@ -14,6 +13,7 @@ from hthor.eval.runner.engines import Engine
 from hthor.eval.runner.fault_report import FaultArchive
 from hthor.eval.runner.messages import Finished, News, RunnerFactory, SessionAbandoned, SessionRestarted, TrialDone
 from hthor.eval.runner.progress import Watcher
+from hthor.trials.sessions import Session
 
 ERRORS = "error.txt"
 _HOPELESS = 3

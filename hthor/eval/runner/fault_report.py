@@ -7,7 +7,6 @@ keeps the first reports of each kind of fault as `faults/KEY.json`, so that many
 from __future__ import annotations
 
 import re
-from collections import deque
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,7 +16,8 @@ from msgspec import Struct
 
 from hthor import documents, jsonio, rules
 from hthor.errors import RunError
-from hthor.types import Action, Briefing, Mind, Observation, TrialSpec
+from hthor.trials.participants import RecordedAgent
+from hthor.types import Action, Observation, TrialSpec
 
 if TYPE_CHECKING:
     from hthor.episode import Fault
@@ -26,51 +26,9 @@ SCHEMA = "hthor.faults/2"
 FOLDER = "faults"
 MOST_OF_A_KIND, MOST = 20, 200
 """How many reports a run keeps: of one kind of fault, and in all. Our choice."""
-LAST = 20
-"""How many of an agent's last steps are kept. Our choice."""
 _OUTPUT_CHARACTERS = 8000
 _SCRATCH = re.compile(r"[^\s'\"]*/hthor-guest(?:-\w+)?(?=[/\s'\":,)]|$)")
 _ADDRESS = re.compile(r"\b0x[0-9a-f]{6,16}\b")
-
-
-class RecordedAgent:
-    """An agent that is recorded while it acts; its behaviour stays the same.
-
-    Args:
-        mind: the agent.
-        last: how many steps to keep; None for all of the trial.
-
-    Attributes:
-        looks: the last observations with the actions that followed; the last action is None when the agent failed.
-    """
-
-    def __init__(self, mind: Mind, last: int | None = LAST) -> None:
-        self.mind: Any = mind
-        self.looks: deque[tuple[Observation, Action | None]] = deque(maxlen=last)
-
-    def begin(self, briefing: Briefing) -> None:
-        self.looks.clear()
-        self.mind.begin(briefing)
-
-    def act(self, observation: Observation) -> Action:
-        self.looks.append((observation, None))
-        action: Action = self.mind.act(observation)
-        self.looks[-1] = (observation, action)
-        return action
-
-    def finish(self) -> None:
-        """Tell the agent that its trial is over."""
-        if (finish := getattr(self.mind, "finish", None)) is not None:
-            finish()
-
-    def close(self) -> None:
-        """End the agent's process."""
-        self.mind.close()
-
-    @property
-    def output(self) -> str:
-        """The end of the agent's output."""
-        return str(getattr(self.mind, "log", ""))
 
 
 class Look(Struct, frozen=True, kw_only=True):

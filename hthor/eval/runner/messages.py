@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 from msgspec import Struct
 
 if TYPE_CHECKING:
-    from hthor.eval.config.sessions import Session
     from hthor.eval.records.trial_record import TrialRecord
     from hthor.eval.runner.fault_report import FaultReport
+    from hthor.trials.sessions import Session
 
 
 class TrialOutcome(Struct, frozen=True, kw_only=True):

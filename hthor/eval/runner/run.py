@@ -8,7 +8,6 @@ import msgspec
 
 from hthor import jsonio
 from hthor.eval.config.run_config import RunConfig
-from hthor.eval.config.sessions import Session
 from hthor.eval.records import platform, trial_log, trial_record
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_log import TrialLog
@@ -21,6 +20,7 @@ from hthor.eval.runner.engines import Engine, Interrupted, stoppable
 from hthor.eval.runner.fault_report import FaultArchive
 from hthor.eval.runner.messages import RunnerFactory
 from hthor.eval.runner.progress import Watcher
+from hthor.trials.sessions import Session
 from hthor.types.specs import LOCKSTEP
 
 

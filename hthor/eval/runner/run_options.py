@@ -8,29 +8,23 @@ from msgspec import Struct
 
 from hthor import code_identity, guest
 from hthor.errors import HthorError
-from hthor.eval.config import (
-    human_populations,
-    robot_team,
-    run_config,
-    sessions,
-    study_design,
-    task_selection,
-)
-from hthor.eval.config.human_team import HumanTeam
-from hthor.eval.config.robot_team import RobotTeam
+from hthor.eval.config import human_populations, run_config, shards, study_design, task_selection
 from hthor.eval.config.run_config import AssetsRef, RunConfig
 from hthor.eval.config.study_design import StudyDesign
 from hthor.eval.config.task_selection import TaskSelection
 from hthor.eval.records import run_isolation
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.results import baseline
-from hthor.eval.runner import engines, run_teams, trial_runner
-from hthor.eval.runner.run_job import ScheduledRun, make_sources
+from hthor.eval.runner import engines, run_teams
+from hthor.eval.runner.run_job import ScheduledRun
 from hthor.eval.runner.run_teams import TeamOptions
 from hthor.guest import GuestConfig, Isolation
 from hthor.guest.agent import inputs
 from hthor.humans.population.resolve import PROXY
 from hthor.tasks.suites import library
+from hthor.trials import make_sources, robot_team, sessions, sources
+from hthor.trials.human_team import HumanTeam
+from hthor.trials.robot_team import RobotTeam
 from hthor.types.specs import LOCKSTEP, Clock
 
 RUNS = Path("runs")
@@ -105,7 +99,7 @@ def resolve_options(options: RunOptions) -> ResolvedRuns:
     guests = guest_config(options)
     code_identity.keep_compiled()
     peoples = human_populations.find_people(options.humans)
-    pack = trial_runner.load_pack(options.assets)
+    pack = sources.load_pack(options.assets)
     assets = run_config.AssetsRef(name=pack.name, sha256=pack.sha256) if pack else None
     tasks = task_selection.select_tasks(options.suite, options.kind)
     tasks = task_selection.narrow_selection(tasks, options.houses, options.difficulty)
@@ -185,7 +179,7 @@ class _Planner:
         title = config.name if peoples == 1 else f"{config.name}, {people.name} people"
         path = _folder(options, config, teams, peoples)
         if options.shard:
-            number = sessions.parse_shard(options.shard)
+            number = shards.parse_shard(options.shard)
             config = run_config.shard_config(config, number, len(self._tasks.suite.tasks))
             title, path = f"{title}, shard {number.words}", number.folder(path)
         return self._job(team, people, config, path, title)

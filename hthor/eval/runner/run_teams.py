@@ -3,10 +3,11 @@
 from msgspec import Struct
 
 from hthor.errors import HthorError, UnknownName
-from hthor.eval.config import cli_command, robot_team, study_design
-from hthor.eval.config.robot_team import RobotTeam
+from hthor.eval.config import cli_command, study_design
 from hthor.eval.config.task_selection import TaskSelection
 from hthor.guest import GuestConfig
+from hthor.trials import robot_team
+from hthor.trials.robot_team import RobotTeam
 from hthor.types import cameras, detector_specs
 
 

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from collections.abc import Generator
     from multiprocessing.connection import Connection
 
-    from hthor.eval.config.sessions import Session
     from hthor.eval.runner.messages import RunnerFactory, SessionRunner, TrialOutcome
+    from hthor.trials.sessions import Session
 
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
 """One thread for each worker: more would compete for the cores, and sums of floats would depend on their number."""

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from hthor import rules
-from hthor.eval.config import sessions
 from hthor.eval.metrics import registry
 from hthor.eval.metrics.metric import DIGITS
 from hthor.eval.results import paired_difference
@@ -14,6 +13,7 @@ from hthor.eval.statistics import intervals
 from hthor.eval.statistics.intervals import Estimate
 from hthor.leaderboard.entries.entry import Entry, Group
 from hthor.leaderboard.entries.trial_outcomes import Outcomes
+from hthor.trials import sessions
 
 MEASURED = ("sr", "twsr", "adoption", "usefulness", "time_s", "trust")
 """Metrics that can be computed from the contents of an entry."""

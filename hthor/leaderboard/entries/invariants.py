@@ -11,7 +11,6 @@ import msgspec
 import numpy as np
 
 from hthor import code_identity, rules
-from hthor.eval.config.sessions import sessions_needed
 from hthor.eval.metrics.definitions import success
 from hthor.eval.metrics.metric import DIGITS
 from hthor.eval.statistics.intervals import Estimate
@@ -19,6 +18,7 @@ from hthor.guest import File
 from hthor.leaderboard.entries import entry_metrics, overrides, trial_outcomes
 from hthor.leaderboard.entries.entry import Entry
 from hthor.leaderboard.entries.trial_outcomes import Outcomes, task_labels
+from hthor.trials.sessions import sessions_needed
 from hthor.types import TaskSpec
 
 Problems = Iterator[tuple[str, str]]

@@ -6,9 +6,9 @@ from pathlib import Path
 
 from hthor import plugins, tasks
 from hthor.eval.config.run_config import PROCEDURAL, RunConfig
-from hthor.eval.config.sessions import sessions_needed
 from hthor.eval.config.study_design import BETWEEN
 from hthor.tasks.suites import library
+from hthor.trials.sessions import sessions_needed
 from hthor.types.detector_specs import OWN
 
 

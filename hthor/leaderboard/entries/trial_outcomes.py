@@ -9,13 +9,13 @@ import numpy as np
 from msgspec import UNSET, Struct
 
 from hthor import code_identity, rules
-from hthor.eval.config import sessions
 from hthor.eval.metrics import registry, trial_metrics
 from hthor.eval.metrics.metric import mean_limit
 from hthor.eval.records.scored_trial import ScoredTrial
 from hthor.leaderboard.entries import column_packing
 from hthor.leaderboard.entries.entry import Entry, Labels, Trials
 from hthor.tasks import Suite
+from hthor.trials import sessions
 from hthor.types import TaskSpec
 
 LEAF = 8

@@ -13,10 +13,10 @@ from pathlib import Path
 import numpy as np
 
 from hthor import jsonio, tasks
-from hthor.eval.config import human_team, sessions, task_selection
+from hthor.eval.config import task_selection
 from hthor.eval.metrics import registry, trial_metrics
 from hthor.eval.metrics.metric import DIGITS
-from hthor.eval.runner.trial_runner import make_runner
+from hthor.eval.runner.session_runner import make_runner
 from hthor.eval.statistics import intervals
 from hthor.eval.task_check import solvability
 from hthor.leaderboard.entries import entry_metrics, files, trial_outcomes
@@ -28,6 +28,7 @@ from hthor.leaderboard.verify.replay import Request
 from hthor.tasks.generation import fresh_tasks, secret_suites
 from hthor.tasks.suite import encode_suite
 from hthor.tasks.suites.commitment import Salt
+from hthor.trials import human_team, sessions
 from hthor.types import TaskSpec
 
 _HOUSE_TASKS = 10

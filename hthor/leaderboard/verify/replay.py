@@ -12,23 +12,23 @@ import msgspec
 from msgspec import Struct
 
 from hthor import code_identity
-from hthor.eval.config import human_team, robot_team, run_config, task_selection
-from hthor.eval.config.human_team import HumanTeam
-from hthor.eval.config.robot_team import RobotTeam
+from hthor.eval.config import run_config, task_selection
 from hthor.eval.config.run_config import RunConfig
-from hthor.eval.config.sessions import Session
 from hthor.eval.config.task_selection import TaskSelection
 from hthor.eval.records import run_isolation, scored_trial, trial_record
 from hthor.eval.records.scored_trial import ScoredTrial
 from hthor.eval.runner import engines
 from hthor.eval.runner.messages import RunnerFactory, SessionAbandoned, TrialDone
-from hthor.eval.runner.run_job import RunJob, make_sources
-from hthor.eval.runner.trial_runner import Sources
+from hthor.eval.runner.run_job import RunJob
 from hthor.guest import AgentInputs, GuestConfig
 from hthor.leaderboard.enter import OURS
 from hthor.leaderboard.entries.entry import Entry
 from hthor.leaderboard.entries.files import BoardError
 from hthor.tasks.suites import library
+from hthor.trials import Sources, human_team, make_sources, robot_team
+from hthor.trials.human_team import HumanTeam
+from hthor.trials.robot_team import RobotTeam
+from hthor.trials.sessions import Session
 
 _SHOWN = 3
 

@@ -8,13 +8,13 @@ import msgspec
 from msgspec import Struct
 
 from hthor.errors import RunError
-from hthor.eval.config.robot_team import NO_ROBOT
 from hthor.eval.config.run_config import RunConfig
 from hthor.eval.records.attempts import VoidedTrial
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.scored_trial import ScoredTrial
 from hthor.eval.results import baseline
 from hthor.log_corrections import CorrectAdoption, VoidTrial
+from hthor.trials.robot_team import NO_ROBOT
 
 NONE = NO_ROBOT
 Pair = tuple[int, int, int, str]

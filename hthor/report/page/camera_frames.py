@@ -13,14 +13,15 @@ from msgspec import Struct
 from hthor import activity
 from hthor.comms import display
 from hthor.errors import RunError
-from hthor.eval.config.sessions import Session
 from hthor.eval.records import trial_record
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.replay import session_history
 from hthor.eval.replay.session_history import RunFiles
-from hthor.eval.runner import trial_runner
+from hthor.eval.runner import session_runner
 from hthor.guest import AgentInputs, GuestConfig
+from hthor.trials import TrialRunner
+from hthor.trials.sessions import Session
 from hthor.types import TaskSpec
 from hthor.types.events import Event, Sent
 
@@ -153,12 +154,12 @@ def film_trial(
     spec, run = wanted.spec, RunFolder(folder)
     session = Session(number=spec.session, trials=session_history.session_before(run, wanted))
     guests = GuestConfig(hidden=(str(folder.resolve()),), inputs=given or AgentInputs())
-    stage = trial_runner.TrialRunner(session_history.replay_sources(run, spec, files, guests))
+    stage = TrialRunner(session_history.replay_sources(run, spec, files, guests))
     with stage.enter(session) as company:
         for number, trial in enumerate(session.trials, 1):
             activity.say(f"playing {folder.name} again, trial {number} of {len(session.trials)}")
             world = CameraFrames(stage.world(trial), ticks if trial == spec else (), profile, seats, height)
-            done = stage.run(company, trial, world).record
+            done = session_runner.run_trial(stage, company, trial, world).record
         if _course(run.corrected(done)) != _course(wanted):
             raise RunError(
                 f"{folder}: trial {wanted.key} did not repeat as it was logged, so its views would show another "

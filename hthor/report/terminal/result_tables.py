@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from hthor.eval.config.robot_team import NO_ROBOT, NO_ROBOT_AGENT
 from hthor.eval.metrics import registry
 from hthor.eval.metrics.metric import NUMBER, SHARE, Unit
 from hthor.eval.results import result_file
@@ -14,6 +13,7 @@ from hthor.eval.results.result_file import RunResult
 from hthor.eval.results.scores import Scores
 from hthor.eval.statistics.intervals import Estimate
 from hthor.report.terminal import corrections
+from hthor.trials.robot_team import NO_ROBOT, NO_ROBOT_AGENT
 from hthor.types.specs import LOCKSTEP
 
 if TYPE_CHECKING:

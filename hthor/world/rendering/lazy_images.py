@@ -9,7 +9,7 @@ from __future__ import annotations
 import functools
 import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,6 +36,17 @@ _MARGIN_M = 0.3
 """[m] Margin shown around the rooms in the view from above."""
 
 
+class LabelKey(NamedTuple):
+    """What decides the numbers in the segmentations of an episode.
+
+    ``spares`` are the world's objects that were not in the house when the episode began. Their numbers come last, so
+    that everything else has the same numbers in a world without them.
+    """
+
+    seed: int
+    spares: frozenset[str] = frozenset()
+
+
 class SegmentationLabels:
     """The numbers of owners in a segmentation, shuffled for every episode so that numbers reveal nothing.
 
@@ -45,16 +56,17 @@ class SegmentationLabels:
     """
 
     def __init__(self, names: Sequence[str]) -> None:
-        self._counted, self._seed = tuple(names), -1
+        self._counted, self._key = tuple(names), LabelKey(-1)
         self.names: tuple[str, ...] = ()
         self._shown = np.zeros(0, np.int32)
 
-    def draw(self, seed: int) -> None:
-        """Shuffle the numbers for an episode; equal seeds give equal numbers."""
-        if self.names and seed == self._seed:
+    def draw(self, key: LabelKey) -> None:
+        """Shuffle the numbers for an episode; equal keys give equal numbers."""
+        if self.names and key == self._key:
             return
-        root = seeds.derive(seed, "segmentation")
-        self.names, self._seed = tuple(sorted(self._counted, key=lambda name: seeds.draw(root, name))), seed
+        root = seeds.derive(key.seed, "segmentation")
+        self.names = tuple(sorted(self._counted, key=lambda name: (name in key.spares, seeds.draw(root, name))))
+        self._key = key
         number = {name: index for index, name in enumerate(self.names)}
         self._shown = np.array([*(number[name] for name in self._counted), -1], np.int32)
 
@@ -92,21 +104,21 @@ class LazyImages:
         self._labels = SegmentationLabels(geoms.names)
         self._lock = threading.RLock()  # renderers and labels keep buffers from picture to picture
 
-    def names(self, seed: int) -> tuple[str, ...]:
-        """The owners that the numbers of a segmentation stand for in the episode of that seed."""
+    def names(self, labels: LabelKey) -> tuple[str, ...]:
+        """The owners that the numbers of a segmentation stand for in the episode."""
         with self._lock:
-            self._labels.draw(seed)
+            self._labels.draw(labels)
             return self._labels.names
 
-    def view(self, seat: str, mode: str, size: Size, profile: str | None, seed: int) -> NDArray[Any]:
+    def view(self, seat: str, mode: str, size: Size, profile: str | None, labels: LabelKey) -> NDArray[Any]:
         """The camera's picture now: rgb (H, W, 3) uint8, depth (H, W) float32 [m] or segmentation (H, W) int32."""
         _check(MODES, mode=mode)
-        return self._view(self._moment(), seat, mode, self._size(seat, size), profile, seed)
+        return self._view(self._moment(), seat, mode, self._size(seat, size), profile, labels)
 
-    def look(self, seat: str, size: Size, profile: str | None, seed: int) -> View:
+    def look(self, seat: str, size: Size, profile: str | None, labels: LabelKey) -> View:
         """Colour, depth and segmentation of this moment."""
         size = self._size(seat, size)
-        images = self._look(self._moment(), seat, size, profile, seed)
+        images = self._look(self._moment(), seat, size, profile, labels)
         return View(
             rgb=images.rgb, depth=images.depth, segmentation=images.segmentation, camera=self.camera(seat, size)
         )
@@ -119,9 +131,9 @@ class LazyImages:
     def frame(self, seat: str, size: Size, profile: str | None) -> Callable[[], NDArray[np.uint8]]:
         """A function that draws the colour picture of the seat's camera at this moment."""
         _check(PROFILES, profile=profile or self.profile)
-        return functools.partial(self._view, self._moment(), seat, "rgb", self._size(seat, size), profile, 0)
+        return functools.partial(self._view, self._moment(), seat, "rgb", self._size(seat, size), profile, LabelKey(0))
 
-    def frozen(self, seat: str, seed: int) -> Callable[[str], NDArray[Any]]:
+    def frozen(self, seat: str, labels: LabelKey) -> Callable[[str], NDArray[Any]]:
         """A function that draws the pictures of the seat's camera at this moment by their modes, each once.
 
         In the profile "fast" all three are drawn at once, which costs little more than one.
@@ -131,22 +143,22 @@ class LazyImages:
         def draw(mode: str) -> NDArray[Any]:
             with self._lock:
                 if mode not in drawn and self.profile == "fast":
-                    drawn.update(self._look(moment, seat, size, None, seed)._asdict())
+                    drawn.update(self._look(moment, seat, size, None, labels)._asdict())
                 elif mode not in drawn:
-                    drawn[mode] = self._view(moment, seat, mode, size, None, seed)
+                    drawn[mode] = self._view(moment, seat, mode, size, None, labels)
                 return drawn[mode]
 
         return draw
 
     def survey(
-        self, seat: str, poses: Iterable[Pose], seed: int, colours: bool
+        self, seat: str, poses: Iterable[Pose], labels: LabelKey, colours: bool
     ) -> Iterator[tuple[NDArray[np.uint8] | None, NDArray[np.float32], NDArray[np.int32]]]:
         """Colours if they are wanted, depth [m] and segmentation from each of these poses of the seat; nothing else
         moves. Always "fast".
         """
         size = camera.image_size(self._seats[seat].spec)
         for rgb, depth, found in self._fast().survey(self._moment(), seat, poses, size, colours):
-            yield rgb, depth, self._labelled(found, seed)
+            yield rgb, depth, self._labelled(found, labels)
 
     def top_view(self, pixels_per_metre: float, profile: str | None) -> NDArray[np.uint8]:
         """The house from above now, (H, W, 3) uint8."""
@@ -176,16 +188,18 @@ class LazyImages:
         return (min(xs) - _MARGIN_M, min(ys) - _MARGIN_M, max(xs) + _MARGIN_M, max(ys) + _MARGIN_M)
 
     def _view(
-        self, moment: PoseSnapshot, seat: str, mode: str, size: tuple[int, int], profile: str | None, seed: int
+        self, moment: PoseSnapshot, seat: str, mode: str, size: tuple[int, int], profile: str | None, labels: LabelKey
     ) -> NDArray[Any]:
         with self._lock:
             picture: NDArray[Any] = self._draw(profile).view(moment, seat, mode, size, self._by(seat))
-            return self._labelled(picture, seed) if mode == "segmentation" else picture
+            return self._labelled(picture, labels) if mode == "segmentation" else picture
 
-    def _look(self, moment: PoseSnapshot, seat: str, size: tuple[int, int], profile: str | None, seed: int) -> Images:
+    def _look(
+        self, moment: PoseSnapshot, seat: str, size: tuple[int, int], profile: str | None, labels: LabelKey
+    ) -> Images:
         with self._lock:
             images: Images = self._draw(profile).look(moment, seat, size, self._by(seat))
-            return images._replace(segmentation=self._labelled(images.segmentation, seed))
+            return images._replace(segmentation=self._labelled(images.segmentation, labels))
 
     def _by(self, seat: str) -> CameraSpec:
         return self._cameras.get(self._seats[seat].name, camera.OWN)  # raises for an unknown seat
@@ -197,8 +211,8 @@ class LazyImages:
         camera.check_size(size)
         return size
 
-    def _labelled(self, numbers: NDArray[np.int32], seed: int) -> NDArray[np.int32]:
-        self._labels.draw(seed)
+    def _labelled(self, numbers: NDArray[np.int32], labels: LabelKey) -> NDArray[np.int32]:
+        self._labels.draw(labels)
         labelled: NDArray[np.int32] = self._labels.of(numbers)
         return labelled
 

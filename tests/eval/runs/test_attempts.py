@@ -17,7 +17,7 @@ from hthor import code_identity
 from hthor.cli import app
 from hthor.errors import RunError, UnknownName
 from hthor.eval.comparison import compare
-from hthor.eval.config import run_config, sessions
+from hthor.eval.config import run_config, shards
 from hthor.eval.merge import merge_shards
 from hthor.eval.records import attempts, find, trial_log, trial_record
 from hthor.eval.records.attempts import Attempt, Attempts
@@ -151,7 +151,7 @@ def test_shards_with_attempts_are_merged(disturbed: RunFolder, tmp_path: Path) -
     resumed(disturbed)
     whole, parts = disturbed.config, []
     for words in ("1/2", "2/2"):
-        shard = run_config.shard_config(whole, sessions.parse_shard(words), COUNT)
+        shard = run_config.shard_config(whole, shards.parse_shard(words), COUNT)
         folder = RunFolder(tmp_path / f"part-{words[0]}")
         folder.path.mkdir()
         folder.write_config(shard)

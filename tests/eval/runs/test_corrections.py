@@ -19,7 +19,8 @@ from hthor.calibration.from_logs import trial_features
 from hthor.cli import app
 from hthor.errors import HthorError, RunError, RunLocked, UnknownName
 from hthor.eval.comparison import compare
-from hthor.eval.config import run_config, sessions
+from hthor.eval.config import run_config
+from hthor.eval.config.shards import parse_shard
 from hthor.eval.merge import merge_shards
 from hthor.eval.records import corrections, find, trial_log
 from hthor.eval.records.corrections import CorrectionOptions
@@ -317,7 +318,7 @@ def test_the_corrections_of_another_run_are_refused(folder: Path, tmp_path: Path
 def shards(folder: Path, tmp_path: Path) -> list[Path]:
     parts = []
     for words in ("1/2", "2/2"):
-        shard = run_config.shard_config(RunFolder(folder).config, sessions.parse_shard(words), COUNT)
+        shard = run_config.shard_config(RunFolder(folder).config, parse_shard(words), COUNT)
         part = RunFolder(tmp_path / f"part-{words[0]}")
         part.path.mkdir()
         part.write_config(shard)

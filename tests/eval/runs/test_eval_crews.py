@@ -12,17 +12,17 @@ import pytest
 
 from hthor import tasks
 from hthor.errors import HthorError, RunError, UnknownName
-from hthor.eval.config import cli_command, robot_team, sessions
+from hthor.eval.config import cli_command
 from hthor.eval.config.run_config import team_name
 from hthor.eval.records import find, scored_trial, trial_record
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import aggregate
-from hthor.eval.runner import experiment, progress, run, run_options, trial_runner
-from hthor.eval.runner.run_job import make_sources
+from hthor.eval.runner import experiment, progress, run, run_options, session_runner
 from hthor.guest import GuestConfig
 from hthor.report.drawing import trial_figure
 from hthor.tasks.suite import encode_suite, make_suite
+from hthor.trials import make_sources, robot_team, sessions
 from hthor.types import HUMAN
 
 pytestmark = pytest.mark.usefixtures("no_workers")
@@ -129,7 +129,7 @@ def played(robots: str, count: int = 1, config: GuestConfig | None = None) -> li
     (crew,) = robot_team.parse_teams(robots, ())
     few = make_suite("few", 1, tuple(task for task in tasks.load_suite("smoke").tasks if task.house == HOUSE))
     whole = sessions.make_sessions(few, agent=crew, participants=1)[0]
-    perform = trial_runner.make_runner(make_sources(crew, guests=config))
+    perform = session_runner.make_runner(make_sources(crew, guests=config))
     some = msgspec.structs.replace(whole, trials=whole.trials[:count])
     return [done.record for done in perform(some)]
 

@@ -12,12 +12,12 @@ from hthor import houses, tasks
 from hthor.console import exit_status
 from hthor.errors import HthorError, UnknownName
 from hthor.eval.config import task_selection
-from hthor.eval.config.sessions import make_sessions
 from hthor.eval.records import trial_record
 from hthor.eval.results import aggregate
 from hthor.eval.runner import experiment, progress, run_options
-from hthor.eval.runner.trial_runner import Sources
 from hthor.report.drawing import trial_figure
+from hthor.trials import Sources
+from hthor.trials.sessions import make_sessions
 
 pytestmark = pytest.mark.usefixtures("no_workers")
 
@@ -189,12 +189,12 @@ def test_a_file_that_is_no_kind(tmp_path: Path):
 
 
 def test_a_kind_that_changes_during_its_run_ends_it(few: None, tmp_path: Path):
-    from hthor.eval.runner import trial_runner
+    from hthor.eval.runner import session_runner
 
     file = written(tmp_path, "fickle")
     chosen = task_selection.select_tasks("", str(file))
     (dealt,) = make_sessions(chosen.suite, agent="silent", participants=1, kind_sha256=chosen.kind.sha256)
-    perform = trial_runner.make_runner(Sources(kind_path=chosen.kind_path))
+    perform = session_runner.make_runner(Sources(kind_path=chosen.kind_path))
     written(tmp_path, "fickle", met="return False")
     with pytest.raises(HthorError, match=r"fickle\.py was changed while its run was going on"):
         next(perform(dealt))

@@ -18,9 +18,9 @@ import guest_fakes
 import pytest
 
 from hthor.errors import AgentError, HthorError, MissingExtra
-from hthor.eval.config import robot_team
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.runner import engines, progress, run
+from hthor.trials import robot_team
 
 WITHOUT = importlib.util.find_spec("ray") is None
 needs_ray = pytest.mark.skipif(WITHOUT, reason="needs Ray: pip install 'hthor[cluster]'")

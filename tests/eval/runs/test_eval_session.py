@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hthor import rules
-from hthor.eval.config import sessions
+from hthor.trials import sessions
 
 
 @given(st.integers(1, 130), st.integers(-(2**40), 2**40))

@@ -16,10 +16,12 @@ from typer.testing import CliRunner, Result
 
 from hthor.cli import app
 from hthor.errors import HthorError, RunError
-from hthor.eval.config import run_config, sessions
+from hthor.eval.config import run_config
+from hthor.eval.config.shards import Shard, parse_shard
 from hthor.eval.merge import merge_shards
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.runner import progress, run
+from hthor.trials import sessions
 
 pytestmark = pytest.mark.usefixtures("no_workers")
 
@@ -31,7 +33,7 @@ def _play(folder: Path, words: str = "", *, make=fakes.player, **how) -> Path:
     """A run, or a shard of it, of tasks that do not divide evenly; its folder."""
     plan, dealt = fakes.run_of(COUNT, **how)
     if words:
-        plan = run_config.shard_config(plan, sessions.parse_shard(words), COUNT)
+        plan = run_config.shard_config(plan, parse_shard(words), COUNT)
         folder, dealt = plan.shard.folder(folder), plan.shard.share(dealt)
     run.run_evaluation(plan, dealt, make, folder=RunFolder(folder), engine=fakes.Here(), watcher=progress.Silent())
     return folder
@@ -61,11 +63,9 @@ def test_shards_are_a_partition_and_know_their_size(tasks: int, people: int, of:
     plan = msgspec.structs.replace(plan, participants=people)
     if of > people:
         with pytest.raises(HthorError, match=f"{people} shards at most"):
-            run_config.shard_config(plan, sessions.Shard(number=1, of=of), tasks)
+            run_config.shard_config(plan, Shard(number=1, of=of), tasks)
         return
-    parts = [
-        run_config.shard_config(plan, sessions.Shard(number=number, of=of), tasks).shard for number in range(1, of + 1)
-    ]
+    parts = [run_config.shard_config(plan, Shard(number=number, of=of), tasks).shard for number in range(1, of + 1)]
     held = [participant for part in parts for participant in part.share(range(people))]
     assert sorted(held) == list(range(people))
     hands = [
@@ -77,7 +77,7 @@ def test_shards_are_a_partition_and_know_their_size(tasks: int, people: int, of:
 @pytest.mark.parametrize("words", ["0/4", "5/4", "4", "a/b", "-1/4", "1/0", "1/4/2"])
 def test_a_shard_that_there_is_not_is_refused(words: str):
     with pytest.raises(HthorError, match=r"expected i/N with i from 1 to N"):
-        sessions.parse_shard(words)
+        parse_shard(words)
 
 
 def test_merged_shards_are_the_undivided_run(undivided: Path, shards: Sequence[Path], tmp_path: Path):

@@ -17,15 +17,16 @@ from world_house import TABLE, on, task
 from hthor import jsonio, plugins
 from hthor.console import completion
 from hthor.errors import HthorError, UnknownName
-from hthor.eval.config import cli_command, robot_team, run_config, sessions, task_selection
+from hthor.eval.config import cli_command, run_config, task_selection
 from hthor.eval.runner import run_options, run_teams
 from hthor.guest.host.info import GuestConfig
 from hthor.leaderboard.entries import overrides
+from hthor.trials import robot_team, sessions
 from hthor.types import Pose, RobotSeat, cameras
 from hthor.world import World
 from hthor.world.model.bodies import avatar
 from hthor.world.rendering import camera
-from hthor.world.rendering.lazy_images import SegmentationLabels
+from hthor.world.rendering.lazy_images import LabelKey, SegmentationLabels
 
 BODIES = [avatar.HUMAN, *(plugins.load("robot", name) for name in ("scout", "tender", "puck", "porter"))]
 sides = st.integers(1, 2000)
@@ -200,7 +201,7 @@ def test_numbers_are_dealt_by_the_episode_s_seed(world: World) -> None:
 @given(st.integers(0, 2**60), st.integers(2, 300))
 def test_a_number_tells_neither_name_nor_order(seed: int, count: int) -> None:
     labels = SegmentationLabels([f"thing {number:03}" for number in range(count)])
-    labels.draw(seed)
+    labels.draw(LabelKey(seed))
     shown = labels.of(np.arange(-1, count))
     assert shown[0] == -1
     assert sorted(shown[1:].tolist()) == list(range(count))
@@ -213,6 +214,6 @@ def test_the_same_thing_has_another_number_in_another_trial() -> None:
     labels = SegmentationLabels([f"thing {number}" for number in range(200)])
     found = []
     for seed in range(40):
-        labels.draw(seed)
+        labels.draw(LabelKey(seed))
         found.append(int(labels.of(np.array([7]))[0]))
     assert len(set(found)) > 25

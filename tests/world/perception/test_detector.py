@@ -12,9 +12,10 @@ from hypothesis import strategies as st
 from world_house import COFFEE, TABLE, on, task, wait
 
 from hthor.errors import HthorError
-from hthor.eval.config import run_config, sessions
+from hthor.eval.config import run_config
 from hthor.eval.records import trial_record
 from hthor.eval.results import aggregate
+from hthor.trials import sessions
 from hthor.types import Detection, DetectorSpec, Pick, Pose, detector_specs
 from hthor.world import World
 from hthor.world.perception.detector_noise import GLIMPSE_TICKS

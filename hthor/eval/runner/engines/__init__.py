@@ -22,7 +22,7 @@ from hthor.errors import HthorError, UnknownName
 from hthor.eval.runner.messages import Failed, News, RunnerFactory, SessionAbandoned, SessionRestarted
 
 if TYPE_CHECKING:
-    from hthor.eval.config.sessions import Session
+    from hthor.trials.sessions import Session
     from hthor.types import TaskSpec
 
 LOCAL = "local"

@@ -18,7 +18,7 @@ from hthor.eval.runner.messages import Failed, Finished, News, RunnerFactory, Se
 from hthor.eval.runner.worker import ONE_THREAD, run_worker
 
 if TYPE_CHECKING:
-    from hthor.eval.config.sessions import Session
+    from hthor.trials.sessions import Session
 
 _FAREWELL_S = 10.0
 """How long [s] an idle worker may take to end by itself. Our choice."""

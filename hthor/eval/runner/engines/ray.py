@@ -19,7 +19,7 @@ from hthor.eval.runner.messages import Failed, Finished, News, RunnerFactory, Se
 from hthor.eval.runner.worker import ONE_THREAD, SessionPlayer
 
 if TYPE_CHECKING:
-    from hthor.eval.config.sessions import Session
+    from hthor.trials.sessions import Session
 
 _CONNECT_S = 10.0
 
