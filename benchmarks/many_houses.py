@@ -8,6 +8,8 @@ import time
 
 from hthor.train import houses
 from hthor.trials import Worlds
+from hthor.trials.worlds import Objects
+from hthor.types import HouseSpec
 from hthor.world import World
 
 _EVERY = 50
@@ -28,8 +30,8 @@ def main(count: int) -> None:
     print(f"most: {most:.0f} MB")
 
 
-def _build(house: object, objects: object) -> World:
-    return World(house, robots=["scout"], objects=objects)  # type: ignore[arg-type]
+def _build(house: HouseSpec, objects: Objects) -> World:
+    return World(house, robots=["scout"], objects=objects)
 
 
 def _memory_mb() -> float:

@@ -2,8 +2,9 @@
 
 from hthor.trials import TrialRunner, make_sessions
 
+runner = TrialRunner()
 for session in make_sessions("smoke", agent="frontier"):
-    for played in TrialRunner().play(session):
+    for played in runner.play(session):
         print(played.spec.task.id, played.log.met)
 """
 

@@ -77,11 +77,11 @@ class StudySetup(Struct, frozen=True, kw_only=True):
 
     def session(self, number: int, tasks: Sequence[TaskSpec]) -> Session:
         """The session in which the people of this number do these tasks, in order."""
-        humans = self.people.seats(number)
+        robots, humans = self.team.seats, self.people.seats(number)
         trials = (
             TrialSpec(
                 task=task,
-                robots=self.team.seats,
+                robots=robots,
                 humans=humans,
                 session=number,
                 index=index,

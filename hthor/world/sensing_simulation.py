@@ -161,7 +161,7 @@ class SensingSimulation(EditableSimulation):
     def names(self) -> tuple[str, ...]:
         """Ids that the numbers of a segmentation stand for: of things, seats, rooms, walls and openings.
 
-        Every episode shuffles the numbers by its seed.
+        Every episode shuffles the numbers by its seed. Objects that were not in the house when it began come last.
         """
         return self._pictures.names(self._label_key)
 

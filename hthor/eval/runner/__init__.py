@@ -1,1 +1,1 @@
-"""Running trials: `experiment` is `hthor eval` as a function, `run` one run, `trial_runner` a worker's part."""
+"""Running trials: `experiment` is `hthor eval` as a function, `run` one run, `session_runner` a worker's part."""

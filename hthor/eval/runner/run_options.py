@@ -22,9 +22,10 @@ from hthor.guest import GuestConfig, Isolation
 from hthor.guest.agent import inputs
 from hthor.humans.population.resolve import PROXY
 from hthor.tasks.suites import library
-from hthor.trials import make_sources, robot_team, sessions, sources
+from hthor.trials import make_sources, robot_team, sessions
 from hthor.trials.human_team import HumanTeam
 from hthor.trials.robot_team import RobotTeam
+from hthor.trials.sources import load_pack
 from hthor.types.specs import LOCKSTEP, Clock
 
 RUNS = Path("runs")
@@ -99,7 +100,7 @@ def resolve_options(options: RunOptions) -> ResolvedRuns:
     guests = guest_config(options)
     code_identity.keep_compiled()
     peoples = human_populations.find_people(options.humans)
-    pack = sources.load_pack(options.assets)
+    pack = load_pack(options.assets)
     assets = run_config.AssetsRef(name=pack.name, sha256=pack.sha256) if pack else None
     tasks = task_selection.select_tasks(options.suite, options.kind)
     tasks = task_selection.narrow_selection(tasks, options.houses, options.difficulty)
