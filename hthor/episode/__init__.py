@@ -3,7 +3,7 @@
 from hthor.episode.clocks import Charged, Concurrent, DecisionClock, LockStep
 from hthor.episode.episode import Episode, Observer
 from hthor.episode.episode_state import EpisodeState
-from hthor.episode.play import play
+from hthor.episode.play import begin, play, take_answers
 from hthor.episode.recording.episode_log import EpisodeLog, Fault
 from hthor.episode.recording.task_part import task_began, task_part
 from hthor.episode.trial_world import TrialWorld
@@ -19,7 +19,9 @@ __all__ = [
     "LockStep",
     "Observer",
     "TrialWorld",
+    "begin",
     "play",
+    "take_answers",
     "task_began",
     "task_part",
 ]

@@ -87,6 +87,11 @@ class Episode:
         return self._goal.met
 
     @property
+    def progress(self) -> float | None:
+        """The share of the goal that is met, from 0 to 1; None for task kinds without partial goals."""
+        return self._goal.progress
+
+    @property
     def done(self) -> bool:
         """Whether the goal is met, the time is over, or the trial was voided."""
         return self._goal.met or bool(self.voided) or self.world.tick >= self._phases.end

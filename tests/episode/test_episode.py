@@ -7,7 +7,7 @@ from episode_fakes import Mind, Stage, trial
 from msgspec import UNSET
 
 from hthor import plugins
-from hthor.episode import EpisodeLog, play
+from hthor.episode import Episode, EpisodeLog, play
 from hthor.tasks.kinds.object_goal_navigation import ObjectGoalNavigation
 from hthor.types import HUMAN, Action, Briefing, Motion, Move, Observation, Reply, Send, Snapshot, TaskSpec, Wait
 from hthor.types.events import Event, Placed
@@ -139,6 +139,17 @@ def test_progress_is_noticed_within_a_second_and_whole_in_the_end(counting: Coun
     assert steps == [(20, 0.1), (30, 0.2), (40, 0.3), (47, 1.0)]
     assert log.progress == 1.0
     assert counting.asked == 5, "at the start and once a second, for no thing has changed"
+
+
+@pytest.mark.usefixtures("counting")
+def test_an_episode_knows_its_progress_while_it_goes_on() -> None:
+    episode, shares = Episode(trial(), Stage(seen=47)), []
+    episode.reset()
+    while not episode.done:
+        shares.append(episode.progress)
+        episode.advance()
+    assert [shares[tick] for tick in (0, 19, 20, 30, 40)] == [0.0, 0.0, 0.1, 0.2, 0.3]
+    assert episode.progress == 1.0
 
 
 def test_progress_is_noticed_at_once_when_a_thing_changes(counting: Counting) -> None:
