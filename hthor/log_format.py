@@ -18,7 +18,7 @@ from hthor import activity, documents
 from hthor.documents import Unreadable
 from hthor.types.events import Event, JournalEntry
 
-SCHEMA = "hthor.trial/2.0"
+SCHEMA = "hthor.trial/2.1"
 """The version of the log that is written."""
 _MAJORS = ("hthor.trial/1.", "hthor.trial/2.")
 """The beginnings of the versions that are read."""

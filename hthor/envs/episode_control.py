@@ -9,6 +9,7 @@ from dm_env import specs
 from hthor.envs.action_arrays import action_spec, decode_action
 from hthor.envs.seat_readings import seat_readings
 from hthor.episode import Episode, EpisodeLog
+from hthor.episode.frames import Frames
 from hthor.episode.play import record_beliefs
 from hthor.errors import HthorError, UnknownName
 from hthor.humans.model import HumanModel
@@ -67,6 +68,7 @@ class EpisodeControl:
             given = ", ".join(people) or "none"
             raise HthorError(f"people must have the seats {', '.join(self.episode.people)}, in this order; got {given}")
         self.episode.reset()
+        self._frames = Frames(self.episode, people)
         self._begun, self._people, self._ratings = True, people, {}
         for seat, human in people.items():
             human.begin(self.episode.briefing(seat))
@@ -86,8 +88,10 @@ class EpisodeControl:
         """Let the people act and one tick pass; at the end of the trial, people rate the robots."""
         episode = self.episode
         for seat in self.asked:
-            if seat in self._people:
+            if seat in self._people and seat not in self._frames.seats:
                 episode.submit(seat, self._people[seat].act(episode.observe(seat)))
+        if not episode.done:
+            self._frames.play()
         happened = episode.advance() if not episode.done else ()
         record_beliefs(happened, self._people)
         share = self._share_after(happened, self._share)

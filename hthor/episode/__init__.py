@@ -3,6 +3,7 @@
 from hthor.episode.clocks import Charged, Concurrent, DecisionClock, LockStep
 from hthor.episode.episode import Episode, Observer
 from hthor.episode.episode_state import EpisodeState
+from hthor.episode.frames import Frames
 from hthor.episode.play import begin, play, take_answers
 from hthor.episode.recording.episode_log import EpisodeLog, Fault
 from hthor.episode.recording.task_part import task_began, task_part
@@ -16,6 +17,7 @@ __all__ = [
     "EpisodeLog",
     "EpisodeState",
     "Fault",
+    "Frames",
     "LockStep",
     "Observer",
     "TrialWorld",

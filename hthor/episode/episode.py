@@ -9,12 +9,13 @@
     log = episode.log()
 
 All seats that observe in one tick observe the same moment, and the order of calls within a tick makes no difference:
-only `advance` lets messages be read and sent, motions begin, and time pass.
+actions take effect together as the tick begins, in `advance` or with the first `substep`.
 """
 
 from collections.abc import Callable, Mapping, Sequence
 
 import msgspec
+from msgspec import UNSET
 
 from hthor import seeds
 from hthor.comms.mailbox import Mailbox
@@ -30,8 +31,8 @@ from hthor.episode.signals import SignalReceiver
 from hthor.episode.speech import say
 from hthor.episode.trial_world import TrialWorld
 from hthor.errors import HthorError
-from hthor.types import HUMAN, Action, Briefing, Drive, Motion, Observation, TrialSpec, is_person
-from hthor.types.events import Event, JournalEntry, Paused, Resumed, Thought
+from hthor.types import HUMAN, SUBTICKS, Action, Briefing, Drive, Motion, Observation, TrialSpec, is_person
+from hthor.types.events import Acted, Event, JournalEntry, Paused, Resumed, Thought
 
 Observer = Callable[["Episode", Sequence[Event]], None]
 """Called after `Episode.reset` and after every tick, with the events since its last call; it must change nothing."""
@@ -70,16 +71,21 @@ class Episode:
         self._signals = SignalReceiver(self.people, self.events, self._phases)
         self._participants = Participants(self.seats)
         self._steps = 0  # of this tick, that bodies that drive have made
+        self._reported = 0  # events that `advance` has returned
         self._observed: dict[str, Observation] = {}
         self._writer.trace(self.world)
         self.events.extend(self._phases.begin(self.world))
-        for observer in self._observers:
-            observer(self, tuple(self.events))
+        self._report()
 
     @property
     def tick(self) -> int:
         """Ticks since `reset`."""
         return self.world.tick
+
+    @property
+    def step(self) -> int:
+        """How many steps of this tick the bodies that drive have made."""
+        return self._steps
 
     @property
     def met(self) -> bool:
@@ -125,10 +131,10 @@ class Episode:
         return observation
 
     def submit(self, seat: str, action: Action, observation: Observation | None = None) -> None:
-        """Let a seat act: its words and signals take effect in the next `advance`; its motion too, if the body is free.
+        """Let a seat act as the next tick begins: with words and signals, and with its motion if the body is free.
 
-        A second action in the same tick replaces the first; if it says nothing, what the first says is kept, and so
-        are its signals.
+        That is this tick before its first `substep`, and the one after it from then on. A second action for the same
+        tick replaces the first; if it says nothing, what the first says is kept, and so are its signals.
 
         Args:
             observation: what the seat saw when it decided, if that was in an earlier tick; a motion counts only if the
@@ -141,6 +147,8 @@ class Episode:
         if not isinstance(action, Action):
             raise TypeError(f"submit needs an hthor.types.Action, got {type(action).__name__}")
         self._check_seat(seat)
+        if seat in self.people:
+            self._record(seat, action, observation)
         self._participants.submit(seat, action, observation)
 
     def steer(self, seat: str, drive: Drive) -> None:
@@ -151,9 +159,11 @@ class Episode:
     def substep(self) -> None:
         """Move the bodies that drive by one of the tick's `hthor.types.SUBTICKS` steps; `advance` makes those left.
 
-        Observe and submit before the first step of a tick: all seats then observe the moment at which it begins.
+        With the first step the tick begins and all actions take effect. It makes no difference who makes the steps.
         """
         self._check_running()
+        if not self._steps:
+            self._begin_tick()
         self.world.substep()
         self._steps += 1
 
@@ -169,23 +179,15 @@ class Episode:
         """
         self._check_running()
         world, events = self.world, self.events
-        first, tick = len(events), world.tick
-        for seat in self.seats:
-            if (observation := self._observed.get(seat)) is not None and observation.inbox:
-                events.extend(self._mailbox.shown(tick, seat))
-        if self._participants.failed:
-            self._dismiss_failed(tick)
-        self._act(tick)
+        if not self._steps:
+            self._begin_tick()
         events.extend(world.advance())
         self._observed.clear()
         self._steps = 0
         events.extend(self._phases.advance(world, self._participants.active))
         self._writer.trace(world)
-        events.extend(self._goal.judge(world.snapshot(), world.house, has_events=len(events) > first))
-        happened = tuple(events[first:]) if len(events) > first else ()
-        for observer in self._observers:
-            observer(self, happened)
-        return happened
+        events.extend(self._goal.judge(world.snapshot(), world.house, has_events=len(events) > self._reported))
+        return self._report()
 
     # ------------------------------------------------------------------------------------- pausing, ending, watching
 
@@ -224,6 +226,7 @@ class Episode:
             participants=self._participants.save_state(),
             observed={seat: msgspec.structs.replace(one, senses=None) for seat, one in self._observed.items()},
             steps=self._steps,
+            reported=self._reported,
         )
 
     def load_state(self, state: EpisodeState) -> None:
@@ -241,7 +244,7 @@ class Episode:
         self._phases.load_state(state.phases)
         self._goal.load_state(state.goal, self.world.snapshot())
         self._participants.load_state(state.participants)
-        self._steps = state.steps
+        self._steps, self._reported = state.steps, state.reported
         self._observed = {
             seat: msgspec.structs.replace(one, senses=self.world.senses(seat)) for seat, one in state.observed.items()
         }
@@ -260,6 +263,39 @@ class Episode:
         winner = self._goal.winner(self.world.snapshot(), self.people) if self.met else ""
         end = end_event(self.tick, winner, self.voided) if self.done else None
         return self._writer.log(self.tick, end, self._goal.progress, ratings or {}, journals or {})
+
+    def _record(self, seat: str, action: Action, observation: Observation | None) -> None:
+        """Let the journal have what a person does."""
+        begun = self._steps > 0
+        acted = Acted(
+            tick=self.tick + begun,
+            seat=seat,
+            motion=action.motion,
+            say=action.say,
+            signals=action.signals,
+            early=max(0, SUBTICKS - self._steps) if begun else 0,
+            seen=UNSET if observation is None else observation.tick,
+        )
+        self._writer.note_action(acted)
+
+    def _report(self) -> tuple[Event, ...]:
+        """The events since the last report; observers see them."""
+        events, first = self.events, self._reported
+        happened = tuple(events[first:]) if len(events) > first else ()
+        self._reported = len(events)
+        for observer in self._observers:
+            observer(self, happened)
+        return happened
+
+    def _begin_tick(self) -> None:
+        """Let everything that was seen and submitted take effect."""
+        tick = self.tick
+        for seat in self.seats:
+            if (observation := self._observed.get(seat)) is not None and observation.inbox:
+                self.events.extend(self._mailbox.shown(tick, seat))
+        if self._participants.failed:
+            self._dismiss_failed(tick)
+        self._act(tick)
 
     def _dismiss_failed(self, tick: int) -> None:
         faults, events = self._participants.dismiss_failed(tick)

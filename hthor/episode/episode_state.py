@@ -23,3 +23,4 @@ class EpisodeState(Struct, frozen=True, kw_only=True):
     participants: ParticipantsState
     observed: dict[str, Observation]
     steps: int
+    reported: int

@@ -33,10 +33,10 @@ class Participants:
         self.actions: dict[str, tuple[Action, Observation | None]] = {}
 
     def submit(self, seat: str, action: Action, observation: Observation | None) -> None:
-        """Take a seat's action for the next tick; of an earlier one in this tick, words and signals are kept."""
+        """Take a seat's action for the next tick; words and signals of one that was taken before are kept."""
         if seat in self.actions:
-            earlier, _ = self.actions[seat]
-            say, signals = action.say or earlier.say, earlier.signals + action.signals
+            before, _ = self.actions[seat]
+            say, signals = action.say or before.say, before.signals + action.signals
             action = msgspec.structs.replace(action, say=say, signals=signals)
         self.actions[seat] = (action, observation)
 

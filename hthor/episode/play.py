@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 
 from hthor.episode.clocks import DecisionClock, make_clock
 from hthor.episode.episode import Episode
+from hthor.episode.frames import Frames
 from hthor.episode.recording.episode_log import EpisodeLog
 from hthor.episode.trial_world import TrialWorld
 from hthor.humans.model import HumanModel
@@ -32,15 +33,19 @@ def play(
     """
     episode, clock = Episode(trial, world, (*humans, *robots)), clock or make_clock(trial)
     episode.reset()
+    frames = Frames(episode, humans)
     try:
         begin(episode, humans, robots, clock)
         while not episode.done:
             for seat in episode.waiting:
+                if seat in frames.seats:
+                    continue
                 if seat in humans:
                     episode.submit(seat, humans[seat].act(episode.observe(seat)))
                 elif not clock.busy(seat):
                     clock.ask(seat, robots[seat], episode.observe(seat, frozen=clock.frozen))
             take_answers(episode, clock)
+            frames.play()
             if happened := episode.advance():
                 record_beliefs(happened, humans)
     finally:

@@ -11,6 +11,8 @@ Optional parts of the file and the class:
   the model behaves, such as the hash of its weights. They become part of the run's identity.
 - ``Model(participant, source="/path")``: a model named with a source (``replay:runs/demo``) is made with that path.
 - ``alike = True`` in the class: participants do not differ; all get the population's mean traits.
+- ``frame(controls)``, a method: called in every step of a tick, 60 times a second, with the `hthor.types.Controls` of
+  the seat. `act` is then never called: what the person sees and does goes through these controls.
 - ``record_belief(tick, object)``, a method: records in the journal, as `Believed`, where the person now expects an
   object (empty for none) and what they are doing, for robots that predict it; it must change nothing else.
 - ``journal``, a property of the class: the trial's entries for a recorder (`hthor.types.events.JournalEntry`).

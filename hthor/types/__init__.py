@@ -38,7 +38,7 @@ from hthor.types.house import (
     Wall,
     is_person,
 )
-from hthor.types.mind import Mind
+from hthor.types.mind import Controls, Mind
 from hthor.types.observations import (
     Briefing,
     Display,
@@ -80,6 +80,7 @@ __all__ = [
     "Camera",
     "CameraSpec",
     "Close",
+    "Controls",
     "Detection",
     "DetectorSpec",
     "Display",

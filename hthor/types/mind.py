@@ -2,7 +2,7 @@
 
 from typing import Protocol
 
-from hthor.types.actions import Action
+from hthor.types.actions import Action, Drive
 from hthor.types.observations import Briefing, Observation
 
 
@@ -40,3 +40,33 @@ class Mind(Protocol):
                 body stays where it is for the rest of the trial. An exception of a human model ends the run.
         """
         ...
+
+
+class Controls(Protocol):
+    """The hold on its body of somebody who acts 60 times a second, as a person in a headset does.
+
+    It is given to ``frame``, which human models may have instead of being asked: see `hthor.humans.model`.
+    """
+
+    @property
+    def tick(self) -> int:
+        """Ticks of `rules.TICK_S` since the trial began."""
+
+    @property
+    def step(self) -> int:
+        """The step of the tick that comes next, from 0 to `hthor.types.SUBTICKS` - 1."""
+
+    def observe(self) -> Observation:
+        """What the seat observes as this tick begins; a message in it counts as shown. Only at step 0.
+
+        Raises:
+            HthorError: at a later step, when the tick was not observed at step 0.
+        """
+
+    def submit(self, action: Action, seen: Observation | None = None) -> None:
+        """Act as the next tick begins: this one at step 0, else the one after it. The motion counts if the body is
+        free; a `Drive` counts at any time. ``seen`` is the observation on which the seat decided, if that is known.
+        """
+
+    def steer(self, drive: Drive) -> None:
+        """Drive like this from the next step on."""

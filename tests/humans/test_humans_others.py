@@ -137,7 +137,11 @@ def offline(monkeypatch, tmp_path):
     monkeypatch.setenv("HTHOR_LLM_CACHE", str(tmp_path / "answers.jsonl"))
 
 
-MODELS = (*plugins.names("human model"), str(EXAMPLES / "llm_person.py"), str(EXAMPLES / "cloned_person.py"))
+MODELS = (
+    *(name for name in plugins.names("human model") if name != "recorded"),
+    str(EXAMPLES / "llm_person.py"),
+    str(EXAMPLES / "cloned_person.py"),
+)
 FREE = tuple(name for name in MODELS if name != "replay")
 
 # -------------------------------------------------------------------------------------------------- every human model

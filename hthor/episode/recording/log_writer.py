@@ -10,7 +10,7 @@ from hthor.episode.recording.rest_time import RestState, RestTime
 from hthor.episode.trial_world import TrialWorld
 from hthor.humans.core.behaviour_log import BehaviourRecorder, RecorderState
 from hthor.types import HUMAN, BodySpec, Motion, Pose, is_person
-from hthor.types.events import Event, JournalEntry, Success, Timeout, Voided
+from hthor.types.events import Acted, Event, JournalEntry, Success, Timeout, Voided
 
 _THOUSAND = 1000.0
 """Millimetres in a metre, milliradians in a radian."""
@@ -62,6 +62,10 @@ class LogWriter:
         if (recorder := self._recorders.get(seat)) is not None:
             recorder.motion(tick, motion, step)
         self.rest.note_motion(tick, seat, motion, started=started)
+
+    def note_action(self, acted: Acted) -> None:
+        """Note an action of a person."""
+        self._recorders[acted.seat].action(acted)
 
     def log(
         self,

@@ -1,4 +1,4 @@
-"""The trials of a participant in a run's log, as far as `replay` needs them: paths, looks, hand actions, words."""
+"""The trials of a participant in a run's log, as `replay` and `recorded` need them: paths, looks, actions, words."""
 
 import hashlib
 import math
@@ -134,6 +134,56 @@ class LoggedTrial(Logged, frozen=True, kw_only=True):
         return lambda tick: value(tick) / _MILLI
 
 
+class LoggedParticipant:
+    """One participant of a log, whose trials are found again one by one.
+
+    Args:
+        model: the human model that repeats them. number: the participant's. source: the run folder or log.
+
+    Raises:
+        HthorError: when there is no such log, or no such participant in it.
+    """
+
+    def __init__(self, model: str, number: int, source: str) -> None:
+        if not source:
+            raise HthorError(
+                f"{model} needs the run to repeat: --humans {model}:RUN, a run folder or its trials.jsonl."
+            )
+        logged = read_logged_trials(source)
+        if number not in logged:
+            raise HthorError(
+                f"{source} has no participant {number}; it holds {', '.join(map(str, sorted(logged)))}. "
+                "Evaluate with that run's suite, seed and number of participants."
+            )
+        self._number, self._source, self._trials = number, source, logged[number]
+
+    def begin(self, briefing: Briefing) -> None:
+        """Begin a trial; raises HthorError when the participant did no such task."""
+        self._briefing = briefing
+        self._fitting = [one for one in self._trials if one.is_of(briefing)]
+        if not self._fitting:
+            raise self._unknown()
+
+    def find(self, start: Pose, index: int) -> LoggedTrial:
+        """The trial with this task from this start, by preference number ``index`` of its session.
+
+        Raises:
+            HthorError: when the participant did no such task from there.
+        """
+        here = [one for one in self._fitting if one.begins_at(start)]
+        if not here:
+            raise self._unknown()
+        return next((one for one in here if one.spec.index == index), here[0])
+
+    def _unknown(self) -> HthorError:
+        trials = ", ".join(f"{one.spec.index}: {one.spec.task.id}" for one in self._trials)
+        return HthorError(
+            f"{self._source}: participant {self._number} did no such task as '{self._briefing.instruction}' from this "
+            f"place; their trials are {trials}. Only the trials of that log can be repeated: evaluate with that run's "
+            "suite, seed and number of participants."
+        )
+
+
 def read_logged_trials(source: str) -> dict[int, list[LoggedTrial]]:
     """The trials of each participant in a run folder or a log.
 
@@ -144,8 +194,12 @@ def read_logged_trials(source: str) -> dict[int, list[LoggedTrial]]:
     return _read(str(path), log_corrections.beside(path))
 
 
-def log_sha256(source: str) -> str:
-    """Hash of the log's bytes and of the corrections of its trials."""
+def ingredients(source: str = "") -> dict[str, str]:
+    """Everything that decides how people from a log behave: the log's bytes, and the corrections of its trials."""
+    return {"log_sha256": _log_sha256(source)} if source else {}
+
+
+def _log_sha256(source: str) -> str:
     path = _log(source)
     corrections = log_corrections.beside(path)
     return hashlib.sha256(_bytes(path) + "".join(corrections.hashes[-1:]).encode()).hexdigest()

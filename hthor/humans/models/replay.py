@@ -25,10 +25,9 @@ from typing import Any
 import msgspec
 
 from hthor import rules
-from hthor.errors import HthorError
 from hthor.geometry.plane import turn, wrap
 from hthor.humans.models import _logged_trials
-from hthor.humans.models._logged_trials import LoggedTrial
+from hthor.humans.models._logged_trials import LoggedParticipant, LoggedTrial
 from hthor.humans.population.participant import Participant
 from hthor.types import (
     Action,
@@ -60,6 +59,8 @@ _TRIES = 3
 _LAPSE_TICKS = 10
 """[ticks] Greatest delay of an answer that is due while the hands are busy. Our choice: one second."""
 
+ingredients = _logged_trials.ingredients
+
 
 class Model:
     """A logged participant.
@@ -71,17 +72,9 @@ class Model:
     """
 
     def __init__(self, participant: Participant, state: Mapping[str, Any] | None = None, source: str = "") -> None:
-        if not source:
-            raise HthorError("replay needs the run to replay: --humans replay:RUN, a run folder or its trials.jsonl.")
-        self.participant, self.source = participant, source
+        self.participant = participant
         self.trials = int(state["trials"]) if state else 0
-        logged = _logged_trials.read_logged_trials(source)
-        if participant.number not in logged:
-            raise HthorError(
-                f"{source} has no participant {participant.number}; it holds {', '.join(map(str, sorted(logged)))}. "
-                "Evaluate with that run's suite, seed and number of participants."
-            )
-        self._logged = logged[participant.number]
+        self._logged = LoggedParticipant("replay", participant.number, source)
         self._again: Reenactment | None = None
 
     def begin(self, briefing: Briefing) -> None:
@@ -91,13 +84,13 @@ class Model:
             HthorError: when the log has no such task of this participant.
         """
         self._brief, self._again = briefing, None
-        self._fitting = [one for one in self._logged if one.is_of(briefing)]
-        if not self._fitting:
-            raise self._unknown()
+        self._logged.begin(briefing)
 
     def act(self, observation: Observation) -> Action:
         """What the logged participant did at this point."""
-        again = self._again or self._find(observation)
+        if self._again is None:
+            self._again = Reenactment(self._logged.find(observation.pose, self.trials), self._brief)
+        again = self._again
         observation = again.on_logged_time(observation)
         say = again.say(observation)
         signals: tuple[Signal, ...] = (*again.signals(observation), *again.ready(observation))
@@ -115,27 +108,6 @@ class Model:
     @property
     def _has_robots(self) -> bool:
         return not all(is_person(seat) for seat in self._brief.teammates)
-
-    def _find(self, observation: Observation) -> Reenactment:
-        here = [one for one in self._fitting if one.begins_at(observation.pose)]
-        if not here:
-            raise self._unknown()
-        same = [one for one in here if one.spec.index == self.trials]
-        self._again = Reenactment((same or here)[0], self._brief)
-        return self._again
-
-    def _unknown(self) -> HthorError:
-        trials = ", ".join(f"{one.spec.index}: {one.spec.task.id}" for one in self._logged)
-        return HthorError(
-            f"{self.source}: participant {self.participant.number} did no such task as '{self._brief.instruction}' "
-            f"from this place; their trials are {trials}. A replay repeats the trials of its log only: evaluate with "
-            "that run's suite, seed and number of participants."
-        )
-
-
-def ingredients(source: str = "") -> dict[str, Any]:
-    """Everything that decides how this model behaves: the log's bytes."""
-    return {"log_sha256": _logged_trials.log_sha256(source)} if source else {}
 
 
 class Reenactment:

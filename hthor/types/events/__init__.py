@@ -20,6 +20,7 @@ from hthor.types.events.bodies import (
 )
 from hthor.types.events.entry import LogEntry
 from hthor.types.events.journal import (
+    Acted,
     Asked,
     Attempt,
     Choice,
@@ -86,11 +87,14 @@ Event = (
     | Timeout
 )
 """An event of the trial."""
-JournalEntry = Stick | Head | Inputs | Attempt | Exposure | Choice | Offer | Misled | Asked | Replied | Believed | Note
+JournalEntry = (
+    Stick | Head | Inputs | Acted | Attempt | Exposure | Choice | Offer | Misled | Asked | Replied | Believed | Note
+)
 """An entry of the journal."""
 
 __all__ = [
     "Accepted",
+    "Acted",
     "Adapted",
     "AdoptionJudged",
     "AgentFault",

@@ -2,15 +2,17 @@
 
 The trial's log has what the system sees: poses (x, y and yaw at 5 Hz), messages, picks and places, the rating. The
 journal adds the person's inputs, what they saw, and what they chose. The episode records `Stick` and `Head` for every
-human model, and `Inputs` of every body that is driven; only some human models record the other kinds.
+human model, and `Inputs` and `Acted` of every person who drives; only some human models record the other kinds.
 """
 
 from typing import Literal
 
 from msgspec import UNSET, UnsetType, field
 
+from hthor.types.actions import Motion, Reply, Send, Wait
 from hthor.types.events.entry import LogEntry
 from hthor.types.house import Vec3
+from hthor.types.signals import Signal
 
 ExposureRow = tuple[float, float, float, float, int, int]
 """Glimpses that were alike, see `Exposure.gathered`."""
@@ -52,6 +54,27 @@ class Inputs(LogEntry, frozen=True, kw_only=True, tag="inputs"):
     """
 
     runs: tuple[int, ...]
+
+
+class Acted(LogEntry, frozen=True, kw_only=True, tag="acted"):
+    """An action of a person who drives, other than a mere set-point: hands, buttons and words.
+
+    With `Inputs`, these are everything that the person did, so that the trial can be repeated from them. The tick is
+    the one at whose beginning the action takes effect. Of several for one tick the last motion counts, and all signals.
+
+    Attributes:
+        motion: what the body was to do; "wait" if left out.
+        say: a message or an answer, null for none.
+        signals: what was shown or hidden, and what else was told by buttons.
+        early: [steps] how long before that tick it was given, in steps of `hthor.types.SUBTICKS` to a tick.
+        seen: the tick of the observation on which it was decided; absent if it named none.
+    """
+
+    motion: Motion = Wait()
+    say: Send | Reply | None = None
+    signals: tuple[Signal, ...] = ()
+    early: int = 0
+    seen: int | UnsetType = UNSET
 
 
 class Attempt(LogEntry, frozen=True, kw_only=True, tag="attempt"):

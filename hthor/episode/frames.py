@@ -1,0 +1,64 @@
+"""People who act in every step of a tick, as in a headset, instead of when they are asked."""
+
+from collections.abc import Callable, Mapping
+
+from hthor.episode.episode import Episode
+from hthor.types import SUBTICKS, Action, Controls, Drive, Observation
+
+
+class SeatControls:
+    """The controls of one seat of a running trial; see `hthor.types.Controls`."""
+
+    def __init__(self, episode: Episode, seat: str) -> None:
+        self._episode, self._seat = episode, seat
+
+    @property
+    def tick(self) -> int:
+        """Ticks since the trial began."""
+        return self._episode.tick
+
+    @property
+    def step(self) -> int:
+        """The step of the tick that comes next."""
+        return self._episode.step
+
+    def observe(self) -> Observation:
+        """What the seat observes as this tick begins."""
+        return self._episode.observe(self._seat)
+
+    def submit(self, action: Action, seen: Observation | None = None) -> None:
+        """Act as the next tick begins."""
+        self._episode.submit(self._seat, action, seen)
+
+    def steer(self, drive: Drive) -> None:
+        """Drive like this from the next step on."""
+        self._episode.steer(self._seat, drive)
+
+
+class Frames:
+    """The steps of ticks in a trial with people who act in every step.
+
+    Args:
+        people: the human models by seat; those with a method ``frame`` act in every step.
+
+    Attributes:
+        seats: the seats of these.
+    """
+
+    def __init__(self, episode: Episode, people: Mapping[str, object]) -> None:
+        self._episode = episode
+        self._frames: list[tuple[Callable[[Controls], None], Controls]] = [
+            (frame, SeatControls(episode, seat))
+            for seat, human in people.items()
+            if (frame := getattr(human, "frame", None)) is not None
+        ]
+        self.seats = frozenset(seat for seat, human in people.items() if hasattr(human, "frame"))
+
+    def play(self) -> None:
+        """Let these people act in every step of the tick; nobody may observe this tick after them."""
+        if not self._frames:
+            return
+        for _ in range(SUBTICKS):
+            for frame, controls in self._frames:
+                frame(controls)
+            self._episode.substep()
