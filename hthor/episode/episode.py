@@ -33,6 +33,7 @@ from hthor.episode.trial_world import TrialWorld
 from hthor.errors import HthorError
 from hthor.types import HUMAN, SUBTICKS, Action, Briefing, Drive, Motion, Observation, TrialSpec, is_person
 from hthor.types.events import Acted, Event, JournalEntry, Paused, Resumed, Thought
+from hthor.types.specs import LOCKSTEP
 
 Observer = Callable[["Episode", Sequence[Event]], None]
 """Called after `Episode.reset` and after every tick, with the events since its last call; it must change nothing."""
@@ -63,7 +64,8 @@ class Episode:
         """Begin the trial at tick 0, whatever has happened before."""
         self.voided, self.paused = "", False
         self._mailbox = Mailbox([seat for seat in self.seats if seat not in self.people], self.people)
-        self._writer = LogWriter({seat: self.world.bodies[seat] for seat in self.seats})
+        timed = self._privileges if (self.trial.clock or LOCKSTEP) != LOCKSTEP else ()
+        self._writer = LogWriter({seat: self.world.bodies[seat] for seat in self.seats}, timed)
         self._goal = GoalJudge(self.task)
         self._phases = PhaseClock(self.task, self._goal, self._writer.rest)
         self.world.reset(self._phases.arrangement, seed=self._seed)
@@ -147,7 +149,7 @@ class Episode:
         if not isinstance(action, Action):
             raise TypeError(f"submit needs an hthor.types.Action, got {type(action).__name__}")
         self._check_seat(seat)
-        if seat in self.people:
+        if self._writer.records(seat):
             self._record(seat, action, observation)
         self._participants.submit(seat, action, observation)
 
@@ -265,7 +267,7 @@ class Episode:
         return self._writer.log(self.tick, end, self._goal.progress, ratings or {}, journals or {})
 
     def _record(self, seat: str, action: Action, observation: Observation | None) -> None:
-        """Let the journal have what a person does."""
+        """Let the journal have what a seat does."""
         begun = self._steps > 0
         acted = Acted(
             tick=self.tick + begun,

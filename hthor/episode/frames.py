@@ -1,4 +1,4 @@
-"""People who act in every step of a tick, as in a headset, instead of when they are asked."""
+"""Participants who act in every step of a tick, as people in a headset do, instead of when they are asked."""
 
 from collections.abc import Callable, Mapping
 
@@ -36,29 +36,32 @@ class SeatControls:
 
 
 class Frames:
-    """The steps of ticks in a trial with people who act in every step.
+    """The steps of ticks in a trial with participants who act in every step.
 
     Args:
-        people: the human models by seat; those with a method ``frame`` act in every step.
+        participants: by seat; those with a method ``frame`` act in every step.
 
     Attributes:
         seats: the seats of these.
     """
 
-    def __init__(self, episode: Episode, people: Mapping[str, object]) -> None:
+    def __init__(self, episode: Episode, participants: Mapping[str, object]) -> None:
         self._episode = episode
         self._frames: list[tuple[Callable[[Controls], None], Controls]] = [
             (frame, SeatControls(episode, seat))
-            for seat, human in people.items()
-            if (frame := getattr(human, "frame", None)) is not None
+            for seat, one in participants.items()
+            if (frame := getattr(one, "frame", None)) is not None
         ]
-        self.seats = frozenset(seat for seat, human in people.items() if hasattr(human, "frame"))
+        self.seats = frozenset(seat for seat, one in participants.items() if hasattr(one, "frame"))
 
     def play(self) -> None:
-        """Let these people act in every step of the tick; nobody may observe this tick after them."""
-        if not self._frames:
-            return
-        for _ in range(SUBTICKS):
-            for frame, controls in self._frames:
-                frame(controls)
-            self._episode.substep()
+        """Let them act in every step of the tick; nobody may observe this tick after them."""
+        if self._frames:
+            for _ in range(SUBTICKS):
+                self.step()
+
+    def step(self) -> None:
+        """Let them act in one step of the tick, and make that step."""
+        for frame, controls in self._frames:
+            frame(controls)
+        self._episode.substep()

@@ -33,7 +33,7 @@ def play(
     """
     episode, clock = Episode(trial, world, (*humans, *robots)), clock or make_clock(trial)
     episode.reset()
-    frames = Frames(episode, humans)
+    frames = Frames(episode, {**humans, **robots})
     try:
         begin(episode, humans, robots, clock)
         while not episode.done:

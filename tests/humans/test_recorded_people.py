@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -17,10 +18,11 @@ from typer.testing import CliRunner
 from world_house import COFFEE, on
 
 from hthor.cli import app
-from hthor.episode import EpisodeLog, play
+from hthor.episode import Charged, EpisodeLog, play
 from hthor.errors import HthorError
 from hthor.eval.records import trial_record
-from hthor.humans.models import _logged_trials, recorded
+from hthor.humans.core.recorded_inputs import RecordedInputs
+from hthor.humans.models import recorded
 from hthor.humans.population.participant import Participant
 from hthor.types import (
     HUMAN,
@@ -43,7 +45,7 @@ from hthor.types import (
     TrialSpec,
     Wait,
 )
-from hthor.types.events import Accepted, Acted, Declined, Displayed, Inputs, Note, Shown
+from hthor.types.events import Accepted, Acted, Declined, Displayed, Inputs, JournalEntry, Note, Shown
 from hthor.world import World
 
 SEAT = RobotSeat(seat="robot", robot="scout", agent=AgentRef(name="teller", source="", sha256=""))
@@ -122,6 +124,27 @@ def repeated(world: World, spec: TrialSpec, log: EpisodeLog, folder: Path) -> Ep
     return play(spec, world, {HUMAN: person}, {"robot": Teller()})
 
 
+class Repeater:
+    """Repeats the inputs of one seat of a log, a person's or a robot's."""
+
+    def __init__(self, seat: str, log: EpisodeLog) -> None:
+        self.inputs = RecordedInputs(seat, log.events, log.journal, log.ticks)
+        assert self.inputs.found
+
+    def begin(self, briefing: Any) -> None:
+        """Nothing to prepare."""
+
+    def frame(self, controls: Controls) -> None:
+        self.inputs.frame(controls)
+
+    def rate(self, met: bool, tick: int) -> int | None:
+        return 5
+
+    @property
+    def journal(self) -> tuple[JournalEntry, ...]:
+        return self.inputs.own_journal
+
+
 def delivery() -> dict[int, list[Any]]:
     """Walks with a swaying head, reads and answers, picks up the apple, and hides the panel; all between two ticks."""
     script: dict[int, list[Any]] = {}
@@ -194,21 +217,25 @@ def test_whatever_a_person_does_is_repeated(
     assert repeated(world, spec, log, tmp_path_factory.mktemp("run")) == log
 
 
-def test_after_the_end_of_its_log_a_recorded_person_stands_still(world: World, tmp_path: Path) -> None:
+def test_after_the_end_of_its_log_a_recorded_person_stands_still(world: World) -> None:
     script = {0: [Drive(forward=0.2, yaw=0.3)]}
     log = play(trial(2.0), world, {HUMAN: Scripted(script)}, {"robot": Teller()})
-    spec = trial(2.0)
-    (tmp_path / "trials.jsonl").write_bytes(trial_record.encode(trial_record.make_record(spec, log)))
-    person = recorded.RecordedInputs(_logged_trials.read_logged_trials(str(tmp_path))[0][0], "it")
-
-    class Longer(Scripted):
-        def frame(self, controls: Controls) -> None:
-            person.frame(controls)
-
-    longer = play(trial(4.0), world, {HUMAN: Longer({})}, {"robot": Teller()})
+    longer = play(trial(4.0), world, {HUMAN: Repeater(HUMAN, log)}, {"robot": Teller()})
     path = longer.paths[HUMAN]
     assert path[: len(log.paths[HUMAN])] == log.paths[HUMAN]
     assert path[11][:2] == path[-1][:2] != path[9][:2]
+
+
+@settings(max_examples=cases(15))
+@given(st.lists(st.floats(0.0, 0.9), min_size=5, max_size=30))
+def test_a_trial_in_which_thinking_takes_time_is_repeated_with_its_robots(world: World, spent: list[float]) -> None:
+    """The robot takes as long to decide as the list says, over and over; the log alone repeats the trial."""
+    times = itertools.accumulate(itertools.chain.from_iterable((0.0, one) for one in itertools.cycle(spent)))
+    spec = msgspec.structs.replace(trial(8.0), clock="charged")
+    clock = Charged(clock=lambda: next(times))
+    log = play(spec, world, {HUMAN: Scripted(delivery())}, {"robot": Teller()}, clock)
+    again = play(spec, world, {HUMAN: Repeater(HUMAN, log)}, {"robot": Repeater("robot", log)})
+    assert again == log
 
 
 def test_people_without_inputs_cannot_be_repeated_from_them(world: World, tmp_path: Path) -> None:

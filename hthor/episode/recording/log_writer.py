@@ -1,6 +1,6 @@
 """Writes the log of a trial while it runs: events, paths, rest times, and what people's recorders see."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 from msgspec import Struct
 
@@ -27,20 +27,26 @@ class LogState(Struct, frozen=True, kw_only=True):
 
 
 class LogWriter:
-    """The log of one trial as far as it has come; ``bodies`` are those of the seats that take part.
+    """The log of one trial as far as it has come.
+
+    Args:
+        bodies: those of the seats that take part.
+        robots: the robots whose actions belong in the journal, because deciding takes them time that no log repeats.
 
     Attributes:
         events, faults: as in `EpisodeLog`; the episode appends to them. rest: how long each body has rested.
     """
 
-    def __init__(self, bodies: Mapping[str, BodySpec]) -> None:
+    def __init__(self, bodies: Mapping[str, BodySpec], robots: Collection[str] = ()) -> None:
         self.events: list[Event] = []
         self.faults: list[Fault] = []
         self.rest = RestTime(bodies)
         self._paths: dict[str, list[tuple[int, int, int]]] = {seat: [] for seat in bodies}
         self._traced: dict[str, Pose] = {}  # where each body was when it was traced last
         self._recorders = {
-            seat: BehaviourRecorder(seat, body, rules.TICK_S) for seat, body in bodies.items() if is_person(seat)
+            seat: BehaviourRecorder(seat, body, rules.TICK_S)
+            for seat, body in bodies.items()
+            if is_person(seat) or seat in robots
         }
 
     def trace(self, world: TrialWorld) -> None:
@@ -54,7 +60,7 @@ class LogWriter:
                 continue
             self._traced[seat] = pose
             path.append((round(pose.x * _THOUSAND), round(pose.y * _THOUSAND), round(pose.gaze * _THOUSAND)))
-            if (recorder := self._recorders.get(seat)) is not None:
+            if (recorder := self._recorders.get(seat)) is not None and is_person(seat):
                 recorder.head(world.tick, pose.pitch)
 
     def note_motion(self, tick: int, step: int, seat: str, motion: Motion, *, started: bool) -> None:
@@ -64,8 +70,12 @@ class LogWriter:
         self.rest.note_motion(tick, seat, motion, started=started)
 
     def note_action(self, acted: Acted) -> None:
-        """Note an action of a person."""
+        """Note an action of a seat whose actions are recorded."""
         self._recorders[acted.seat].action(acted)
+
+    def records(self, seat: str) -> bool:
+        """Whether the seat's actions are recorded."""
+        return seat in self._recorders
 
     def log(
         self,
@@ -78,7 +88,11 @@ class LogWriter:
         """The log up to this tick, with the last event ``end`` if the trial is over."""
         events = (*self.events, *(() if end is None else (end,)))
         recorders = self._recorders.items()
-        journal = [entry for seat, one in recorders for entry in one.journal(journals.get(seat, ()), events)]
+        journal = [
+            entry
+            for seat, one in recorders
+            for entry in (one.journal(journals.get(seat, ()), events) if is_person(seat) else one.inputs())
+        ]
         return EpisodeLog(
             events=events,
             paths={seat: list(path) for seat, path in self._paths.items()},

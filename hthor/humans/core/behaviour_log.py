@@ -55,7 +55,7 @@ class RecorderState(Struct, frozen=True, kw_only=True):
 
 
 class BehaviourRecorder:
-    """Records one trial of one person; stick and pitch as run lengths, where full deflection gives the body's speed."""
+    """Records one trial of one body; stick and pitch as run lengths, where full deflection gives the body's speed."""
 
     def __init__(self, seat: str, body: BodySpec, tick_s: float) -> None:
         self.seat, self.body, self.tick_s, self._step = seat, body, tick_s, body.speed * tick_s
@@ -110,9 +110,12 @@ class BehaviourRecorder:
         written = list(own)
         tried = [entry.tick for entry in written if isinstance(entry, Attempt)]
         ended = (self._completed(entry, done, tried) if _is_open(entry) else entry for entry in written)
-        if not self._inputs:
-            return (stick, head, *ended)
-        return (stick, head, Inputs(tick=0, seat=self.seat, runs=tuple(self._inputs)), *self._actions(), *ended)
+        return (stick, head, *(self.inputs() if self._inputs else ()), *ended)
+
+    def inputs(self) -> tuple[Inputs | Acted, ...]:
+        """Everything that the body was made to do, from which the trial can be repeated."""
+        inputs = (Inputs(tick=0, seat=self.seat, runs=tuple(self._inputs)),) if self._inputs else ()
+        return (*inputs, *self._actions())
 
     def save_state(self) -> RecorderState:
         """A copy of what was recorded."""

@@ -12,19 +12,16 @@ Only people who drive their body (`hthor.types.Drive`), as live people do, have 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from hthor.errors import HthorError
-from hthor.humans.core.behaviour_log import INPUT_UNIT
+from hthor.humans.core.recorded_inputs import RecordedInputs
 from hthor.humans.models import _logged_trials
 from hthor.humans.models._logged_trials import LoggedParticipant, LoggedTrial
 from hthor.humans.population.participant import Participant
-from hthor.types import SUBTICKS, Action, Briefing, Controls, Drive, Observation, Wait, is_person
-from hthor.types.events import Acted, Head, Inputs, JournalEntry, Shown, Stick
-
-_OF_RECORDER = (Stick, Head, Inputs, Acted)
-"""Entries that the episode writes into every journal by itself."""
+from hthor.types import Action, Briefing, Controls, Observation, Wait, is_person
+from hthor.types.events import JournalEntry
 
 ingredients = _logged_trials.ingredients
 
@@ -60,8 +57,8 @@ class Model:
             HthorError: in the first step, when the log has no inputs of this trial.
         """
         if self._again is None:
-            trial = self._logged.find(controls.observe().pose, self._trials)
-            self._again = RecordedInputs(trial, self._source)
+            self._trial = self._logged.find(controls.observe().pose, self._trials)
+            self._again = self._inputs(self._trial)
         self._again.frame(controls)
 
     def act(self, observation: Observation) -> Action:  # noqa: ARG002  everything is done in `frame`
@@ -71,7 +68,7 @@ class Model:
     def rate(self, met: bool, tick: int) -> int | None:  # noqa: ARG002  the log has the answer
         """The logged rating."""
         self._trials += 1
-        return self._again.trial.rating if self._again is not None and self._has_robots else None
+        return self._trial.rating if self._again is not None and self._has_robots else None
 
     def state(self) -> dict[str, Any]:
         """The number of trials done."""
@@ -82,59 +79,11 @@ class Model:
         """The entries of the logged journal that a human model wrote."""
         return self._again.own_journal if self._again is not None else ()
 
-
-class RecordedInputs:
-    """The inputs of one logged trial, step by step.
-
-    Raises:
-        HthorError: when its journal has none.
-    """
-
-    def __init__(self, trial: LoggedTrial, source: str) -> None:
-        journal = [entry for entry in trial.journal if entry.seat == trial.seat]
-        inputs = next((entry for entry in journal if isinstance(entry, Inputs)), None)
-        if inputs is None:
+    def _inputs(self, trial: LoggedTrial) -> RecordedInputs:
+        inputs = RecordedInputs(trial.seat, trial.events, trial.journal, trial.ticks)
+        if not inputs.found:
             raise HthorError(
-                f"{source}, trial {trial.key} ({trial.spec.task.id}): its journal has no inputs of '{trial.seat}', as "
-                "only people have who drive their body. Repeat it with --humans replay:RUN."
+                f"{self._source}, trial {trial.key} ({trial.spec.task.id}): its journal has no inputs of "
+                f"'{trial.seat}', as only people have who drive their body. Repeat it with --humans replay:RUN."
             )
-        self.trial = trial
-        self.own_journal = tuple(entry for entry in journal if not isinstance(entry, _OF_RECORDER))
-        self._steering = _steering(inputs.runs)
-        actions = [entry for entry in journal if isinstance(entry, Acted)]
-        self._actions: dict[int, list[Acted]] = {}  # by the number of the step, of all steps of the trial
-        for entry in actions:
-            self._actions.setdefault(SUBTICKS * entry.tick - entry.early, []).append(entry)
-        self._observed = _ticks_of(trial, actions)
-        self._seen: dict[int, Observation] = {}
-
-    def frame(self, controls: Controls) -> None:
-        """Do what was done in this step."""
-        tick, step = controls.tick, controls.step
-        if tick >= self.trial.ticks:
-            if (tick, step) == (self.trial.ticks, 0):
-                controls.submit(Action(motion=Wait()))
-            return
-        if step == 0 and tick in self._observed:
-            self._seen[tick] = controls.observe()
-        for acted in self._actions.get(SUBTICKS * tick + step, ()):
-            action = Action(motion=acted.motion, say=acted.say, signals=acted.signals)
-            controls.submit(action, self._seen[acted.seen] if isinstance(acted.seen, int) else None)
-        for drive in self._steering.get((tick, step), ()):
-            controls.steer(drive)
-
-
-def _steering(runs: tuple[int, ...]) -> dict[tuple[int, int], list[Drive]]:
-    """The set-points of an `Inputs`, which are groups of six numbers, by tick and step."""
-    steering: dict[tuple[int, int], list[Drive]] = {}
-    for first in range(0, len(runs), 6):
-        tick, step, *numbers = runs[first : first + 6]
-        forward, left, yaw, pitch = (number * INPUT_UNIT for number in numbers)
-        steering.setdefault((tick, step), []).append(Drive(forward=forward, left=left, yaw=yaw, pitch=pitch))
-    return steering
-
-
-def _ticks_of(trial: LoggedTrial, actions: Iterable[Acted]) -> frozenset[int]:
-    """The ticks at which the person must observe: to be shown a message, or because an action names what it saw."""
-    shown = {event.tick for event in trial.events if isinstance(event, Shown) and event.seat == trial.seat}
-    return frozenset(shown | {entry.seen for entry in actions if isinstance(entry.seen, int)})
+        return inputs

@@ -57,9 +57,10 @@ class Inputs(LogEntry, frozen=True, kw_only=True, tag="inputs"):
 
 
 class Acted(LogEntry, frozen=True, kw_only=True, tag="acted"):
-    """An action of a person who drives, other than a mere set-point: hands, buttons and words.
+    """An action of a person who drives, other than a mere set-point: hands, buttons and words. Also every action of a
+    robot, where the time that it takes to decide counts.
 
-    With `Inputs`, these are everything that the person did, so that the trial can be repeated from them. The tick is
+    With `Inputs`, these are everything that the seat did, so that the trial can be repeated from them. The tick is
     the one at whose beginning the action takes effect. Of several for one tick the last motion counts, and all signals.
 
     Attributes:
