@@ -1,4 +1,4 @@
-"""Repeats the inputs in a journal, step by step; they are those of a person who drives, or of any robot in real time."""
+"""Repeats the inputs in a journal, step by step: those of a person who drives, or of a robot in real time."""
 
 from collections.abc import Iterable, Sequence
 
