@@ -50,7 +50,17 @@ from hthor.types.observations import (
     Status,
     ThingState,
 )
-from hthor.types.sensors import Camera, CameraSpec, Detection, DetectorSpec, Scan, Senses, Sighting, View
+from hthor.types.sensors import (
+    Camera,
+    CameraSpec,
+    Detection,
+    DetectorSpec,
+    Scan,
+    Senses,
+    SensorReadings,
+    Sighting,
+    View,
+)
 from hthor.types.signals import Adapt, Predict, Ready, Show, Signal
 from hthor.types.snapshot import Snapshot
 from hthor.types.specs import (
@@ -121,6 +131,7 @@ __all__ = [
     "Scan",
     "Send",
     "Senses",
+    "SensorReadings",
     "Show",
     "Sighting",
     "Signal",

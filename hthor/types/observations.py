@@ -9,7 +9,7 @@ from msgspec import Struct
 
 from hthor.types.display import DisplayMap
 from hthor.types.house import HUMAN, HouseSpec, Pose, Vec3
-from hthor.types.sensors import Camera, DepthImage, Detection, LabelImage, RgbImage, Scan, Senses
+from hthor.types.sensors import RgbImage, Senses, SensorReadings
 from hthor.types.specs import RELATIONS, BodySpec, Job
 
 if TYPE_CHECKING:
@@ -105,13 +105,13 @@ class ThingState(Struct, frozen=True, kw_only=True):
     bearers: tuple[str, ...] = ()
 
 
-class Observation(Struct, frozen=True, kw_only=True):
+class Observation(SensorReadings, Struct, frozen=True, kw_only=True):
     """The input of an agent or a human model that has to act; see `Mind.act`.
 
     Attributes:
         tick: ticks since the trial began. pose: of the seat's body, house frame.
         idle: whether the body is free for a new motion; if not, only ``Action.say`` takes effect.
-        senses: the seat's sensors, which the properties below read.
+        senses: the seat's sensors, which the properties of `SensorReadings` read.
         room: id of the room that the body is in; between rooms, of the room that it was in last.
         holding: id of the object that the body has in hand or holds by a handle; empty for none.
         outcome: how the last motion ended; None before any motion has ended.
@@ -135,36 +135,6 @@ class Observation(Struct, frozen=True, kw_only=True):
     truth: tuple[ThingState, ...] = ()
     display: Display | None = None
     phase: str = ""
-
-    @property
-    def detections(self) -> tuple[Detection, ...]:
-        """The detector's detections, by id; see `Senses.detections`."""
-        return self.senses.detections()
-
-    @property
-    def scan(self) -> Scan:
-        """The range scan; see `Scan`."""
-        return self.senses.scan()
-
-    @property
-    def rgb(self) -> RgbImage:
-        """(H, W, 3) uint8, the seat's own camera."""
-        return self.senses.rgb()
-
-    @property
-    def depth(self) -> DepthImage:
-        """(H, W) float32 [m] along the optical axis."""
-        return self.senses.depth()
-
-    @property
-    def segmentation(self) -> LabelImage:
-        """(H, W) int32, indices into the world's list of names, -1 for nothing."""
-        return self.senses.segmentation()
-
-    @property
-    def camera(self) -> Camera:
-        """The intrinsics and the pose of the camera that takes the three pictures."""
-        return self.senses.camera()
 
 
 class PhaseBriefing(Struct, frozen=True, kw_only=True):

@@ -1,4 +1,8 @@
-"""The readings of a seat's detector, range scanner and camera, and the specifications of these sensors."""
+"""The sensors of a seat, the records that they read, and the specifications of these sensors.
+
+A new sensor is a method of `Senses` and a property of `SensorReadings`; `hthor.world.sensing_simulation` measures it in
+a method of the same name. The wire, the clocks and the tests find it in `READINGS`.
+"""
 
 from __future__ import annotations
 
@@ -176,6 +180,46 @@ class Senses(Protocol):
     def camera(self) -> Camera:
         """The intrinsics and the pose of the camera that takes the three pictures."""
         ...
+
+
+class SensorReadings:
+    """The sensors of `Senses` that take no argument, as properties of an `hthor.types.Observation`."""
+
+    __slots__ = ()
+    if TYPE_CHECKING:
+
+        @property
+        def senses(self) -> Senses: ...
+
+    @property
+    def detections(self) -> tuple[Detection, ...]:
+        """The detector's detections, by id; see `Senses.detections`."""
+        return self.senses.detections()
+
+    @property
+    def scan(self) -> Scan:
+        """The range scan; see `Scan`."""
+        return self.senses.scan()
+
+    @property
+    def rgb(self) -> RgbImage:
+        """(H, W, 3) uint8, the seat's own camera."""
+        return self.senses.rgb()
+
+    @property
+    def depth(self) -> DepthImage:
+        """(H, W) float32 [m] along the optical axis."""
+        return self.senses.depth()
+
+    @property
+    def segmentation(self) -> LabelImage:
+        """(H, W) int32, indices into the world's list of names, -1 for nothing."""
+        return self.senses.segmentation()
+
+    @property
+    def camera(self) -> Camera:
+        """The intrinsics and the pose of the camera that takes the three pictures."""
+        return self.senses.camera()
 
 
 READINGS: dict[str, Any] = {

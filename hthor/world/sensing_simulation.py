@@ -2,7 +2,7 @@
 
 import itertools
 from collections.abc import Callable, Iterable, Iterator
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,7 +32,7 @@ from hthor.world.model import inventory
 from hthor.world.perception import view_frustum
 from hthor.world.rendering.lazy_images import LabelKey, LazyImages, Size
 from hthor.world.rendering.viewpoint import Viewpoint
-from hthor.world.seat_senses import FrozenSenses, SeatSenses
+from hthor.world.seat_senses import MEASURED, FrozenSenses, SeatSenses
 
 _OUT_OF_SIGHT = Pose(x=-1e3, y=-1e3)
 
@@ -87,21 +87,23 @@ class SensingSimulation(EditableSimulation):
         self._kinds |= {seat: "person" if is_person(seat) else body.name for seat, body in self.bodies.items()}
 
     # -------------------------------------------------------------------------------------------------------- senses
+    # A sensor that `hthor.types.sensors` declares is measured by the method here that has its name and takes the seat.
 
     def senses(self, seat: str) -> Senses:
         """The seat's sensors at this tick."""
-        return SeatSenses(self, seat)
+        return cast(Senses, SeatSenses(self, seat))
 
     def frozen_senses(self, seat: str) -> Senses:
         """The seat's sensors as they are now, to be read at any later time and in any thread.
 
-        Detections, sightings and the scan are made now; pictures are drawn from poses of now when they are read, one
-        after another if several threads read them.
+        What they measure is measured now; pictures are drawn from poses of now when they are read, one after another if
+        several threads read them.
         """
-        found = self.detections(seat)
-        seen = {one.id: self.sighting(seat, one.id) for one in found if one.family == "object"}
-        scan, camera = self.scan(seat), self.camera(seat)
-        return FrozenSenses(found, scan, camera, seen, self._pictures.frozen(seat, self._label_key))
+        readings = {name: getattr(self, name)(seat) for name in MEASURED}
+        objects = [one.id for one in readings["detections"] if one.family == "object"]
+        sightings = {id: self.sighting(seat, id) for id in objects}
+        pictures = self._pictures.frozen(seat, self._label_key)
+        return cast(Senses, FrozenSenses(readings, sightings, pictures))
 
     def detections(self, seat: str) -> tuple[Detection, ...]:
         """Detections of the seat's detector now, by id, with the detector's errors."""

@@ -136,7 +136,7 @@ def test_the_contract_of_every_kind(name, house, root):
 
 
 def test_every_kind_has_its_own_words_and_crews_that_exist():
-    assert len({kind.short for kind in KINDS.values()}) == len(KINDS) == 7
+    assert len({kind.short for kind in KINDS.values()}) == len(KINDS) >= 7
     for name, kind in KINDS.items():
         assert kind.name == name
         assert set(kind.crew) <= set(plugins.names("robot"))

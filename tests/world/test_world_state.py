@@ -11,6 +11,7 @@ import zlib
 from collections.abc import Iterator
 from typing import Any
 
+import mirror_agent
 import msgspec
 import numpy as np
 import pytest
@@ -20,6 +21,8 @@ from world_house import TABLE, do, on, task, wait
 from hthor.errors import HthorError, StaleObservation
 from hthor.types import Close, Drive, Drop, Motion, Move, Open, Pick, Place, Pose, Rotate, Wait
 from hthor.world import World, saved_state
+from hthor.world.rendering.lazy_images import MODES
+from hthor.world.seat_senses import MEASURED
 
 OBJECTS = [(id, id.partition("_")[0]) for id in ("apple", "mug", "book", "bowl", "trunk", "trunk_2")]
 DETECTORS = ("noisy", "miss=0.3,false_alarm=0.4,position_sigma=0.05")
@@ -272,9 +275,7 @@ def readings(senses: Any) -> list[Any]:
     """All that there is to read, pictures last."""
     found = senses.detections()
     sightings = [senses.sighting(one.id) for one in found]
-    scan, camera = senses.scan(), senses.camera()
-    arrays = [scan.ranges, scan.tops, camera.pose, camera.matrix, senses.segmentation(), senses.depth(), senses.rgb()]
-    return [found, sightings, scan.origin, *(array.tobytes() for array in arrays)]
+    return [sightings, *(mirror_agent.plain(getattr(senses, name)()) for name in (*MEASURED, *MODES))]
 
 
 def test_frozen_senses_stay_at_their_moment(worlds: tuple[World, World]) -> None:

@@ -23,9 +23,10 @@ def resume_command(folder: Path, config: RunConfig, out: Path | None = None) -> 
     """The shell command that finishes a run or a shard; it writes to ``out``, by default the run's folder."""
     out = out or folder
     words = ["hthor", "eval", *_condition_options(config), "--humans", config.humans.source]
-    if config.kind is not None and config.kind.sha256:
-        words += ["--kind", f"{config.kind.name}.py"]
-        words += [] if (folder / "suite.json").exists() else ["--suite", config.suite.name]
+    generated = (folder / "suite.json").exists()
+    if config.kind is not None and (config.kind.sha256 or generated):
+        words += ["--kind", f"{config.kind.name}.py" if config.kind.sha256 else config.kind.name]
+        words += [] if generated else ["--suite", config.suite.name]
     else:
         words += ["--suite", config.suite.name, *(("--kind", config.kind.name) if config.kind else ())]
     words += [] if config.assets.name == PROCEDURAL else ["--assets", config.assets.name]

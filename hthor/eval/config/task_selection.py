@@ -20,7 +20,7 @@ from hthor.tasks.validate import validate
 from hthor.types import TaskSpec
 
 _ROOT = seeds.derive(2, "programme")
-"""Seed of the tasks that are generated for a user's own kind: the same file always gives the same tasks."""
+"""Seed of the tasks that are generated for a kind without a suite: the same file always gives the same tasks."""
 _SUBSET_ROOT = seeds.derive(3, "selection")
 """Seed of every subset: a suite always gives the same tasks, independent of the run's seed."""
 _VERSION = 1
@@ -55,7 +55,8 @@ def select_tasks(suite: str, kind: str) -> TaskSelection:
     """The tasks of a suite, or those of one task kind.
 
     Args:
-        suite: name or file of a suite; empty for the kind's own, or "smoke" without a kind.
+        suite: name or file of a suite; empty for the kind's own, for tasks generated now if it has none, or for "smoke"
+            without a kind.
         kind: name or short name of a task kind, or the path of a Python file that defines one; empty for all kinds.
 
     Raises:
@@ -68,7 +69,7 @@ def select_tasks(suite: str, kind: str) -> TaskSelection:
         return _whole_suite(checked_suite(suite or "smoke"))
     known = find_kind(kind)
     if not suite and known.short not in tasks.suite_names():
-        raise HthorError(f"there is no suite of tasks of the kind '{known.name}'; name one that has some with --suite.")
+        return _one_in_each_house(known)
     whole = checked_suite(suite or known.short)
     chosen = _only_kind(whole, known.name)
     if len(chosen.tasks) == len(whole.tasks):
@@ -204,15 +205,12 @@ def _whole_suite(suite: Suite) -> TaskSelection:
 def _from_user_kind(path: str, suite: str) -> TaskSelection:
     """The tasks of a user's kind: those of a suite, or one task in each of the houses that ship with hthor."""
     kind = _load_user_kind(path)
-    chosen, missing = (_only_kind(checked_suite(suite), kind.name), ()) if suite else _generated_tasks(kind, path)
-    return TaskSelection(
-        suite=chosen,
-        kind=KindRef(name=kind.name, sha256=plugins.sha256(path)),
-        kind_path=str(Path(path).resolve()),
-        generated=not suite,
-        robots=tuple(kind.crew),
-        notes=missing,
-    )
+    if suite:
+        chosen = TaskSelection(suite=_only_kind(checked_suite(suite), kind.name), robots=tuple(kind.crew))
+    else:
+        chosen = _one_in_each_house(kind, path)
+    ref = KindRef(name=kind.name, sha256=plugins.sha256(path))
+    return msgspec.structs.replace(chosen, kind=ref, kind_path=str(Path(path).resolve()))
 
 
 def _only_kind(whole: Suite, kind: str) -> Suite:
@@ -224,8 +222,8 @@ def _only_kind(whole: Suite, kind: str) -> Suite:
     return whole.with_tasks(chosen)
 
 
-def _generated_tasks(kind: TaskKind, path: str) -> tuple[Suite, tuple[str, ...]]:
-    """A task in each house that suits the kind, and for every other house the reason why it has no task."""
+def _one_in_each_house(kind: TaskKind, path: str = "") -> TaskSelection:
+    """A task generated in each house that suits the kind, and for every other house a note why it has no task."""
     from hthor.tasks.generation import generate
 
     generated, missing = [], []
@@ -235,8 +233,14 @@ def _generated_tasks(kind: TaskKind, path: str) -> tuple[Suite, tuple[str, ...]]
         except HthorError as error:
             missing.append(f"there is no task in {name}: {error}")
     if not generated:
-        raise HthorError(f"{path}: {missing[0]}")
-    return make_suite(kind.short, _VERSION, tuple(generated)), tuple(missing)
+        raise HthorError(f"{path or kind.name}: {missing[0]}")
+    return TaskSelection(
+        suite=make_suite(kind.short, _VERSION, tuple(generated)),
+        kind=KindRef(name=kind.name),
+        generated=True,
+        robots=tuple(kind.crew),
+        notes=tuple(missing),
+    )
 
 
 def _load_user_kind(path: str) -> TaskKind:

@@ -11,7 +11,8 @@ import pytest
 from hthor import houses, tasks
 from hthor.console import exit_status
 from hthor.errors import HthorError, UnknownName
-from hthor.eval.config import task_selection
+from hthor.eval.config import cli_command, task_selection
+from hthor.eval.config.run_config import KindRef
 from hthor.eval.records import trial_record
 from hthor.eval.results import aggregate
 from hthor.eval.runner import experiment, progress, run_options
@@ -78,6 +79,17 @@ def test_a_kind_with_a_suite_of_its_own_needs_no_other(name: str):
     assert chosen.kind is None, "it is all of that suite"
     assert {task.kind for task in chosen.suite.tasks} == {task_selection.find_kind(name).name}
     assert chosen.robots == tuple(task_selection.find_kind(name).crew)
+
+
+def test_a_new_kind_of_ours_needs_no_suite(few: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr(tasks, "suite_names", lambda: ("smoke",))
+    done = conducted(kind="navigation", agents=("silent",), out=tmp_path / "run", participants=1, jobs=1)
+    suite = tasks.load_suite(str(tmp_path / "run" / "suite.json"))
+    assert [(task.kind, task.house) for task in suite.tasks] == [("object_goal_navigation", house) for house in HOUSES]
+    assert done.config.kind == KindRef(name="object_goal_navigation")
+    command = cli_command.resume_command(tmp_path / "run", done.config)
+    assert " --kind object_goal_navigation " in command
+    assert "--suite" not in command
 
 
 # --------------------------------------------------------------------------------------------------- a user's own kind

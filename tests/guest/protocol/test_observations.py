@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import shutil
 import threading
@@ -15,6 +16,7 @@ import mirror_agent
 import msgspec
 import numpy as np
 import pytest
+import world_house
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from law_cases import cases
@@ -44,16 +46,27 @@ from hthor.types import (
     Receipt,
     Scan,
     Send,
+    Senses,
     ThingState,
 )
 from hthor.types.sensors import READINGS
+from hthor.world import World
 from tests.support.guest_agents import BRIEFING
 
 HEAD = Pose(x=1.0, y=2.0, yaw=0.5, pitch=-0.1, head=0.7)
 
 
+@functools.cache
+def measured() -> Senses:
+    """Every sensor, as a robot in a house reads it."""
+    return World(world_house.house(), robots=("scout",)).frozen_senses("robot")
+
+
 class AllSenses:
-    """Every sensor that there is."""
+    """Every sensor that there is: made up for what a house would not show at once, else measured."""
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(measured(), name)
 
     def detections(self) -> tuple[Detection, ...]:
         person = {"kind": "person", "family": "person", "size": (0.5, 0.5, 1.7), "yaw": 0.1, "distance": 1.4}
@@ -143,7 +156,8 @@ def test_the_fake_trial_has_everything_that_there_is() -> None:
         kind = type(records[0])
         for field in msgspec.structs.fields(kind):
             assert any(getattr(one, field.name) != field.default for one in records), (kind, field.name)
-    assert {name for name in vars(AllSenses) if name[0] != "_"} == set(READINGS)
+    assert {name for name in vars(AllSenses) if name[0] != "_"} <= set(READINGS)
+    assert mirror_agent.readings(observations[0]).keys() == READINGS.keys()
 
 
 class InMemory:
@@ -263,6 +277,20 @@ def test_whatever_an_agent_says_a_guest_says(say: Send, motion: Drive) -> None:
 
     if wire.find_action_fault(wanted) is None:
         assert over_the_wire(briefing, observations[:1], Speaker) == [wanted]
+
+
+@pytest.mark.parametrize("sensor", READINGS)
+def test_what_a_sensor_measures_arrives(sensor: str) -> None:
+    """A sensor of which this file knows nothing keeps to this, too."""
+
+    class Reader(mirror_agent.Agent):
+        def act(self, observation: Observation) -> Action:
+            return Action(say=Send(text=json.dumps(mirror_agent.plain(getattr(observation, sensor)))))
+
+    briefing, observations = trial()
+    seen = [msgspec.structs.replace(one, senses=measured()) for one in observations[:4]]
+    there = over_the_wire(briefing, seen, Reader)
+    assert there == [Reader().act(one) for one in seen]
 
 
 def test_without_a_process_too() -> None:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
+import msgspec
 import numpy as np
 import pytest
 import world_house as tiny
@@ -12,7 +14,8 @@ from world_house import COFFEE, FRIDGE, TABLE, do, on, task, wait
 from hthor import rules
 from hthor.errors import StaleObservation
 from hthor.navigation.grid_map import OCCUPIED, UNKNOWN, GridMap
-from hthor.types import Close, Open, Pick, Pose, Rotate
+from hthor.types import Close, Observation, Open, Pick, Pose, Rotate
+from hthor.types.sensors import READINGS
 from hthor.world import World
 from hthor.world.model.bodies import bodies
 
@@ -171,10 +174,13 @@ def test_scans_agree_with_the_free_space_grid(world: World) -> None:
                 assert not space.raw[space.cell_of(4.2 + t * ux, 1.9 + t * uy)]
 
 
-def test_an_observation_is_of_its_tick(world: World) -> None:
-    senses = world.senses("human")
-    assert senses.detections() is senses.detections()
-    wait(world, 1)
-    for read in (senses.detections, senses.scan, senses.rgb):
-        with pytest.raises(StaleObservation, match="made at tick 0"):
+@pytest.mark.parametrize("sensor", READINGS)
+def test_a_sensor_reads_what_it_declares_once_a_tick(world: World, sensor: str) -> None:
+    for seat in world.seats:
+        read = getattr(world.senses(seat), sensor)
+        assert read() is read()
+        assert isinstance(read(), np.ndarray) if READINGS[sensor] is Any else msgspec.convert(read(), READINGS[sensor])
+        assert isinstance(getattr(Observation, sensor), property)
+        wait(world, 1)
+        with pytest.raises(StaleObservation, match=f"seat '{seat}' was made at tick {world.tick - 1} "):
             read()
