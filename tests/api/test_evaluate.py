@@ -203,3 +203,17 @@ def test_a_script_needs_no_guard_against_being_imported_by_its_workers(few: byte
     words = {"file": ["program.py"], "-c": ["-c", SCRIPT], "-m": ["-m", "program"]}[way]
     said = subprocess.run([sys.executable, *words], cwd=tmp_path, capture_output=True, text=True)
     assert said.stdout == "Ahead 2 0\n", said.stderr
+
+
+def _outputs(text: str) -> str:
+    """What a page shows or prints, without the ends of folders' names, which every version of the code changes."""
+    return re.sub(r"-[0-9a-f]{10}/", "-HASH/", "".join(f"{line.rstrip()}\n" for line in text.splitlines() if line))
+
+
+@pytest.mark.slow
+@pytest.mark.nightly
+def test_the_page_shows_what_its_code_prints(root: Path, tmp_path: Path):
+    text = (root / "docs" / "python.md").read_text()
+    (tmp_path / "page.py").write_text("\n".join(re.findall(r"```python\n(.*?)```", text, re.DOTALL)))
+    said = subprocess.run([sys.executable, "page.py"], cwd=tmp_path, capture_output=True, text=True)
+    assert _outputs(said.stdout) == _outputs("\n".join(re.findall(r"```text\n(.*?)```", text, re.DOTALL))), said.stderr
