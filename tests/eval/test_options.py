@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 from typing import Annotated
 
@@ -15,7 +16,7 @@ from typer.testing import CliRunner
 from hthor.cli import app
 from hthor.commands.options import takes_options
 from hthor.errors import UnknownName
-from hthor.eval.config import option, study_design
+from hthor.eval.config import cli_command, option, study_design
 from hthor.eval.config.option import Option
 from hthor.eval.config.options import EvalOptions
 from hthor.eval.planning.resolve import resolve
@@ -94,3 +95,28 @@ def test_what_is_resolved_has_no_word_left_to_look_up(tmp_path: Path):
     assert not out.exists()
     with pytest.raises(UnknownName, match="unknown engine 'rai'"):
         resolve(EvalOptions(agent=("oracle",), engine="rai"))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"agent": "oracle", "suite": "smoke", "limit": 12, "camera": "thor", "camera_size": "64x48", "seed": 3},
+        {"agent": "frontier", "suite": "paper", "house": ["alder", "birch"], "difficulty": "easy", "clock": "charged"},
+        {"robots": "tall:oracle,small:frontier", "suite": "smoke", "detector": "noisy", "humans": "greedy,proxy"},
+        {"agent": ["oracle", "frontier"], "suite": "smoke", "design": "between", "participants": 12, "name": "study"},
+        {"agent": "oracle", "suite": "smoke", "participants": 4, "shard": "2/4", "robot": "tall"},
+    ],
+)
+def test_the_command_of_a_configuration_gives_this_configuration(
+    given: dict[str, object], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.chdir(tmp_path)
+    known = option.fields(EvalOptions)
+    for run in resolve(option.make_record(EvalOptions, given)).runs:
+        words = shlex.split(cli_command.resume_command(run.folder.path, run.config))
+        assert words[:2] == ["hthor", "eval"]
+        read = {name: value for name, value in COMMAND.make_context("eval", words[2:]).params.items() if name in known}
+        again = resolve(option.make_record(EvalOptions, read)).runs
+        assert run.config in [one.config for one in again]
+        assert run.folder.path in [one.folder.path for one in again]

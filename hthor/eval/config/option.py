@@ -74,14 +74,14 @@ class Field(Struct, frozen=True, kw_only=True):
             return self._check_one(given)
         return tuple(map(self._check_one, given if _is_sequence(given) else (given,)))  # type: ignore[call-overload]
 
-    def words(self, value: object) -> list[str]:
-        """The words of a command line that give this value; none where it is the default."""
-        if value == self.default:
+    def words(self, value: object, *, stated: bool = False) -> list[str]:
+        """The words of a command line that give this value; none where it is the default, unless it is ``stated``."""
+        if value in (None, "") or (value == self.default and not stated):
             return []
         if isinstance(value, bool):
             return [self.flag if value else f"--no-{self.flag[2:]}"]
         values = value if isinstance(value, tuple) else (value,)
-        return [word for one in values for word in (self.flag, f"{one:g}" if isinstance(one, float) else str(one))]
+        return [word for one in values for word in (self.flag, _short(one) if isinstance(one, float) else str(one))]
 
     def _check_one(self, given: object) -> object:
         if self.choices and isinstance(given, str):
@@ -160,10 +160,18 @@ def make_record(record: type[_Record], given: Mapping[str, object]) -> _Record:
     return record(**{name: known[name].check(value) for name, value in given.items()})
 
 
-def command_words(record: Struct, only: Collection[str] = ()) -> list[str]:
-    """The words of a command line that give these options, or ``only`` some; those with their default are left out."""
+def command_words(record: Struct, only: Collection[str] = (), always: Collection[str] = ()) -> list[str]:
+    """The words of a command line that give these options, or ``only`` some, in the record's order.
+
+    Options with their default are left out, except those that are ``always`` stated and not empty.
+    """
     named = (one for one in fields(type(record)).values() if not only or one.name in only)
-    return [word for one in named for word in one.words(getattr(record, one.name))]
+    return [word for one in named for word in one.words(getattr(record, one.name), stated=one.name in always)]
+
+
+def _short(number: float) -> str:
+    """A number as a person would type it: 600, not 600.0."""
+    return f"{number:g}" if float(f"{number:g}") == number else repr(number)
 
 
 def _is_sequence(value: object) -> bool:

@@ -51,5 +51,4 @@ def _conditions(options: EvalOptions, teams: list[RobotTeam]) -> list[RobotTeam]
 
 def agent_word(team: RobotTeam) -> str:
     """The word of the command line for a team's first agent."""
-    agent = team.robots[0][1].ref
-    return agent.name if agent.source.startswith(cli_command.BUILT_IN_AGENTS) else agent.source
+    return cli_command.agent_word(team.listed[0])

@@ -214,7 +214,7 @@ def test_a_run_of_several_robots_is_resumed_and_told_from_others(tmp_path: Path)
 def test_the_command_that_finishes_a_run_names_every_robot(tmp_path: Path):
     plan, _ = fakes.run_of(20, name="helper+other")
     told = cli_command.resume_command(tmp_path, plan)
-    assert " --robots scout:helper.py,scout:other.py --humans proxy --suite fake --seed 0 " in told
+    assert " --humans proxy --suite fake --robots scout:helper.py,scout:other.py --seed 0 " in told
     assert shlex.split(cli_command.resume_command(tmp_path / "my run", plan))[-2:] == [
         "--out",
         str(tmp_path / "my run"),
