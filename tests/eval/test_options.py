@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from msgspec import Struct
 from typer.testing import CliRunner
 
+from hthor import jsonio
 from hthor.cli import app
 from hthor.commands.options import takes_options
 from hthor.errors import UnknownName
@@ -20,6 +21,7 @@ from hthor.eval.config import cli_command, option, study_design
 from hthor.eval.config.option import Option
 from hthor.eval.config.options import EvalOptions
 from hthor.eval.planning.resolve import resolve
+from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.runner import engines
 from hthor.guest.confinement import AUTO
 from hthor.humans.population.resolve import PROXY
@@ -106,6 +108,7 @@ def test_what_is_resolved_has_no_word_left_to_look_up(tmp_path: Path):
         {"robots": "tall:oracle,small:frontier", "suite": "smoke", "detector": "noisy", "humans": "greedy,proxy"},
         {"agent": ["oracle", "frontier"], "suite": "smoke", "design": "between", "participants": 12, "name": "study"},
         {"agent": "oracle", "suite": "smoke", "participants": 4, "shard": "2/4", "robot": "tall"},
+        {"agent": "oracle", "suite": "smoke", "limit": 10, "trial_limit": 900.5, "isolation": "L1", "max_faults": "5%"},
     ],
 )
 def test_the_command_of_a_configuration_gives_this_configuration(
@@ -120,3 +123,16 @@ def test_the_command_of_a_configuration_gives_this_configuration(
         again = resolve(option.make_record(EvalOptions, read)).runs
         assert run.config in [one.config for one in again]
         assert run.folder.path in [one.folder.path for one in again]
+
+
+def test_what_changes_no_trial_is_kept_and_makes_no_other_run(tmp_path: Path):
+    plain, kept = (
+        resolve(EvalOptions(agent=("oracle",), suite="smoke", limit=10, control=False, **more)).runs[0].config  # type: ignore[arg-type]
+        for more in ({}, {"trial_limit": 900.0, "max_faults": "5%", "jobs": 2})
+    )
+    assert kept.options == {"trial_limit": 900.0, "max_faults": "5%"}
+    assert b"options" not in jsonio.pretty(plain)
+    assert (kept.sha256, kept.folder_name, kept.untitled) == (plain.sha256, plain.folder_name, plain)
+    RunFolder(tmp_path / "run").write_config(plain)
+    RunFolder(tmp_path / "run").check_free(kept)
+    assert " --trial-limit 900 --max-faults 5%" in cli_command.resume_command(tmp_path, kept)

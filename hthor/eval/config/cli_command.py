@@ -35,7 +35,7 @@ def options_of(config: RunConfig, folder: Path, out: Path | None) -> EvalOptions
         folder: the run's folder, which says whether its tasks were generated for it.
         out: the folder of the run or shard to write to; None for the usual one.
     """
-    kind, seats = config.kind, config.seats
+    kind, seats, known = config.kind, config.seats, option.fields(EvalOptions)
     own_kind = kind is not None and bool(kind.sha256)
     camera, _, size = next((robot.camera for robot in seats if robot.camera), cameras.OWN).partition(":")
     agent = next(iter(config.agents), None)  # all agents of a command get the same arguments and files
@@ -62,6 +62,7 @@ def options_of(config: RunConfig, folder: Path, out: Path | None) -> EvalOptions
         control=not config.design,  # no robot is one of its conditions
         design="between" if config.design else "paired",
         clock=config.mode,
+        **{name: value for name, value in (config.options or {}).items() if name in known},  # type: ignore[arg-type]
     )
 
 

@@ -29,6 +29,7 @@ class Option(Struct, frozen=True, kw_only=True):
         short: a one-letter name, such as "j".
         least, most: the range of a number.
         negatable: whether a flag also has a form that begins with ``--no-``.
+        kept: whether a run keeps the value for the command that goes on with it, although it changes no trial.
     """
 
     help: str
@@ -38,6 +39,7 @@ class Option(Struct, frozen=True, kw_only=True):
     least: float | None = None
     most: float | None = None
     negatable: bool = False
+    kept: bool = False
 
 
 class Field(Struct, frozen=True, kw_only=True):
@@ -158,6 +160,12 @@ def make_record(record: type[_Record], given: Mapping[str, object]) -> _Record:
         if name not in known:
             raise UnknownName("option", name, known)
     return record(**{name: known[name].check(value) for name, value in given.items()})
+
+
+def kept_values(record: Struct) -> dict[str, str | float]:
+    """The values, by name, that a run keeps for the command that goes on with it: those that are not the default."""
+    named = [one for one in fields(type(record)).values() if one.about.kept]
+    return {one.name: value for one in named if (value := getattr(record, one.name)) != one.default}
 
 
 def command_words(record: Struct, only: Collection[str] = (), always: Collection[str] = ()) -> list[str]:

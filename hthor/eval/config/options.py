@@ -163,15 +163,16 @@ class EvalOptions(Struct, frozen=True, kw_only=True):
         ),
     ] = ""
     engine: Annotated[
-        str, Option(help="Where trials run: local (processes on this machine) or ray (a Ray cluster).")
+        str, Option(kept=True, help="Where trials run: local (processes on this machine) or ray (a Ray cluster).")
     ] = "local"
     address: Annotated[
         str,
-        Option(help="With --engine ray: the address of the cluster.", default="the cluster of this machine"),
+        Option(kept=True, help="With --engine ray: the address of the cluster.", default="the cluster of this machine"),
     ] = ""
     trial_limit: Annotated[
         float | None,
         Option(
+            kept=True,
             least=1.0,
             help="Longest time for one trial [s]. A worker that takes longer is stopped, and its session is played "
             "again.",
@@ -215,15 +216,19 @@ class EvalOptions(Struct, frozen=True, kw_only=True):
     ] = "lockstep"
     isolation: Annotated[
         str,
-        Option(help="Isolation of your own agents: L1, L2, L3, or auto, the strongest that this machine supports."),
+        Option(
+            kept=True,
+            help="Isolation of your own agents: L1, L2, L3, or auto, the strongest that this machine supports.",
+        ),
     ] = "auto"
     require_isolation: Annotated[
         str,
-        Option(help="The weakest acceptable isolation level; exit with code 5 if it is not available."),
+        Option(kept=True, help="The weakest acceptable isolation level; exit with code 5 if it is not available."),
     ] = ""
     max_faults: Annotated[
         str | int,
         Option(
+            kept=True,
             placeholder="N|P%",
             help="Number or share of trials in which an agent may fail; exit with code 3 if there are more.",
         ),

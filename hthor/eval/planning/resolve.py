@@ -67,6 +67,7 @@ def resolve(options: EvalOptions, tell: Callable[[str], None] = lambda _: None) 
         make_engine=functools.partial(_engine, options, tasks.suite.tasks),
         required_isolation=options.require_isolation,
         agent_words=tuple(option.command_words(options, only=("isolation", "agent_args", "readable"))),
+        kept=option.kept_values(options),
     )
     planner = RunPlanner(setting)
     runs = planner.runs(teams, peoples)

@@ -39,6 +39,7 @@ class Setting(Struct, frozen=True, kw_only=True):
         houses: the house files that the suite brings with it, by name.
         make_engine: the engine that plays the trials of a team.
         agent_words: the options of the command line that submitted agents were started with.
+        kept: the options that a run keeps for the command that goes on with it.
     """
 
     tasks: TaskSelection
@@ -57,6 +58,7 @@ class Setting(Struct, frozen=True, kw_only=True):
     make_engine: Callable[[RobotTeam], Engine]
     required_isolation: str
     agent_words: tuple[str, ...]
+    kept: dict[str, str | float]
 
 
 class RunPlanner:
@@ -137,7 +139,7 @@ class RunPlanner:
         self, team: RobotTeam, people: HumanTeam, assets: AssetsRef | None, *, baseline: bool = False
     ) -> RunConfig:
         setting, tasks = self._setting, self._setting.tasks
-        return run_config.build_config(
+        config = run_config.build_config(
             tasks.suite,
             team,
             humans=people,
@@ -152,6 +154,7 @@ class RunPlanner:
             step_limit_s=None if baseline else setting.step_limit_s,
             design=self._design(team, people),
         )
+        return msgspec.structs.replace(config, options=setting.kept or msgspec.UNSET)
 
     def _design(self, team: RobotTeam, people: HumanTeam) -> StudyDesign | None:
         """The between-subjects study that a run is a condition of; None for the paired design."""
