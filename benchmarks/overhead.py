@@ -17,11 +17,13 @@ from pathlib import Path
 
 from rich.console import Console
 
+from hthor.eval.config.options import EvalOptions
+from hthor.eval.planning.resolve import resolve
 from hthor.eval.records import trial_log, trial_record
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import baseline, result_file
-from hthor.eval.runner import collector, experiment, progress, run, run_options, session_runner
+from hthor.eval.runner import collector, experiment, progress, run, session_runner
 from hthor.eval.runner.messages import TrialOutcome
 from hthor.trials.sessions import Session
 
@@ -50,18 +52,18 @@ def main(folder: Path) -> None:
         setattr(place, name, _timed(getattr(place, name), name, spent))
     session_runner.make_runner = functools.partial(player, folder.resolve())  # type: ignore[assignment]
     with tempfile.TemporaryDirectory() as scratch:
-        options = run_options.RunOptions(
-            agents=tuple(robot.agent.name for robot in plan.robots),
+        options = EvalOptions(
+            agent=tuple(robot.agent.name for robot in plan.robots),
             humans=(plan.humans.source,),
             suite=plan.suite.name,
             seed=plan.seed,
             participants=plan.participants,
-            control=True,
             out=Path(scratch) / "run",
         )
         console = Console(file=io.StringIO())
         count = sum(
-            one.result.counts.trials for one in experiment.run_experiment(options, lambda n: progress.Plain(console, n))
+            one.result.counts.trials
+            for one in experiment.run_experiment(resolve(options), lambda n: progress.Plain(console, n))
         )
     whole = time.process_time()
     rows = {

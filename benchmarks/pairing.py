@@ -11,7 +11,9 @@ import itertools
 from pathlib import Path
 
 from hthor.eval.comparison import compare
-from hthor.eval.runner import experiment, progress, run_options
+from hthor.eval.config.options import EvalOptions
+from hthor.eval.planning.resolve import resolve
+from hthor.eval.runner import experiment, progress
 
 AGENTS = ("none", "frontier", "oracle")
 
@@ -26,15 +28,16 @@ def main() -> None:
     parser.add_argument("--seeds", type=int, default=1, help="the suite is played with seeds 0, 1, ...")
     wanted = parser.parse_args()
     for seed in range(wanted.seeds):
-        options = run_options.RunOptions(
-            agents=AGENTS,
+        options = EvalOptions(
+            agent=AGENTS,
             suite=wanted.suite,
             participants=wanted.participants,
             jobs=wanted.jobs,
             seed=seed,
             out=wanted.folder / str(seed),
+            control=False,
         )
-        for _ in experiment.run_experiment(options, lambda _name: progress.Silent()):
+        for _ in experiment.run_experiment(resolve(options), lambda _name: progress.Silent()):
             pass
     print("pair                  n  only 1st/2nd   metric  difference (interval)      r  gain")
     for seed, (one, other) in itertools.product(range(wanted.seeds), itertools.combinations(AGENTS, 2)):

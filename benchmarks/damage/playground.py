@@ -8,9 +8,11 @@ from pathlib import Path
 import msgspec
 
 from hthor import calibration, humans, jsonio, tasks, world
+from hthor.eval.config.options import EvalOptions
+from hthor.eval.planning.resolve import resolve
 from hthor.eval.records import find
 from hthor.eval.records.run_folder import RunFolder
-from hthor.eval.runner import experiment, fault_report, progress, run_options
+from hthor.eval.runner import experiment, fault_report, progress
 from hthor.tasks.suite import encode_suite, make_suite
 from hthor.tasks.suites import commitment
 from hthor.tasks.suites.commitment import Commitment, Revealed, Salt
@@ -27,10 +29,10 @@ def make(folder: Path) -> Path:
     short = tuple(msgspec.structs.replace(one, time_limit=15.0, t_star=10.0) for one in few)
     suite = make_suite("few", 1, short)
     jsonio.write(folder / "few.json", encode_suite(suite))
-    options = run_options.RunOptions(
-        agents=("silent", "oracle"), suite=str(folder / "few.json"), jobs=1, out=folder / "runs"
+    options = EvalOptions(
+        agent=("silent", "oracle"), suite=str(folder / "few.json"), jobs=1, out=folder / "runs", control=False
     )
-    list(experiment.run_experiment(options, lambda _: progress.Silent()))
+    list(experiment.run_experiment(resolve(options), lambda _: progress.Silent()))
     jsonio.write(folder / "runs" / "oracle" / "isolation.json", jsonio.pretty({"level": "L2", "landlock_abi": 4}))
     _faults(folder / "runs" / "oracle")
     _official(folder / "official", suite)

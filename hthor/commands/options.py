@@ -1,29 +1,77 @@
-"""Arguments and options that several commands share."""
+"""Arguments and options that several commands share, and the parameters of a command that takes a record of options."""
 
+import inspect
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal, TypeVar
 
 import typer
+from msgspec import Struct
 
-AgentArgs = Annotated[
-    list[str] | None,
-    typer.Option(
-        metavar="KEY=VALUE",
-        help="An argument for your own agents, passed to the constructor of the class, or to a program as "
-        "--KEY=VALUE. If it names a file, the agent may read it. It is part of the agent's identity. Repeat the "
-        "option for several.",
-        show_default=False,
-    ),
-]
-Readable = Annotated[
-    list[Path] | None,
-    typer.Option(
-        metavar="PATH",
-        help="A file or folder outside the agent's own folder that the agent may read, such as weights. It is part "
-        "of the agent's identity. Repeat the option for several.",
-        show_default=False,
-    ),
-]
+from hthor.eval.config import option
+from hthor.eval.config.option import Field
+from hthor.eval.config.options import EvalOptions
+
+_Command = TypeVar("_Command", bound=Callable[..., None])
+
+
+def takes_options(record: type[Struct]) -> Callable[[_Command], _Command]:
+    """Decorator: the command takes every option of a record, before its own, in place of its ``**given``."""
+
+    def decorate(command: _Command) -> _Command:
+        own = inspect.signature(command, eval_str=True).parameters.values()
+        taken = [_parameter(one) for one in option.fields(record).values()]
+        parameters = [*taken, *(one for one in own if one.kind is not inspect.Parameter.VAR_KEYWORD)]
+        named = {one.name: one.annotation for one in parameters}
+        command.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+        command.__annotations__ = {**named, "return": None}
+        return command
+
+    return decorate
+
+
+def _parameter(one: Field) -> inspect.Parameter:
+    kind: Any = one.types[0]
+    if one.choices:
+        kind = Literal[one.choices]
+    if one.repeated:
+        kind = list[kind]
+    empty = one.repeated or one.default is None
+    return inspect.Parameter(
+        one.name,
+        inspect.Parameter.POSITIONAL_OR_KEYWORD,
+        default=None if empty else one.default,
+        annotation=Annotated[kind | None if empty else kind, declare(one)],
+    )
+
+
+def declare(one: Field) -> Any:
+    """An option of the command line with the help, range and default of a record's field."""
+    about, names = one.about, [one.flag]
+    if about.short:
+        names.append(f"-{about.short}")
+    if about.negatable:
+        names = [f"{one.flag}/--no-{one.flag[2:]}"]
+    whole = int in one.types
+    return typer.Option(
+        *names,
+        help=about.help,
+        min=int(about.least) if whole and about.least is not None else about.least,
+        max=int(about.most) if whole and about.most is not None else about.most,
+        metavar=about.placeholder or None,
+        show_default=about.default or (one.default not in (None, "", ()) and not one.repeated),
+    )
+
+
+def _as_in_eval(name: str) -> Any:
+    """The option that `hthor eval` has under this name."""
+    return declare(option.fields(EvalOptions)[name])
+
+
+AgentArgs = Annotated[list[str] | None, _as_in_eval("agent_args")]
+Readable = Annotated[list[Path] | None, _as_in_eval("readable")]
+Camera = Annotated[str, _as_in_eval("camera")]
+CameraSize = Annotated[str, _as_in_eval("camera_size")]
 
 Run = Annotated[Path, typer.Argument(metavar="RUN", help="The folder of a run, such as runs/demo/frontier.")]
 Trial = Annotated[
@@ -40,29 +88,3 @@ RobotFiles = Annotated[
 KindFile = Annotated[str, typer.Option(help="The file of your own task kind, if the run used one.", show_default=False)]
 HumansFile = Annotated[str, typer.Option(help="The file of the people, if the run used one.", show_default=False)]
 Json = Annotated[bool, typer.Option("--json", help="Write JSON to standard output and messages to standard error.")]
-
-Camera = Annotated[
-    str,
-    typer.Option(
-        help="The robot's camera: own (as its body defines it), square, thor, habitat or realsense; docs/robots.md "
-        "lists their fields of view and sizes. The camera does not change what the robot detects."
-    ),
-]
-CameraSize = Annotated[
-    str,
-    typer.Option(
-        metavar="WxH",
-        help="Size of the camera's images [pixels], such as 320x240. Pixels are square, so an image of another shape "
-        "than the field of view is cropped to its middle.",
-        show_default="the camera's own",
-    ),
-]
-
-Design = Annotated[
-    Literal["paired", "between"],
-    typer.Option(
-        help="Who meets which robot. paired: every robot meets the same people, each time as if it were the first. "
-        "between: everybody meets one robot; the people are divided at random and evenly among the agents and, unless "
-        "--no-control is given, no robot. --participants is then the number of people in all groups."
-    ),
-]

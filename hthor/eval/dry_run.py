@@ -4,7 +4,6 @@ The time of a trial is taken from a similar finished run, or measured on a few t
 """
 
 import math
-import os
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -16,16 +15,15 @@ from typing import Any
 import msgspec
 from msgspec import Struct
 
-from hthor import rules
+from hthor import jsonio, rules
 from hthor.errors import RunError
 from hthor.eval.comparison import sample_size
 from hthor.eval.config.run_config import RunConfig
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.results import result_file
-from hthor.eval.runner import engines, run_options
+from hthor.eval.runner import engines
 from hthor.eval.runner.messages import Failed, SessionAbandoned, SessionRestarted, TrialDone
-from hthor.eval.runner.run_job import ScheduledRun
-from hthor.eval.runner.run_options import RUNS, ResolvedRuns, RunOptions
+from hthor.eval.runner.run_job import RUNS, ResolvedRuns, ScheduledRun
 from hthor.guest import Isolation
 
 SCHEMA = "hthor.dry-run/2"
@@ -75,8 +73,8 @@ def measured_cost(run: ScheduledRun) -> TrialCost | None:
 class CostSampler:
     """Measures the time of a few trials, once for equal robots, and announces it; writes nothing."""
 
-    def __init__(self, options: RunOptions, say: Callable[[str], None]) -> None:
-        self._options, self._say = options, say
+    def __init__(self, say: Callable[[str], None]) -> None:
+        self._say = say
         self._costs: dict[object, TrialCost | None] = {}
 
     def measure(self, run: ScheduledRun) -> TrialCost | None:
@@ -90,11 +88,11 @@ class CostSampler:
 
     def _end_times(self, run: ScheduledRun, folder: Path) -> list[float]:
         """The time [s] from the start to the end of each trial."""
-        houses = run_options.own_houses(self._options)
-        for name, data in houses.items():
-            (folder / name).write_bytes(data)
-        if houses:
-            run = msgspec.structs.replace(run, sources=msgspec.structs.replace(run.sources, houses=str(folder)))
+        if run.sources.houses:
+            for name, data in run.files.items():
+                jsonio.write(folder / name, data)
+            sources = msgspec.structs.replace(run.sources, houses=str(folder / "houses"))
+            run = msgspec.structs.replace(run, sources=sources)
         first = run.sessions[0]
         session = msgspec.structs.replace(first, trials=(*first.trials[:2], *first.trials[1:2]))
         engine = engines.find_engine(engines.LOCAL, jobs=1, limit_s=_LIMIT_S)
@@ -193,18 +191,17 @@ class Forecast(Struct, frozen=True, kw_only=True):
 
 
 def make_forecast(
-    options: RunOptions, resolved: ResolvedRuns, origins: Mapping[str, str], say: Callable[[str], None] | None = None
+    resolved: ResolvedRuns, origins: Mapping[str, str], say: Callable[[str], None] | None = None
 ) -> Forecast:
     """Forecast the runs that some options stand for.
 
     Args:
-        resolved: the runs that the options stand for.
         origins: the origin of each option's value, by the option's name.
         say: prints a line. If given, a few trials are run for robots without a finished run, to measure the time of a
             trial; they are not kept.
     """
-    workers = options.jobs or len(os.sched_getaffinity(0))
-    sampler = CostSampler(options, say) if say is not None else None
+    workers = resolved.workers
+    sampler = CostSampler(say) if say is not None else None
     worlds = len({(one.house, tuple((it.id, it.kind) for it in one.objects)) for one in resolved.tasks.suite.tasks})
     runs = [
         *(_run_forecast(run, workers, worlds, sampler, control=True) for run in resolved.baselines),
@@ -212,7 +209,7 @@ def make_forecast(
     ]
     seconds = [run.seconds for run in runs]
     return Forecast(
-        settings=tuple(_settings(options, resolved, workers, origins)),
+        settings=tuple(_settings(resolved, origins)),
         isolation=resolved.isolation,
         runs=tuple(runs),
         trials=sum(run.trials for run in runs),
@@ -265,9 +262,7 @@ def _run_forecast(
     )
 
 
-def _settings(
-    options: RunOptions, resolved: ResolvedRuns, workers: int, origins: Mapping[str, str]
-) -> Iterator[Setting]:
+def _settings(resolved: ResolvedRuns, origins: Mapping[str, str]) -> Iterator[Setting]:
     """Every option, with defaults resolved."""
     configs = [run.config for run in resolved.runs]
     first = configs[0]
@@ -279,9 +274,9 @@ def _settings(
         "robot": [robot.robot for robot in first.seats],
         "assets": first.assets.name,
         "participants": first.participants,
-        "jobs": workers,
+        "jobs": resolved.workers,
         "out": [str(run.folder) for run in resolved.runs],
     }
     for name, origin in origins.items():
-        value = values.get(name, getattr(options, name, None))
+        value = values.get(name, getattr(resolved.options, name))
         yield Setting(name=name, value=value, origin=origin)

@@ -20,8 +20,8 @@ from hthor.leaderboard.entries.entry import Counts, Entry, Trials
 from hthor.leaderboard.ranking.board import Board
 from hthor.types import RobotSeat
 
-_NEVER = {RunConfig.__name__: "shard", HumanModelRef.__name__: "people"}
-"""The field of each record that entries never have: an entry is a whole run, with one person in a trial."""
+_NEVER = {RunConfig.__name__: ("shard", "options"), HumanModelRef.__name__: ("people",)}
+"""Fields of each record that entries never have: an entry is a whole run, with one person in a trial."""
 _MAYBE = {
     record.__name__: {field.name for field in msgspec.structs.fields(record) if field.default is msgspec.UNSET}
     for record in (RunConfig, RobotSeat, Trials, Entry)
@@ -70,7 +70,7 @@ def document_schema(kind: str) -> dict[str, Any]:
 
 def _strict(name: str, record: dict[str, Any]) -> dict[str, Any]:
     """The schema of a record in which every field is required and no other field is allowed."""
-    fields = {field: one for field, one in record["properties"].items() if field != _NEVER.get(name)}
+    fields = {field: one for field, one in record["properties"].items() if field not in _NEVER.get(name, ())}
     held = {field: _demanding(name, field, one) for field, one in fields.items()}
     about = {"description": record["description"].split("\n")[0]} if "description" in record else {}
     return {
@@ -102,8 +102,8 @@ def _fields(there: Any, held: Any, where: str) -> Iterator[tuple[str, str]]:
     if isinstance(held, Struct):
         names = [field.name for field in msgspec.structs.fields(held)]
         parts = {name: getattr(held, name) for name in names}
-        never = _NEVER.get(type(held).__name__)
-        wanted = {name: part for name, part in parts.items() if part is not msgspec.UNSET and name != never}
+        never = _NEVER.get(type(held).__name__, ())
+        wanted = {name: part for name, part in parts.items() if part is not msgspec.UNSET and name not in never}
         yield from ((_at(where, name), "is no field of an entry") for name in sorted(there.keys() - wanted.keys()))
         yield from ((_at(where, name), "is missing") for name in sorted(wanted.keys() - there.keys()))
         for name in sorted(wanted.keys() & there.keys()):

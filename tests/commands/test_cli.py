@@ -327,12 +327,11 @@ def test_another_clock_is_another_run_and_says_so(hthor, tmp_path: Path, monkeyp
     monkeypatch.setattr(robot_team, "load_agent_info", fakes.character)
     monkeypatch.chdir(tmp_path)
     modes = {}
-    for words in ((), ("--clock", "charged"), ("--realtime",)):
+    for words in ((), ("--clock", "charged")):
         said = hthor("eval", "--agent", "helper", "--suite", "fake", "--no-control", "--json", *words)
         result = json.loads(said.out)["runs"][0]["result"]
         modes[result["mode"]] = result["hashes"]["run"], result["hashes"]["trials"]
         assert ("charged clock" in said.err) == bool(words)
-        assert ("--realtime is now called --clock charged" in said.err) == (words == ("--realtime",))
     assert modes.keys() == {"lockstep", "charged"}
     assert len({*modes["lockstep"], *modes["charged"]}) == 4
     late, soon = sorted((tmp_path / "runs").iterdir(), key=lambda folder: "-charged-" not in folder.name)

@@ -198,7 +198,7 @@ def complete(words: str, folder: Path, shell: str = "bash") -> list[str]:
         "from hthor.cli import main\n"
         "try: main()\n"
         "except SystemExit: pass\n"
-        "heavy = {'numpy', 'mujoco', 'numba', 'cv2', 'matplotlib', 'msgspec'} & set(sys.modules)\n"
+        "heavy = {'numpy', 'mujoco', 'numba', 'cv2', 'matplotlib', 'hthor.types'} & set(sys.modules)\n"
         "sys.exit(f'imports {heavy}' if heavy else 0)"
     )
     asked = {

@@ -15,13 +15,15 @@ from typer.testing import CliRunner
 from hthor import tasks
 from hthor.cli import app
 from hthor.errors import HthorError, RunError
+from hthor.eval.config.options import EvalOptions
+from hthor.eval.planning.resolve import resolve
 from hthor.eval.records import find, trial_log
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.replay import human_trace, session_history
 from hthor.eval.replay.human_trace import HumanTrace
 from hthor.eval.replay.session_history import RunFiles
-from hthor.eval.runner import experiment, progress, run_options
+from hthor.eval.runner import experiment, progress
 from hthor.guest.host.info import GuestConfig
 from hthor.humans.core.thoughts import Aim, Forgot, Noticed
 from hthor.report.drawing import human_trace_figure, human_trace_timeline, render_trial
@@ -44,10 +46,16 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     smoke = tasks.load_suite("smoke")
     few = make_suite("few", 1, tuple(task for task in smoke.tasks if task.house == HOUSE)[:2])
     (folder / "few.json").write_bytes(encode_suite(few))
-    options = run_options.RunOptions(
-        agents=("oracle",), suite=str(folder / "few.json"), participants=1, jobs=1, seed=4, out=folder / "run"
+    options = EvalOptions(
+        agent=("oracle",),
+        suite=str(folder / "few.json"),
+        participants=1,
+        jobs=1,
+        seed=4,
+        out=folder / "run",
+        control=False,
     )
-    list(experiment.run_experiment(options, lambda _: progress.Silent()))
+    list(experiment.run_experiment(resolve(options), lambda _: progress.Silent()))
     return folder / "run"
 
 
@@ -201,10 +209,15 @@ def test_a_trial_with_a_fault_repeats_itself_too(run: Path, tmp_path: Path) -> N
     )
     one = make_suite("one", 1, tuple(task for task in tasks.load_suite("smoke").tasks if task.house == HOUSE)[:1])
     (tmp_path / "one.json").write_bytes(encode_suite(one))
-    options = run_options.RunOptions(
-        agents=(str(agent),), suite=str(tmp_path / "one.json"), jobs=1, out=tmp_path / "run", max_faults="100%"
+    options = EvalOptions(
+        agent=(str(agent),),
+        suite=str(tmp_path / "one.json"),
+        jobs=1,
+        out=tmp_path / "run",
+        max_faults="100%",
+        control=False,
     )
-    list(experiment.run_experiment(options, lambda _: progress.Silent()))
+    list(experiment.run_experiment(resolve(options), lambda _: progress.Silent()))
     faulty = find.find_trial(RunFolder(tmp_path / "run"), "0")
     assert "clumsy.py" in faulty.faults[0].detail
     assert str(tmp_path) not in faulty.faults[0].detail

@@ -23,10 +23,12 @@ from hthor.cli import app
 from hthor.errors import HthorError, RunError
 from hthor.eval import dry_run
 from hthor.eval.config import cli_command, run_config, task_selection
+from hthor.eval.config.options import EvalOptions
+from hthor.eval.planning.resolve import resolve
 from hthor.eval.records import trial_record
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.results import pairing
-from hthor.eval.runner import engines, run_options, session_runner
+from hthor.eval.runner import engines, session_runner
 from hthor.guest import GuestFault
 from hthor.leaderboard.entries import overrides
 from hthor.trials import Sources, TrialRunner, robot_team, sessions
@@ -145,9 +147,7 @@ def test_an_agent_that_takes_longer_than_the_limit_fails(tmp_path: Path, seconds
 
 
 def test_the_control_of_a_limited_run_has_the_same_tasks(tmp_path: Path) -> None:
-    asked = run_options.resolve_options(
-        run_options.RunOptions(agents=("oracle",), suite="smoke", limit=12, control=True, out=tmp_path / "run")
-    )
+    asked = resolve(EvalOptions(agent=("oracle",), suite="smoke", limit=12, out=tmp_path / "run"))
     control = asked.baseline_of[tmp_path / "run"].config
     assert control.limit == 12
     assert control.trials == 12
@@ -160,15 +160,15 @@ def test_the_control_of_a_limited_run_has_the_same_tasks(tmp_path: Path) -> None
 
 def test_a_name_is_a_folder_and_a_heading_and_changes_no_trial(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    one = run_options.resolve_options(run_options.RunOptions(agents=("oracle",), control=True, name="first-try"))
-    bare = run_options.resolve_options(run_options.RunOptions(agents=("oracle",)))
+    one = resolve(EvalOptions(agent=("oracle",), name="first-try"))
+    bare = resolve(EvalOptions(agent=("oracle",), control=False))
     (part,), (plain,) = one.runs, bare.runs
     assert part.folder.path == Path("runs/first-try")
     assert part.config.name == part.title == "first-try"
     assert part.config.team_name == plain.config.name == "oracle"
     assert (part.config.sha256, part.config.untitled) == (plain.config.sha256, plain.config)
     assert one.baseline_of[part.folder.path].folder.path == Path("runs/first-try/control"), "where it is found again"
-    several = run_options.resolve_options(run_options.RunOptions(agents=("oracle", "frontier"), name="both"))
+    several = resolve(EvalOptions(agent=("oracle", "frontier"), name="both", control=False))
     assert [str(each.folder) for each in several.runs] == ["runs/both/oracle", "runs/both/frontier"]
     assert [each.config.name for each in several.runs] == ["both-oracle", "both-frontier"]
 

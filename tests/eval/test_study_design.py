@@ -108,9 +108,9 @@ def test_a_command_plays_the_whole_study_again() -> None:
     plan, _ = condition("helper")
     words = cli_command.resume_command(Path("runs/study/helper"), plan)
     assert "--agent helper --agent none --agent rival" in words
-    assert "--design between --no-control" in words
+    assert "--no-control --design between" in words
     assert "--participants 6" in words
-    assert words.endswith("--out runs/study")
+    assert "--out runs/study " in words
 
 
 def test_a_study_needs_conditions_and_people_for_them() -> None:

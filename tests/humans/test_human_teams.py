@@ -17,10 +17,12 @@ from hthor.calibration.from_logs import one_person, trial_features
 from hthor.cli import app
 from hthor.errors import HthorError, UnknownName
 from hthor.eval.config import cli_command, human_populations, run_config, shards
+from hthor.eval.config.options import EvalOptions
+from hthor.eval.planning.resolve import resolve
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.replay import human_trace
 from hthor.eval.replay.session_history import RunFiles
-from hthor.eval.runner import experiment, progress, run_options
+from hthor.eval.runner import experiment, progress
 from hthor.leaderboard.entries import overrides
 from hthor.report.drawing import trial_trace
 from hthor.tasks.suite import encode_suite, make_suite
@@ -137,10 +139,15 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Path:
     smoke = tasks.load_suite("smoke")
     few = make_suite("few", 1, tuple(task for task in smoke.tasks if task.house == "elder")[:3])
     (folder / "few.json").write_bytes(encode_suite(few))
-    options = run_options.RunOptions(
-        agents=("oracle",), humans=("greedy,proxy",), suite=str(folder / "few.json"), jobs=1, out=folder / "run"
+    options = EvalOptions(
+        agent=("oracle",),
+        humans=("greedy,proxy",),
+        suite=str(folder / "few.json"),
+        jobs=1,
+        out=folder / "run",
+        control=False,
     )
-    list(experiment.run_experiment(options, lambda _: progress.Silent()))
+    list(experiment.run_experiment(resolve(options), lambda _: progress.Silent()))
     return folder / "run"
 
 

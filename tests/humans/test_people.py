@@ -23,8 +23,10 @@ from hthor.errors import HthorError, PopulationError, UnknownName
 from hthor.eval.comparison import population_matrix
 from hthor.eval.config import human_populations
 from hthor.eval.config.human_populations import HumanModelRef
+from hthor.eval.config.options import EvalOptions
+from hthor.eval.planning import resolve as planning
 from hthor.eval.results import result_file
-from hthor.eval.runner import experiment, progress, run_options, session_runner
+from hthor.eval.runner import experiment, progress, session_runner
 from hthor.humans.population import (
     describe,
     kinds,
@@ -408,14 +410,16 @@ def fake(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.usefixtures("fake")
 def test_each_people_is_a_run_of_its_own(files: Path):
     words = (f"{files}/pop.npz", f"slow@{files}/pop.npz")
-    options = run_options.RunOptions(agents=("none", "frontier"), humans=words, suite="fake", jobs=1, out=files / "out")
+    options = EvalOptions(
+        agent=("none", "frontier"), humans=words, suite="fake", jobs=1, out=files / "out", control=False
+    )
     told: list[str] = []
 
     class Watcher(progress.Silent):
         def record(self, text: str) -> None:
             told.append(text)
 
-    done = list(experiment.run_experiment(options, lambda _: Watcher()))
+    done = list(experiment.run_experiment(planning.resolve(options), lambda _: Watcher()))
     assert [(one.config.humans.name, one.config.name) for one in done] == [
         *(("pop", "none"), ("pop", "frontier"), ("slow@pop", "none"), ("slow@pop", "frontier")),
     ]
@@ -442,9 +446,9 @@ def test_each_people_is_a_run_of_its_own(files: Path):
 def test_the_bracket_says_what_becomes_of_each_conclusion(files: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(session_runner, "make_runner", fakes.leaning_player)
     words, agents = (f"bracket@{files}/pop.npz", f"slow@{files}/pop.npz"), ("none", "frontier")
-    options = run_options.RunOptions(agents=agents, humans=words, suite="fake", jobs=1, out=files / "out")
+    options = EvalOptions(agent=agents, humans=words, suite="fake", jobs=1, out=files / "out", control=False)
     whole = population_matrix.make_matrix(
-        [one.result for one in experiment.run_experiment(options, lambda _: progress.Silent())]
+        [one.result for one in experiment.run_experiment(planning.resolve(options), lambda _: progress.Silent())]
     )
     assert [ref.name for ref in whole.peoples] == ["greedy@pop", "random@pop", "pop", "slow@pop"]
     assert {(one.better, one.worse, one.metric, one.verdict) for one in whole.conclusions} == {
@@ -473,10 +477,10 @@ def test_what_is_not_calibrated_is_told_once_and_kept(files: Path):
         def record(self, text: str) -> None:
             told.append(text)
 
-    options = run_options.RunOptions(
-        agents=("none", "frontier"), humans=(f"{files}/pop.npz",), suite="fake", jobs=1, out=files / "out"
+    options = EvalOptions(
+        agent=("none", "frontier"), humans=(f"{files}/pop.npz",), suite="fake", jobs=1, out=files / "out", control=False
     )
-    done = list(experiment.run_experiment(options, lambda _: Watcher()))
+    done = list(experiment.run_experiment(planning.resolve(options), lambda _: Watcher()))
     assert told == [], "it is said at the end"
     (said,) = result_tables.result_notes([one.result for one in done])
     assert said.startswith("note: the population pop was calibrated on the tasks of the suite paper, not on those of ")

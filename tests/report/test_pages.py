@@ -186,7 +186,7 @@ def test_what_held_the_agents_and_where_they_were_played_is_told(folders: list[P
     found, text = _told(mine)
     own = next(one for one in found.origins if not one.beside)
     assert own.command == (
-        f"hthor eval --agent helper.py --robot scout --humans proxy --suite fake --seed 0 --participants 2 --out {mine}"
+        f"hthor eval --agent helper.py --humans proxy --suite fake --robot scout --seed 0 --participants 2 --out {mine}"
     )
     assert "L2: Landlock (ABI 7), seccomp, memory 4096 MB. Not higher: no bubblewrap" in text
     assert "Linux, x86_64, znver3, AVX2, glibc 2.36" in text

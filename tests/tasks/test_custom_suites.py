@@ -14,8 +14,10 @@ import pytest
 from hthor import cli, houses, tasks
 from hthor.errors import HthorError, TaskError, UnknownName
 from hthor.eval.config import cli_command, run_config, task_selection
-from hthor.eval.runner import run_options
-from hthor.eval.task_check import custom_houses, solvability
+from hthor.eval.config.options import EvalOptions
+from hthor.eval.planning import custom_houses
+from hthor.eval.planning.resolve import resolve
+from hthor.eval.task_check import solvability
 from hthor.houses.assets import DATABASE
 from hthor.tasks.generation import custom_suite
 from hthor.tasks.generation.custom_suite import Recipe
@@ -203,12 +205,12 @@ def test_difficulty_is_worked_out_where_a_suite_does_not_tell():
 
 
 def test_the_part_is_in_the_configuration_and_the_command(tmp_path: Path):
-    options = run_options.RunOptions(agents=("frontier",), suite="paper", houses=("alder",), difficulty="easy")
-    plan = run_options.resolve_options(options).runs[0].config
+    options = EvalOptions(agent=("frontier",), suite="paper", house=("alder",), difficulty="easy", control=False)
+    plan = resolve(options).runs[0].config
     assert (plan.houses, plan.difficulty) == (("alder",), "easy")
     assert "paper-alder-easy" in plan.folder_name
     assert "--house alder --difficulty easy" in cli_command.resume_command(tmp_path, plan)
-    whole = run_options.resolve_options(run_options.RunOptions(agents=("frontier",), suite="paper")).runs[0].config
+    whole = resolve(EvalOptions(agent=("frontier",), suite="paper", control=False)).runs[0].config
     assert not whole.houses
     assert run_config.differences(whole, plan)
 
@@ -216,15 +218,15 @@ def test_the_part_is_in_the_configuration_and_the_command(tmp_path: Path):
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"houses": ("alder", "x.json")}, "--house alder is a suite's house"),
-        ({"houses": ("x.json",), "suite": "smoke"}, "leave out --suite"),
-        ({"houses": ("x.json",), "kind": "mine.py"}, "hthor's kinds of task"),
-        ({"houses": ("no such file.json",)}, "no such file.json"),
+        ({"house": ("alder", "x.json")}, "--house alder is a suite's house"),
+        ({"house": ("x.json",), "suite": "smoke"}, "leave out --suite"),
+        ({"house": ("x.json",), "kind": "mine.py"}, "hthor's kinds of task"),
+        ({"house": ("no such file.json",)}, "no such file.json"),
     ],
 )
 def test_what_does_not_go_with_a_house_of_ones_own(options: Any, words: str):
     with pytest.raises(HthorError, match=words):
-        custom_houses.resolve_houses(run_options.RunOptions(agents=("frontier",), **options), lambda _: None)
+        custom_houses.make_suite(EvalOptions(agent=("frontier",), **options), lambda _: None)
 
 
 def test_a_house_of_ones_own_is_made_into_a_suite_once(
@@ -233,10 +235,9 @@ def test_a_house_of_ones_own_is_made_into_a_suite_once(
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.setattr(custom_houses.proved, "make_tasks", lambda recipe, given, jobs: iter([(0, made)]))
     told: list[str] = []
-    options = run_options.RunOptions(agents=("frontier",), houses=(str(home),), jobs=1)
-    first = custom_houses.resolve_houses(options, told.append)
-    assert custom_houses.resolve_houses(options, told.append) == first
+    options = EvalOptions(agent=("frontier",), house=(str(home),), jobs=1, control=False)
+    first = custom_houses.make_suite(options, told.append)
+    assert custom_houses.make_suite(options, told.append) == first
     assert len(told) == 1
-    assert tasks.load_suite(first.suite).tasks == made
-    assert first.houses == ()
-    assert tasks.load_suite(first.suite).name == "in-my-home"
+    assert tasks.load_suite(str(first)).tasks == made
+    assert tasks.load_suite(str(first)).name == "in-my-home"

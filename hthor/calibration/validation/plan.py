@@ -1,6 +1,5 @@
 """The plan of a validation's runs: their people, suites and folders."""
 
-import os
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Literal
@@ -13,11 +12,13 @@ from hthor.calibration.validation.report.study_groups import PEOPLE
 from hthor.errors import HthorError
 from hthor.eval import dry_run
 from hthor.eval.config import human_populations
+from hthor.eval.config.options import EvalOptions
 from hthor.eval.dry_run import RunForecast
-from hthor.eval.runner import experiment, progress, run_options
-from hthor.eval.runner.run_options import RUNS, ResolvedRuns
-from hthor.humans.population import kinds, resolve
-from hthor.humans.population.resolve import PROXY
+from hthor.eval.planning.resolve import resolve
+from hthor.eval.runner import experiment
+from hthor.eval.runner.run_job import RUNS, ResolvedRuns
+from hthor.humans.population import kinds
+from hthor.humans.population.resolve import PROXY, resolve_humans
 
 SUITE = "paper"
 QUICK = 12
@@ -54,7 +55,7 @@ class ValidationOptions(Struct, frozen=True, kw_only=True):
 
 
 class ValidationRun(Struct, frozen=True, kw_only=True):
-    """People who do a suite in all conditions, and their ``role``; ``word`` as `resolve.resolve_humans` reads it."""
+    """People who do a suite in all conditions, and their ``role``; ``word`` as `resolve_humans` reads it."""
 
     word: str
     suite: str
@@ -72,7 +73,7 @@ def planned_runs(options: ValidationOptions) -> tuple[ValidationRun, ...]:
     count = options.count
     if count < PEOPLE:
         raise HthorError(f"--participants {count} is too few: a group of the published study has {PEOPLE}.")
-    humans = resolve.resolve_humans(options.name)
+    humans = resolve_humans(options.name)
     for name in options.suites:
         tasks.load_suite(name)
     simple = () if options.quick else tuple(name for name in RIVALS if name != humans.name)
@@ -89,7 +90,7 @@ def report_folder(options: ValidationOptions) -> Path:
     """The folder of the report."""
     if options.out:
         return options.out
-    humans, suite = resolve.resolve_humans(options.name), tasks.load_suite(SUITE)
+    humans, suite = resolve_humans(options.name), tasks.load_suite(SUITE)
     what = [
         humans.sha256,
         suite.sha256,
@@ -101,18 +102,21 @@ def report_folder(options: ValidationOptions) -> Path:
     return RUNS / f"validation-{humans.name}-{jsonio.sha256(what)[:10]}"
 
 
-def run_options_for(options: ValidationOptions, one: ValidationRun) -> run_options.RunOptions:
-    """The options of `hthor eval` for a run, in a folder of its own."""
+def resolve_run(options: ValidationOptions, one: ValidationRun) -> ResolvedRuns:
+    """The runs of `hthor eval` that these people do, in a folder of their own."""
     suite = tasks.load_suite(one.suite)
-    name = f"{resolve.resolve_humans(one.word).name}-{Path(suite.name).name}-{one.participants}"
-    return run_options.RunOptions(
-        agents=AGENTS,
-        humans=(one.word,),
-        suite=one.suite,
-        seed=options.seed,
-        participants=one.participants,
-        jobs=options.jobs or len(os.sched_getaffinity(0)),
-        out=report_folder(options) / "runs" / name,
+    name = f"{resolve_humans(one.word).name}-{Path(suite.name).name}-{one.participants}"
+    return resolve(
+        EvalOptions(
+            agent=AGENTS,
+            humans=(one.word,),
+            suite=one.suite,
+            seed=options.seed,
+            participants=one.participants,
+            jobs=options.jobs,
+            out=report_folder(options) / "runs" / name,
+            control=False,
+        )
     )
 
 
@@ -123,14 +127,6 @@ def preview_runs(options: ValidationOptions) -> Iterator[tuple[ValidationRun, Ru
         HthorError: as in `planned_runs`.
     """
     for one in planned_runs(options):
-        evaluation, runs = run_options_for(options, one), list[RunForecast]()
-
-        def note(
-            wanted: ResolvedRuns, evaluation: run_options.RunOptions = evaluation, runs: list[RunForecast] = runs
-        ) -> bool:
-            runs += dry_run.make_forecast(evaluation, wanted, {}).runs
-            return False
-
-        for _ in experiment.run_experiment(evaluation, lambda _: progress.Silent(), note):
-            raise AssertionError("a dry run plays nothing")
-        yield from ((one, run) for run in runs)
+        resolved = resolve_run(options, one)
+        experiment.check_folders(resolved)
+        yield from ((one, run) for run in dry_run.make_forecast(resolved, {}).runs)

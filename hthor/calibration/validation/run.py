@@ -94,7 +94,7 @@ class _ConditionRuns:
         name = resolve.resolve_humans(one.word).name
         records: dict[str, Sequence[TrialRecord]] = {}
         for done in experiment.run_experiment(
-            plan.run_options_for(self._options, one), lambda title: self._watcher(f"{name} people, {title}")
+            plan.resolve_run(self._options, one), lambda title: self._watcher(f"{name} people, {title}")
         ):
             condition = CONDITIONS[AGENTS.index(plugins.file_stem("agent", done.config.name))]
             records[condition] = done.folder.records()

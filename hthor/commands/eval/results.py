@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from hthor.console import output
@@ -15,10 +14,8 @@ if TYPE_CHECKING:
     from hthor.eval.comparison.population_matrix import PopulationMatrix
     from hthor.eval.dry_run import Forecast, RunForecast, TrialCost
     from hthor.eval.runner.experiment import FinishedRun
-    from hthor.eval.runner.progress import Watcher
-    from hthor.eval.runner.run_options import ResolvedRuns, RunOptions
+    from hthor.eval.runner.run_job import ResolvedRuns
 
-_LEFT_OUT = ("json", "quiet", "dry_run", "context")
 _ORIGINS = {"COMMANDLINE": "flag", "ENVIRONMENT": "environment", "DEFAULT": "default", "DEFAULT_MAP": "default"}
 
 
@@ -78,25 +75,20 @@ def show_populations(console: Console, whole: PopulationMatrix) -> None:
         output.say("every conclusion holds at both bounds", console)
 
 
-def show_forecast(options: RunOptions, watcher: Callable[[str], Watcher], context: typer.Context, json: bool) -> None:
+def show_forecast(resolved: ResolvedRuns, context: typer.Context, json: bool) -> None:
     """Print what the command would do."""
     from hthor.eval import dry_run
+    from hthor.eval.config.option import fields
+    from hthor.eval.config.options import EvalOptions
     from hthor.eval.runner import experiment
 
-    names = [str(one.name) for one in context.command.params if one.name in context.params]
-    origins = {name: _origin(context, name) for name in names if name not in _LEFT_OUT}
-    found: list[Forecast] = []
-
-    def agree(intent: ResolvedRuns) -> bool:
-        found.append(dry_run.make_forecast(options, intent, origins, output.say))
-        return False
-
-    for _ in experiment.run_experiment(options, watcher, agree):
-        raise AssertionError("a dry run plays nothing")
+    experiment.check_folders(resolved)
+    origins = {name: _origin(context, name) for name in fields(EvalOptions)}
+    found = dry_run.make_forecast(resolved, origins, output.say)
     if json:
-        output.put_json(found[0])
+        output.put_json(found)
     else:
-        _put(found[0])
+        _put(found)
 
 
 def _origin(context: typer.Context, name: str) -> str:

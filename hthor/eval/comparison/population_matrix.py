@@ -125,6 +125,14 @@ class Evaluation(Struct, frozen=True, kw_only=True):
     peoples: PopulationMatrix | None = None
 
 
+def make_evaluation(done: Iterable[tuple[str, RunResult]]) -> Evaluation:
+    """The evaluation of whole runs, each by its folder, in the order of the command line."""
+    runs = tuple(EvaluatedRun(folder=folder, result=result) for folder, result in done)
+    results = [run.result for run in runs]
+    several = len({result.humans.name for result in results}) > 1
+    return Evaluation(runs=runs, peoples=make_matrix(results) if several else None)
+
+
 def make_matrix(results: Sequence[RunResult]) -> PopulationMatrix:
     """The matrix of an evaluation's results, which are ordered by population, then by agent."""
     populations = {result.humans.name: result.humans for result in results}

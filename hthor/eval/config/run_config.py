@@ -68,6 +68,8 @@ class RunConfig(Struct, frozen=True, kw_only=True):
 
     Attributes:
         title: the user's name for the run; it changes no trial, and runs that differ only in it are the same run.
+        options: options of the user's that change no trial either, but belong to the command that goes on with the run,
+            by their names in `hthor.eval.config.options`.
         robots: every robot with its agent and detector; an agent that needs no robot is listed without a seat.
         agents: the files of every submitted agent.
         kind: the task kind that the suite was narrowed to, None for all its tasks; ``kinds``: the kinds of the tasks,
@@ -84,6 +86,7 @@ class RunConfig(Struct, frozen=True, kw_only=True):
 
     schema: str = SCHEMA
     title: str | msgspec.UnsetType = msgspec.UNSET
+    options: dict[str, str | float] | msgspec.UnsetType = msgspec.UNSET
     robots: tuple[RobotSeat, ...]
     agents: tuple[Manifest, ...] = ()
     humans: HumanModelRef
@@ -107,13 +110,13 @@ class RunConfig(Struct, frozen=True, kw_only=True):
 
     @property
     def sha256(self) -> str:
-        """Hash of the configuration without its title."""
+        """Hash of everything that decides the records."""
         return jsonio.sha256(self.untitled)
 
     @property
     def untitled(self) -> RunConfig:
-        """The configuration without its title: everything that decides the records."""
-        return msgspec.structs.replace(self, title=msgspec.UNSET)
+        """The configuration without its title and options: everything that decides the records."""
+        return msgspec.structs.replace(self, title=msgspec.UNSET, options=msgspec.UNSET)
 
     @property
     def whole(self) -> RunConfig:

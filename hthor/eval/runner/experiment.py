@@ -1,8 +1,6 @@
-"""`hthor eval` as one function: every robot team with every human population, each pair in its own run."""
+"""Runs an evaluation: every robot team with every human population, each pair in its own run."""
 
 import functools
-import os
-import shlex
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -13,13 +11,11 @@ from hthor.eval.config.run_config import RunConfig
 from hthor.eval.records import opened_files, run_isolation
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.results.result_file import RunResult
-from hthor.eval.runner import engines, run, run_options
+from hthor.eval.runner import run
 from hthor.eval.runner.collector import InternalFailure, Unfinished
 from hthor.eval.runner.progress import Watcher
-from hthor.eval.runner.run_job import ScheduledRun
-from hthor.eval.runner.run_options import ResolvedRuns, RunOptions
+from hthor.eval.runner.run_job import ResolvedRuns, ScheduledRun
 from hthor.guest import Isolation
-from hthor.tasks.suite import encode_suite
 
 
 class FinishedRun(Struct, frozen=True, kw_only=True):
@@ -30,37 +26,38 @@ class FinishedRun(Struct, frozen=True, kw_only=True):
     result: RunResult
 
 
-def run_experiment(
-    options: RunOptions,
-    make_watcher: Callable[[str], Watcher],
-    confirm: Callable[[ResolvedRuns], bool] = lambda _: True,
-) -> Iterator[FinishedRun]:
+def run_experiment(resolved: ResolvedRuns, make_watcher: Callable[[str], Watcher]) -> Iterator[FinishedRun]:
     """Run every robot team with every human population; yield each run as soon as it is complete.
 
-    All input is checked before the first trial. The other runs are run even if one ends incomplete.
+    The folders of all runs are checked before the first trial. The other runs are run even if one ends incomplete.
 
     Args:
         make_watcher: makes the watcher that follows the progress of a run, given the run's title.
-        confirm: called with the resolved runs before anything is done; if it returns False, nothing is done.
 
     Raises:
-        HthorError: for any invalid input, before the first trial.
+        HthorError: when a run cannot be written where it should be, before the first trial.
         Unfinished, InternalFailure: when a run ended incomplete; the others were run.
     """
-    resolved = run_options.resolve_options(options)
+    check_folders(resolved)
+    yield from _Experiment(make_watcher).run(resolved)
+
+
+def check_folders(resolved: ResolvedRuns) -> None:
+    """Check that every run can be written to its folder, which is free or holds a part of it at the required isolation.
+
+    Raises:
+        HthorError: when one cannot.
+    """
     for scheduled in (*resolved.runs, *resolved.baseline_of.values()):
         scheduled.folder.check_free(scheduled.config)
-        _engine(options, scheduled)  # raises if the engine does not exist
-        _weakest_isolation(options, scheduled)
-    if confirm(resolved):
-        yield from _Experiment(options, make_watcher).run(resolved)
+        _weakest_isolation(scheduled)
 
 
 class _Experiment:
-    """Plays the runs that some options stand for; remembers which notes were given and which runs ended incomplete."""
+    """Plays runs; remembers which notes were given and which runs ended incomplete."""
 
-    def __init__(self, options: RunOptions, make_watcher: Callable[[str], Watcher]) -> None:
-        self._options, self._make_watcher = options, make_watcher
+    def __init__(self, make_watcher: Callable[[str], Watcher]) -> None:
+        self._make_watcher = make_watcher
         self._notes: set[str] = set()
         self._errors: list[Unfinished | InternalFailure] = []
         self._results: dict[Path, RunResult | None] = {}
@@ -102,52 +99,19 @@ class _Experiment:
             scheduled.make_runner,
             folder=scheduled.folder,
             watcher=watcher,
-            engine=_engine(self._options, scheduled),
-            extra=self._extra_files(scheduled),
-            rerun_command=_rerun_command(self._options, scheduled),
+            engine=scheduled.engine,
+            extra=_files(scheduled),
+            rerun_command=scheduled.rerun_command,
             check=check if scheduled.config.agents else None,
         )
 
-    def _extra_files(self, scheduled: ScheduledRun) -> dict[str, bytes]:
-        """Files that make the run's folder complete in itself, by name."""
-        files = {f"houses/{name}": data for name, data in run_options.own_houses(self._options).items()}
-        if scheduled.tasks.generated:
-            files["suite.json"] = encode_suite(scheduled.tasks.suite)
-        if scheduled.isolation is not None:
-            files[run_isolation.NAME] = jsonio.pretty(_weakest_isolation(self._options, scheduled))
-        return files
+
+def _files(scheduled: ScheduledRun) -> dict[str, bytes]:
+    """Files that make the run's folder complete in itself, by name."""
+    if scheduled.isolation is None:
+        return scheduled.files
+    return {**scheduled.files, run_isolation.NAME: jsonio.pretty(_weakest_isolation(scheduled))}
 
 
-def _engine(options: RunOptions, scheduled: ScheduledRun) -> engines.Engine:
-    tasks, team = scheduled.tasks.suite.tasks, scheduled.team
-    limit_s = options.trial_limit or engines.trial_limit_s(tasks, len(team.agent_paths), options.step_limit)
-    return engines.find_engine(
-        options.engine, jobs=options.jobs, address=options.address, gpus=team.gpus, limit_s=limit_s
-    )
-
-
-def _weakest_isolation(options: RunOptions, scheduled: ScheduledRun) -> Isolation | None:
-    return run_isolation.weakest_isolation(scheduled.folder.path, scheduled.isolation, options.require_isolation)
-
-
-def _rerun_command(options: RunOptions, scheduled: ScheduledRun) -> str:
-    """The `hthor agent run` command that runs a trial of a run once more, without the trial's key."""
-    team, people = scheduled.team, scheduled.people
-    words = ["hthor", "agent", "run"]
-    words += [word for path in dict.fromkeys(team.agent_paths.values()) for word in ("--agent", _relative(path))]
-    words += [word for path in dict.fromkeys(team.robot_paths.values()) for word in ("--robot", _relative(path))]
-    words += ["--kind", _relative(scheduled.tasks.kind_path)] if scheduled.tasks.kind_path else []
-    if people.word != people.name:
-        words += ["--humans", people.word]
-    if options.isolation != "auto" and team.agent_paths:
-        words += ["--isolation", options.isolation]
-    if team.agent_paths:
-        words += [word for argument in options.agent_args for word in ("--agent-args", argument)]
-        words += [word for path in options.readable for word in ("--readable", str(path))]
-    return shlex.join([*words, _relative(str(scheduled.folder))])
-
-
-def _relative(path: str) -> str:
-    """An absolute path relative to the current folder, if it is below it; any other text unchanged."""
-    relative = os.path.relpath(path) if os.path.isabs(path) else path
-    return path if relative.startswith("..") else relative
+def _weakest_isolation(scheduled: ScheduledRun) -> Isolation | None:
+    return run_isolation.weakest_isolation(scheduled.folder.path, scheduled.isolation, scheduled.required_isolation)

@@ -91,7 +91,7 @@ class Plain(Watcher):
         self._tally = Tally(total, kept)
         self._tenth = 10 * kept // max(1, total)
         played = f", {kept} of them played before" if kept else ""
-        self._say(f"{total} trials{played}" + (f", {_starting()}" if kept < total else ""))
+        self._say(f"{total} trials{played}" + (f", {starting()}" if kept < total else ""))
 
     def played(self, met: bool, faulty: bool) -> None:
         self._tally.count(met, faulty)
@@ -124,7 +124,7 @@ class Live(Watcher):
     def begin(self, total: int, kept: int) -> None:
         self._tally = Tally(total, kept)
         self._bar = progress_bar.make_progress(self._console)
-        words = f"{kept}/{total} trials, {_starting()}" if kept < total else self._tally.words
+        words = f"{kept}/{total} trials, {starting()}" if kept < total else self._tally.words
         self._task = self._bar.add_task(self._name, total=total, completed=kept, words=words)
         self._bar.start()
 
@@ -147,6 +147,6 @@ def make_watcher(console: Console, name: str, *, quiet: bool, live: bool) -> Wat
     return Live(console, name) if live else Plain(console, name)
 
 
-def _starting() -> str:
+def starting() -> str:
     """What the first trial waits for."""
     return "starting the workers" if code_identity.is_compiled() else "compiling for the first run, about 30 s"

@@ -13,12 +13,14 @@ import pytest
 from hthor import tasks
 from hthor.errors import HthorError, RunError, UnknownName
 from hthor.eval.config import cli_command
+from hthor.eval.config.options import EvalOptions
 from hthor.eval.config.run_config import team_name
+from hthor.eval.planning.resolve import resolve
 from hthor.eval.records import find, scored_trial, trial_record
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
 from hthor.eval.results import aggregate
-from hthor.eval.runner import experiment, progress, run, run_options, session_runner
+from hthor.eval.runner import experiment, progress, run, session_runner
 from hthor.guest import GuestConfig
 from hthor.report.drawing import trial_figure
 from hthor.tasks.suite import encode_suite, make_suite
@@ -212,7 +214,7 @@ def test_a_run_of_several_robots_is_resumed_and_told_from_others(tmp_path: Path)
 def test_the_command_that_finishes_a_run_names_every_robot(tmp_path: Path):
     plan, _ = fakes.run_of(20, name="helper+other")
     told = cli_command.resume_command(tmp_path, plan)
-    assert " --robots scout:helper.py,scout:other.py --humans proxy --suite fake --seed 0 " in told
+    assert " --humans proxy --suite fake --robots scout:helper.py,scout:other.py --seed 0 " in told
     assert shlex.split(cli_command.resume_command(tmp_path / "my run", plan))[-2:] == [
         "--out",
         str(tmp_path / "my run"),
@@ -225,14 +227,15 @@ def test_real_runs_of_several_robots_repeat_themselves(tmp_path: Path):
     suite.write_bytes(encode_suite(make_suite("brief", 1, tuple(chosen))))
     results = []
     for jobs in (1, 2):
-        options = run_options.RunOptions(
+        options = EvalOptions(
             robots="tall:oracle,small:frontier",
             suite=str(suite),
             participants=2,
             jobs=jobs,
             out=tmp_path / str(jobs),
+            control=False,
         )
-        (done,) = experiment.run_experiment(options, lambda _: progress.Silent())
+        (done,) = experiment.run_experiment(resolve(options), lambda _: progress.Silent())
         results.append(done.result)
     assert _lines(tmp_path / "1") == _lines(tmp_path / "2")
     assert len(_lines(tmp_path / "1")) == 4

@@ -12,10 +12,12 @@ from hthor import houses, tasks
 from hthor.console import exit_status
 from hthor.errors import HthorError, UnknownName
 from hthor.eval.config import cli_command, task_selection
+from hthor.eval.config.options import EvalOptions
 from hthor.eval.config.run_config import KindRef
+from hthor.eval.planning.resolve import resolve
 from hthor.eval.records import trial_record
 from hthor.eval.results import aggregate
-from hthor.eval.runner import experiment, progress, run_options
+from hthor.eval.runner import experiment, progress
 from hthor.report.drawing import trial_figure
 from hthor.trials import Sources
 from hthor.trials.sessions import make_sessions
@@ -42,7 +44,7 @@ def _forget():
 
 
 def conducted(**asked) -> experiment.FinishedRun:
-    (done,) = experiment.run_experiment(run_options.RunOptions(**asked), lambda _: progress.Silent())
+    (done,) = experiment.run_experiment(resolve(EvalOptions(**asked, control=False)), lambda _: progress.Silent())
     return done
 
 
@@ -83,7 +85,7 @@ def test_a_kind_with_a_suite_of_its_own_needs_no_other(name: str):
 
 def test_a_new_kind_of_ours_needs_no_suite(few: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(tasks, "suite_names", lambda: ("smoke",))
-    done = conducted(kind="navigation", agents=("silent",), out=tmp_path / "run", participants=1, jobs=1)
+    done = conducted(kind="navigation", agent=("silent",), out=tmp_path / "run", participants=1, jobs=1)
     suite = tasks.load_suite(str(tmp_path / "run" / "suite.json"))
     assert [(task.kind, task.house) for task in suite.tasks] == [("object_goal_navigation", house) for house in HOUSES]
     assert done.config.kind == KindRef(name="object_goal_navigation")
@@ -99,7 +101,7 @@ def test_the_example_kind_runs_as_it_is(root: Path, few: None, tmp_path: Path):
     file = root / "examples" / "put_away.py"
     assert len(file.read_text().splitlines()) < 100
     assert file.read_text().strip() in (root / "docs" / "kinds.md").read_text(), "the docs show it as it is"
-    done = conducted(kind=str(file), agents=("oracle",), out=tmp_path / "run", participants=1, jobs=1)
+    done = conducted(kind=str(file), agent=("oracle",), out=tmp_path / "run", participants=1, jobs=1)
     assert done.config.kind.name == "put_away"
     assert [robot.robot for robot in done.config.robots] == ["tender"], "the kind's own crew"
     assert (done.result.counts.trials, done.result.counts.faults) == (2, 0)
@@ -152,7 +154,7 @@ def written(folder: Path, stem: str, *, name: str = "", met: str = "pass", goals
 def test_a_mistake_in_a_kind_is_told_with_its_line(few: None, tmp_path: Path):
     file = written(tmp_path, "hasty", met="if snapshot.tick > 3: raise KeyError('who knows')")
     with pytest.raises(HthorError, match=r"hasty\.py:8, in met: KeyError: 'who knows'") as caught:
-        conducted(kind=str(file), agents=("silent",), out=tmp_path / "run", jobs=1, participants=1)
+        conducted(kind=str(file), agent=("silent",), out=tmp_path / "run", jobs=1, participants=1)
     assert caught.value.exit_code == 2
 
 
@@ -218,4 +220,4 @@ def test_who_is_evaluated_must_be_said():
     with pytest.raises(HthorError, match="leave out --robot"):
         conducted(robots="tall:oracle", robot="scout")
     with pytest.raises(UnknownName, match="unknown suite"):
-        conducted(agents=("silent",), suite="smok")
+        conducted(agent=("silent",), suite="smok")

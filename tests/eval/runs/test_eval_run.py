@@ -17,11 +17,13 @@ import pytest
 
 from hthor import rules, tasks
 from hthor.errors import KILLED, RunError
+from hthor.eval.config.options import EvalOptions
+from hthor.eval.planning.resolve import resolve
 from hthor.eval.records import session_restarts, trial_log, trial_record
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.results import aggregate, result_file
 from hthor.eval.results.result_file import RunResult
-from hthor.eval.runner import collector, engines, experiment, progress, run, run_options, session_runner
+from hthor.eval.runner import collector, engines, experiment, progress, run, session_runner
 from hthor.eval.runner.engines import local
 
 
@@ -169,13 +171,13 @@ def test_a_run_that_lacks_trials_does_not_keep_others_from_being_played(tmp_path
     monkeypatch.setattr(tasks, "load_suite", lambda name: fakes.suite(20) if name == "fake" else real(name))
     monkeypatch.setattr(session_runner, "make_runner", fakes.lonely_player)
     fakes.play_here(monkeypatch)
-    options = run_options.RunOptions(agents=("none", "frontier"), suite="fake", jobs=1, out=tmp_path)
+    options = EvalOptions(agent=("none", "frontier"), suite="fake", jobs=1, out=tmp_path, control=False)
     with pytest.raises(collector.InternalFailure, match=r"session 1: ZeroDivisionError.* 10 of 20 trials are missing"):
-        list(experiment.run_experiment(options, lambda _: progress.Silent()))
+        list(experiment.run_experiment(resolve(options), lambda _: progress.Silent()))
     assert result_file.load_result(tmp_path / "frontier").counts.trials == 20
     assert result_file.load_result(tmp_path / "none") is None
     monkeypatch.setattr(session_runner, "make_runner", fakes.player)
-    done = [one.config.name for one in experiment.run_experiment(options, lambda _: progress.Silent())]
+    done = [one.config.name for one in experiment.run_experiment(resolve(options), lambda _: progress.Silent())]
     assert done == ["none", "frontier"]
     assert result_file.load_result(tmp_path / "frontier").uplift is not None
 

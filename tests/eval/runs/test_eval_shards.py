@@ -108,8 +108,8 @@ def test_what_is_missing_is_named_with_its_command(undivided: Path, shards: Sequ
     assert not (tmp_path / "whole" / "result.json").exists()
     second, third = done.gaps
     assert (second.number, second.trials, third.number, third.trials) == (2, None, 3, 3)
-    assert shlex.split(second.command)[-4:] == ["--shard", "2/4", "--out", str(shards[0].parent / "run")]
-    assert shlex.split(third.command)[-4:] == ["--shard", "3/4", "--out", str(tmp_path / "run")]
+    assert shlex.split(second.command)[-4:] == ["--out", str(shards[0].parent / "run"), "--shard", "2/4"]
+    assert shlex.split(third.command)[-4:] == ["--out", str(tmp_path / "run"), "--shard", "3/4"]
     _play(tmp_path / "run", "3/4")
     _play(tmp_path / "run", "2/4")
     filled = merge_shards.merge_shards([torn, tmp_path / "run-shard-2-of-4"], tmp_path / "whole")

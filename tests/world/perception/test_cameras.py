@@ -18,7 +18,8 @@ from hthor import jsonio, plugins
 from hthor.console import completion
 from hthor.errors import HthorError, UnknownName
 from hthor.eval.config import cli_command, run_config, task_selection
-from hthor.eval.runner import run_options, run_teams
+from hthor.eval.config.options import EvalOptions
+from hthor.eval.planning import run_teams
 from hthor.guest.host.info import GuestConfig
 from hthor.leaderboard.entries import overrides
 from hthor.trials import robot_team, sessions
@@ -174,7 +175,7 @@ def test_every_trial_s_key_knows_the_camera() -> None:
 
 
 def test_the_options_reach_the_seats() -> None:
-    options = run_options.RunOptions(agents=("frontier",), camera="thor", camera_size="32x32")
+    options = EvalOptions(agent=("frontier",), camera="thor", camera_size="32x32")
     (team,) = run_teams.choose_teams(options, task_selection.select_tasks("smoke", ""), GuestConfig())
     assert [seat.camera for seat in team.seats] == ["thor:32x32"]
     (team,) = robot_team.parse_teams("tall:oracle,small:frontier", (), camera="square")

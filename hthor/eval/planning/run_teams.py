@@ -1,9 +1,8 @@
 """The robot teams that the options of `hthor eval` name, and the conditions that they are in a study."""
 
-from msgspec import Struct
-
-from hthor.errors import HthorError, UnknownName
+from hthor.errors import HthorError
 from hthor.eval.config import cli_command, study_design
+from hthor.eval.config.options import EvalOptions
 from hthor.eval.config.task_selection import TaskSelection
 from hthor.guest import GuestConfig
 from hthor.trials import robot_team
@@ -11,20 +10,7 @@ from hthor.trials.robot_team import RobotTeam
 from hthor.types import cameras, detector_specs
 
 
-class TeamOptions(Struct, frozen=True, kw_only=True):
-    """The options of `hthor eval` that name robots, agents and conditions."""
-
-    agents: tuple[str, ...] = ()
-    robots: str = ""
-    robot: str = ""
-    detector: str = detector_specs.OWN
-    camera: str = cameras.OWN
-    camera_size: str = ""
-    control: bool = False
-    design: str = study_design.PAIRED
-
-
-def choose_teams(options: TeamOptions, tasks: TaskSelection, guests: GuestConfig) -> list[RobotTeam]:
+def choose_teams(options: EvalOptions, tasks: TaskSelection, guests: GuestConfig) -> list[RobotTeam]:
     """The teams that are evaluated, one run each.
 
     Raises:
@@ -33,14 +19,14 @@ def choose_teams(options: TeamOptions, tasks: TaskSelection, guests: GuestConfig
     return _conditions(options, _named_teams(options, tasks, guests))
 
 
-def _named_teams(options: TeamOptions, tasks: TaskSelection, guests: GuestConfig) -> list[RobotTeam]:
+def _named_teams(options: EvalOptions, tasks: TaskSelection, guests: GuestConfig) -> list[RobotTeam]:
     """The teams that are evaluated, one run each."""
     detector = detector_specs.canonical_name(options.detector)
     camera = cameras.canonical_name(options.camera, options.camera_size)
     if options.robots:
         if options.robot:
             raise HthorError("--robots names all the robots; leave out --robot.")
-        return robot_team.parse_teams(options.robots, options.agents, detector, camera, guests=guests)
+        return robot_team.parse_teams(options.robots, options.agent, detector, camera, guests=guests)
     names = (options.robot,) if options.robot else tasks.robots
     if not names:
         raise HthorError(
@@ -48,14 +34,12 @@ def _named_teams(options: TeamOptions, tasks: TaskSelection, guests: GuestConfig
             "or choose one kind with --kind."
         )
     robots = [robot_team.load_robot_info(name) for name in names]
-    agents = [robot_team.load_agent_info(agent, guests) for agent in options.agents]
+    agents = [robot_team.load_agent_info(agent, guests) for agent in options.agent]
     return [robot_team.form_team(robots, [agent] * len(robots), detector, camera) for agent in agents]
 
 
-def _conditions(options: TeamOptions, teams: list[RobotTeam]) -> list[RobotTeam]:
+def _conditions(options: EvalOptions, teams: list[RobotTeam]) -> list[RobotTeam]:
     """The teams, and in a between-subjects study the condition without a robot, unless it is there or not wanted."""
-    if options.design not in (study_design.PAIRED, study_design.BETWEEN):
-        raise UnknownName("design", options.design, (study_design.PAIRED, study_design.BETWEEN))
     if options.design == study_design.PAIRED:
         return teams
     if options.robots:
@@ -67,5 +51,4 @@ def _conditions(options: TeamOptions, teams: list[RobotTeam]) -> list[RobotTeam]
 
 def agent_word(team: RobotTeam) -> str:
     """The word of the command line for a team's first agent."""
-    agent = team.robots[0][1].ref
-    return agent.name if agent.source.startswith(cli_command.BUILT_IN_AGENTS) else agent.source
+    return cli_command.agent_word(team.listed[0])

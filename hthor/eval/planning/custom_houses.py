@@ -5,12 +5,10 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
-import msgspec
-
 from hthor import code_identity, houses, installation, jsonio
 from hthor.errors import HthorError
 from hthor.eval.config import task_selection
-from hthor.eval.runner.run_options import RunOptions
+from hthor.eval.config.options import EvalOptions
 from hthor.eval.task_check import make_suite as proved
 from hthor.tasks.generation import custom_suite
 from hthor.tasks.generation.custom_suite import Recipe
@@ -22,8 +20,13 @@ TASKS = 10
 _FORBIDDEN = re.compile(r"[^A-Za-z0-9_.-]+")
 
 
-def resolve_houses(options: RunOptions, tell: Callable[[str], None]) -> RunOptions:
-    """The options with a suite of tasks in the given house files; unchanged without such files.
+def files(options: EvalOptions) -> list[str]:
+    """The house files of the user's own among the houses."""
+    return [word for word in options.house if word.endswith(".json")]
+
+
+def make_suite(options: EvalOptions, tell: Callable[[str], None]) -> Path:
+    """The folder of a suite of tasks in the user's own houses, made unless it is there.
 
     Args:
         tell: called with a sentence before tasks are made, which takes a while.
@@ -31,24 +34,17 @@ def resolve_houses(options: RunOptions, tell: Callable[[str], None]) -> RunOptio
     Raises:
         HthorError: when the houses do not fit the other options, or have no room for tasks.
     """
-    files = [word for word in options.houses if word.endswith(".json")]
-    if not files:
-        return options
-    if len(files) < len(options.houses):
-        named = next(word for word in options.houses if word not in files)
-        raise HthorError(f"--house {named} is a suite's house and {files[0]} is your own; give one sort or the other.")
+    own = files(options)
+    if len(own) < len(options.house):
+        named = next(word for word in options.house if word not in own)
+        raise HthorError(f"--house {named} is a suite's house and {own[0]} is your own; give one sort or the other.")
     if options.suite:
-        raise HthorError(f"--house {files[0]} makes tasks of its own; leave out --suite, or name a house of the suite.")
+        raise HthorError(f"--house {own[0]} makes tasks of its own; leave out --suite, or name a house of the suite.")
     if options.kind.endswith(".py"):
         raise HthorError("--house with a house of your own takes hthor's kinds of task; make a suite for your kind.")
-    path = _suite(options, suite_files.find_sources(files), tell)
-    return msgspec.structs.replace(options, suite=str(path), houses=(), difficulty="", kind="")
-
-
-def _suite(options: RunOptions, found: tuple[HouseSource, ...], tell: Callable[[str], None]) -> Path:
-    """The folder of the suite, made unless it is there."""
+    found = suite_files.find_sources(own)
     kinds = (task_selection.find_kind(options.kind).name,) if options.kind else ()
-    recipe = Recipe(name=_name(found), tasks=TASKS, kinds=kinds, difficulty=options.difficulty)  # type: ignore[arg-type]
+    recipe = Recipe(name=_name(found), tasks=TASKS, kinds=kinds, difficulty=options.difficulty or "")
     specs = [houses.load(one.given) for one in found]
     key = jsonio.sha256([custom_suite.VERSION, recipe, specs, code_identity.makers_sha256()])
     folder = installation.cache() / "suites" / f"{recipe.name}-{key[:16]}"

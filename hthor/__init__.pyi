@@ -1,0 +1,3 @@
+from hthor.api.evaluate import evaluate as evaluate
+
+__version__: str

@@ -1,0 +1,1 @@
+"""hthor from Python: `evaluate` is `hthor eval` as a function, for scripts and notebooks."""
