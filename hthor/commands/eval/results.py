@@ -133,6 +133,8 @@ def time(seconds: float | None) -> str:
 
 
 def _value(value: object) -> object:
-    if value is None or value == "":
+    if value is None or value in ("", ()):
         return "–"
+    if isinstance(value, tuple):
+        return ", ".join(map(str, value))
     return {True: "yes", False: "no"}.get(value, value) if isinstance(value, bool) else value
