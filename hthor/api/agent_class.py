@@ -37,7 +37,7 @@ def agent_word(agent: object) -> str:
         AgentError: when it is none of these, or its class cannot be written into a file.
     """
     if isinstance(agent, (str, os.PathLike)):
-        return os.fspath(agent) if isinstance(agent, str) else str(Path(agent))
+        return str(Path(agent)) if isinstance(agent, os.PathLike) else agent
     if not isinstance(agent, type):
         kind = type(agent).__name__
         raise AgentError(f"agent {kind}: give the class {kind}, not an object of it; its arguments go to agent_args.")

@@ -64,8 +64,8 @@ class Episode:
         """Begin the trial at tick 0, whatever has happened before."""
         self.voided, self.paused = "", False
         self._mailbox = Mailbox([seat for seat in self.seats if seat not in self.people], self.people)
-        timed = self._privileges if (self.trial.clock or LOCKSTEP) != LOCKSTEP else ()
-        self._writer = LogWriter({seat: self.world.bodies[seat] for seat in self.seats}, timed)
+        robots = [robot.seat for robot in self.trial.robots] if (self.trial.clock or LOCKSTEP) != LOCKSTEP else ()
+        self._writer = LogWriter({seat: self.world.bodies[seat] for seat in self.seats}, robots)
         self._goal = GoalJudge(self.task)
         self._phases = PhaseClock(self.task, self._goal, self._writer.rest)
         self.world.reset(self._phases.arrangement, seed=self._seed)

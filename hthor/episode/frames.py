@@ -47,12 +47,12 @@ class Frames:
 
     def __init__(self, episode: Episode, participants: Mapping[str, object]) -> None:
         self._episode = episode
-        self._frames: list[tuple[Callable[[Controls], None], Controls]] = [
-            (frame, SeatControls(episode, seat))
+        self._frames: dict[str, tuple[Callable[[Controls], None], Controls]] = {
+            seat: (frame, SeatControls(episode, seat))
             for seat, one in participants.items()
             if (frame := getattr(one, "frame", None)) is not None
-        ]
-        self.seats = frozenset(seat for seat, one in participants.items() if hasattr(one, "frame"))
+        }
+        self.seats = self._frames.keys()
 
     def play(self) -> None:
         """Let them act in every step of the tick; nobody may observe this tick after them."""
@@ -62,6 +62,6 @@ class Frames:
 
     def step(self) -> None:
         """Let them act in one step of the tick, and make that step."""
-        for frame, controls in self._frames:
+        for frame, controls in self._frames.values():
             frame(controls)
         self._episode.substep()

@@ -3,11 +3,10 @@
 import traceback
 from collections.abc import Sequence
 
-import msgspec
 from msgspec import Struct
 
 from hthor.episode.recording.episode_log import Fault
-from hthor.types import Action, Observation
+from hthor.types import Action, Observation, merge_actions
 from hthor.types.events import AgentFault
 
 
@@ -35,9 +34,7 @@ class Participants:
     def submit(self, seat: str, action: Action, observation: Observation | None) -> None:
         """Take a seat's action for the next tick; words and signals of one that was taken before are kept."""
         if seat in self.actions:
-            before, _ = self.actions[seat]
-            say, signals = action.say or before.say, before.signals + action.signals
-            action = msgspec.structs.replace(action, say=say, signals=signals)
+            action = merge_actions(self.actions[seat][0], action)
         self.actions[seat] = (action, observation)
 
     def retire(self, tick: int, seat: str, error: Exception) -> None:

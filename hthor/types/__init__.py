@@ -20,6 +20,7 @@ from hthor.types.actions import (
     Rotate,
     Send,
     Wait,
+    merge_actions,
 )
 from hthor.types.display import DisplayMap, MapBody, MapPlace
 from hthor.types.house import (
@@ -148,4 +149,5 @@ __all__ = [
     "Wait",
     "Wall",
     "is_person",
+    "merge_actions",
 ]

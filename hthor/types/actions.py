@@ -1,5 +1,8 @@
 """The actions of agents and human models: one motion and one utterance at a time."""
 
+from typing import Protocol, TypeVar
+
+import msgspec
 from msgspec import Struct
 
 from hthor.types.house import Vec3
@@ -118,3 +121,21 @@ class Action(Struct, frozen=True, kw_only=True):
     motion: Motion = Wait()
     say: Send | Reply | None = None
     signals: tuple[Signal, ...] = ()
+
+
+class _Acting(Protocol):
+    @property
+    def say(self) -> Send | Reply | None: ...
+    @property
+    def signals(self) -> tuple[Signal, ...]: ...
+
+
+_AnyAction = TypeVar("_AnyAction", bound=_Acting)
+
+
+def merge_actions(before: _AnyAction, after: _AnyAction) -> _AnyAction:
+    """What two actions of a seat for the same tick come to: ``after``, with the words of ``before`` if it says nothing,
+    and with the signals of both.
+    """
+    say, signals = after.say or before.say, before.signals + after.signals
+    return msgspec.structs.replace(after, say=say, signals=signals)  # type: ignore[type-var]  # a record like all types

@@ -19,7 +19,7 @@ from walking_stage import SEATS, Chancy, WalkingStage, minds
 from hthor import tasks
 from hthor.episode import Charged, Concurrent, DecisionClock, Episode, EpisodeLog, play
 from hthor.errors import HthorError
-from hthor.humans.core.behaviour_log import INPUT_UNIT
+from hthor.humans.core.recorded_inputs import INPUT_UNIT
 from hthor.types import HUMAN, SUBTICKS, Action, Drive, Observation, Reply, Send, TrialSpec, Wait
 from hthor.types.events import Event
 from hthor.world import World

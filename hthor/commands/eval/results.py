@@ -136,5 +136,5 @@ def _value(value: object) -> object:
     if value is None or value in ("", ()):
         return "–"
     if isinstance(value, tuple):
-        return ", ".join(map(str, value))
+        return list(value)
     return {True: "yes", False: "no"}.get(value, value) if isinstance(value, bool) else value

@@ -9,6 +9,7 @@ from hthor.episode.recording.episode_log import EpisodeLog, Fault
 from hthor.episode.recording.rest_time import RestState, RestTime
 from hthor.episode.trial_world import TrialWorld
 from hthor.humans.core.behaviour_log import BehaviourRecorder, RecorderState
+from hthor.humans.core.recorded_inputs import InputRecorder, InputState
 from hthor.types import HUMAN, BodySpec, Motion, Pose, is_person
 from hthor.types.events import Acted, Event, JournalEntry, Success, Timeout, Voided
 
@@ -24,6 +25,7 @@ class LogState(Struct, frozen=True, kw_only=True):
     paths: dict[str, tuple[tuple[int, int, int], ...]]
     rest: RestState
     recorders: dict[str, RecorderState]
+    inputs: dict[str, InputState]
 
 
 class LogWriter:
@@ -44,10 +46,9 @@ class LogWriter:
         self._paths: dict[str, list[tuple[int, int, int]]] = {seat: [] for seat in bodies}
         self._traced: dict[str, Pose] = {}  # where each body was when it was traced last
         self._recorders = {
-            seat: BehaviourRecorder(seat, body, rules.TICK_S)
-            for seat, body in bodies.items()
-            if is_person(seat) or seat in robots
+            seat: BehaviourRecorder(seat, body, rules.TICK_S) for seat, body in bodies.items() if is_person(seat)
         }
+        self._inputs = {seat: InputRecorder(seat) for seat in bodies if is_person(seat) or seat in robots}
 
     def trace(self, world: TrialWorld) -> None:
         """Add the bodies' poses to their paths, every `rules.LOG_EVERY_TICKS` ticks."""
@@ -60,22 +61,24 @@ class LogWriter:
                 continue
             self._traced[seat] = pose
             path.append((round(pose.x * _THOUSAND), round(pose.y * _THOUSAND), round(pose.gaze * _THOUSAND)))
-            if (recorder := self._recorders.get(seat)) is not None and is_person(seat):
+            if (recorder := self._recorders.get(seat)) is not None:
                 recorder.head(world.tick, pose.pitch)
 
     def note_motion(self, tick: int, step: int, seat: str, motion: Motion, *, started: bool) -> None:
         """Note a motion that begins at a step of a tick; ``started`` is false if the body is still free after it."""
         if (recorder := self._recorders.get(seat)) is not None:
-            recorder.motion(tick, motion, step)
+            recorder.motion(tick, motion)
+        if (inputs := self._inputs.get(seat)) is not None:
+            inputs.motion(tick, step, motion)
         self.rest.note_motion(tick, seat, motion, started=started)
 
     def note_action(self, acted: Acted) -> None:
         """Note an action of a seat whose actions are recorded."""
-        self._recorders[acted.seat].action(acted)
+        self._inputs[acted.seat].action(acted)
 
     def records(self, seat: str) -> bool:
         """Whether the seat's actions are recorded."""
-        return seat in self._recorders
+        return seat in self._inputs
 
     def log(
         self,
@@ -87,12 +90,12 @@ class LogWriter:
     ) -> EpisodeLog:
         """The log up to this tick, with the last event ``end`` if the trial is over."""
         events = (*self.events, *(() if end is None else (end,)))
-        recorders = self._recorders.items()
-        journal = [
-            entry
-            for seat, one in recorders
-            for entry in (one.journal(journals.get(seat, ()), events) if is_person(seat) else one.inputs())
-        ]
+        journal: list[JournalEntry] = []
+        for seat, inputs in self._inputs.items():
+            if (recorder := self._recorders.get(seat)) is None:
+                journal += inputs.entries()
+            else:
+                journal += recorder.journal(journals.get(seat, ()), events, inputs.entries() if inputs.drove else ())
         return EpisodeLog(
             events=events,
             paths={seat: list(path) for seat, path in self._paths.items()},
@@ -113,6 +116,7 @@ class LogWriter:
             paths={seat: tuple(path) for seat, path in self._paths.items()},
             rest=self.rest.save_state(),
             recorders={seat: recorder.save_state() for seat, recorder in self._recorders.items()},
+            inputs={seat: recorder.save_state() for seat, recorder in self._inputs.items()},
         )
 
     def load_state(self, state: LogState) -> None:
@@ -123,6 +127,8 @@ class LogWriter:
         self.rest.load_state(state.rest)
         for seat, recorder in self._recorders.items():
             recorder.load_state(state.recorders[seat])
+        for seat, inputs in self._inputs.items():
+            inputs.load_state(state.inputs[seat])
 
 
 def end_event(tick: int, winner: str, voided: str) -> Event:

@@ -2,7 +2,7 @@
 
 import math
 
-from hthor.humans.core.behaviour_log import INPUT_UNIT
+from hthor.humans.core.recorded_inputs import INPUT_UNIT
 from hthor.types import Drive
 
 

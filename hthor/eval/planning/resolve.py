@@ -12,7 +12,7 @@ from hthor.errors import HthorError
 from hthor.eval.config import human_populations, option, run_config, shards, study_design, task_selection
 from hthor.eval.config.options import EvalOptions
 from hthor.eval.planning import custom_houses, max_faults, run_teams
-from hthor.eval.planning.run_planner import RunPlanner, Setting
+from hthor.eval.planning.run_planner import CommonSetting, RunPlanner
 from hthor.eval.records import run_isolation
 from hthor.eval.runner import engines
 from hthor.eval.runner.engines import Engine
@@ -50,7 +50,7 @@ def resolve(options: EvalOptions, tell: Callable[[str], None] = lambda _: None) 
     tasks = task_selection.narrow_selection(tasks, options.house, options.difficulty or "")
     tasks = task_selection.limit_selection(tasks, options.limit)
     teams = run_teams.choose_teams(options, tasks, guests)
-    setting = Setting(
+    setting = CommonSetting(
         tasks=tasks,
         pack=options.assets,
         assets=run_config.AssetsRef(name=pack.name, sha256=pack.sha256) if pack else None,

@@ -29,7 +29,7 @@ from hthor.trials.robot_team import RobotTeam
 from hthor.types.specs import LOCKSTEP, Clock
 
 
-class Setting(Struct, frozen=True, kw_only=True):
+class CommonSetting(Struct, frozen=True, kw_only=True):
     """What all runs of an evaluation have in common.
 
     Attributes:
@@ -64,7 +64,7 @@ class Setting(Struct, frozen=True, kw_only=True):
 class RunPlanner:
     """Makes the runs of an evaluation."""
 
-    def __init__(self, setting: Setting) -> None:
+    def __init__(self, setting: CommonSetting) -> None:
         self._setting = setting
 
     def runs(self, teams: Sequence[RobotTeam], peoples: Sequence[HumanTeam]) -> list[ScheduledRun]:

@@ -1,17 +1,87 @@
-"""Repeats the inputs in a journal, step by step: those of a person who drives, or of a robot in real time."""
+"""Everything that a body was made to do in a trial: records it for the journal, and repeats the trial from it.
 
-from collections.abc import Iterable, Sequence
+It is kept of people who drive, and of robots whose thinking takes time, which no log repeats by itself.
+"""
 
-from hthor.humans.core.behaviour_log import INPUT_UNIT
-from hthor.types import SUBTICKS, Action, Controls, Drive, Observation, Wait
+from collections import Counter
+from collections.abc import Iterable, Iterator, Sequence
+
+from msgspec import UNSET, Struct
+
+from hthor.types import SUBTICKS, Action, Controls, Drive, Motion, Move, Observation, Rotate, Wait, merge_actions
 from hthor.types.events import Acted, Event, Head, Inputs, JournalEntry, Shown, Stick
 
-_OF_RECORDER = (Stick, Head, Inputs, Acted)
+INPUT_UNIT = 1e-4
+"""[m/s, rad] The unit of the set-points in the journal. Our choice: finer than any stick or headset measures."""
+_BY_THE_EPISODE = (Stick, Head, Inputs, Acted)
 """Entries that the episode writes into journals by itself."""
 
 
+class InputState(Struct, frozen=True, kw_only=True):
+    """A copy of what an `InputRecorder` recorded."""
+
+    inputs: tuple[int, ...]
+    held: tuple[int, ...]
+    acted: tuple[Acted, ...]
+
+
+class InputRecorder:
+    """Records what one body was made to do in one trial."""
+
+    def __init__(self, seat: str) -> None:
+        self.seat = seat
+        self._inputs: list[int] = []
+        self._held: list[int] = []  # the set-point that the body drives by
+        self._acted: list[Acted] = []
+
+    @property
+    def drove(self) -> bool:
+        """Whether the body drove at any time."""
+        return bool(self._inputs)
+
+    def motion(self, tick: int, step: int, motion: Motion) -> None:
+        """Record a motion that begins after a step of a tick; only set-points are kept, as actions have the others."""
+        if isinstance(motion, Drive):
+            numbers = [round(value / INPUT_UNIT) for value in (motion.forward, motion.left, motion.yaw, motion.pitch)]
+            if self._held != numbers:
+                self._inputs += (tick, step, *numbers)
+                self._held = numbers
+        elif isinstance(motion, (Move, Rotate, Wait)):
+            self._held = []
+
+    def action(self, acted: Acted) -> None:
+        """Record an action; one in the same step as the one before it counts together with that."""
+        before = self._acted[-1] if self._acted else None
+        if before is not None and (before.tick, before.early) == (acted.tick, acted.early):
+            self._acted[-1] = merge_actions(before, acted)
+        else:
+            self._acted.append(acted)
+
+    def entries(self) -> Iterator[Inputs | Acted]:
+        """The entries for the journal.
+
+        Actions that are mere set-points are left out, as `Inputs` has them, unless one replaced another motion.
+        """
+        if self._inputs:
+            yield Inputs(tick=0, seat=self.seat, runs=tuple(self._inputs))
+        of_tick = Counter(acted.tick for acted in self._acted)
+        for acted in self._acted:
+            timely = acted.seen is UNSET or acted.seen == acted.tick
+            silent = acted.say is None and not acted.signals
+            if not (isinstance(acted.motion, Drive) and timely and silent and of_tick[acted.tick] == 1):
+                yield acted
+
+    def save_state(self) -> InputState:
+        """A copy of what was recorded."""
+        return InputState(inputs=tuple(self._inputs), held=tuple(self._held), acted=tuple(self._acted))
+
+    def load_state(self, state: InputState) -> None:
+        """Continue from a copy."""
+        self._inputs, self._held, self._acted = list(state.inputs), list(state.held), list(state.acted)
+
+
 class RecordedInputs:
-    """The inputs of one seat in one logged trial.
+    """The inputs of one seat in one logged trial, which `frame` repeats.
 
     Args:
         seat: the seat. events, journal, ticks: the trial's, as in `hthor.episode.EpisodeLog`.
@@ -26,7 +96,7 @@ class RecordedInputs:
         inputs = [entry for entry in own if isinstance(entry, Inputs)]
         actions = [entry for entry in own if isinstance(entry, Acted)]
         self.found = bool(inputs or actions)
-        self.own_journal = tuple(entry for entry in own if not isinstance(entry, _OF_RECORDER))
+        self.own_journal = tuple(entry for entry in own if not isinstance(entry, _BY_THE_EPISODE))
         self._ticks = ticks
         self._steering = _steering(inputs)
         self._actions: dict[int, list[Acted]] = {}  # by the number of the step, of all steps of the trial

@@ -3,17 +3,19 @@
 import hashlib
 import math
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import msgspec
 
 from hthor import documents, log_corrections, rules
 from hthor.errors import HthorError
+from hthor.humans.population.participant import Participant
 from hthor.log_corrections import Corrections
 from hthor.log_format import LineDecoder, Logged, OtherVersion
-from hthor.types import HUMAN, Briefing, Close, Drop, Motion, Open, Pick, Place, Pose, Send, Show, TrialSpec
+from hthor.types import HUMAN, Briefing, Close, Drop, Motion, Open, Pick, Place, Pose, Send, Show, TrialSpec, is_person
 from hthor.types.events import (
     Accepted,
     Answered,
@@ -134,38 +136,54 @@ class LoggedTrial(Logged, frozen=True, kw_only=True):
         return lambda tick: value(tick) / _MILLI
 
 
-class LoggedParticipant:
-    """One participant of a log, whose trials are found again one by one.
+class LoggedModel:
+    """A human model that repeats the trials of a participant of a log, found again one by one.
+
+    A subclass says what ``name`` it has on the command line.
 
     Args:
-        model: the human model that repeats them. number: the participant's. source: the run folder or log.
+        participant: its number selects the participant of the log.
+        state: the number of trials done.
+        source: the run folder or log.
+
+    Attributes:
+        trial: the logged trial that is repeated; None before `find`.
 
     Raises:
         HthorError: when there is no such log, or no such participant in it.
     """
 
-    def __init__(self, model: str, number: int, source: str) -> None:
+    name: str
+
+    def __init__(self, participant: Participant, state: Mapping[str, Any] | None = None, source: str = "") -> None:
         if not source:
             raise HthorError(
-                f"{model} needs the run to repeat: --humans {model}:RUN, a run folder or its trials.jsonl."
+                f"{self.name} needs the run to repeat: --humans {self.name}:RUN, a run folder or its trials.jsonl."
             )
         logged = read_logged_trials(source)
-        if number not in logged:
+        if participant.number not in logged:
             raise HthorError(
-                f"{source} has no participant {number}; it holds {', '.join(map(str, sorted(logged)))}. "
+                f"{source} has no participant {participant.number}; it holds {', '.join(map(str, sorted(logged)))}. "
                 "Evaluate with that run's suite, seed and number of participants."
             )
-        self._number, self._source, self._trials = number, source, logged[number]
+        self.participant, self.source = participant, source
+        self.trial: LoggedTrial | None = None
+        self._logged = logged[participant.number]
+        self._done = int(state["trials"]) if state else 0
 
     def begin(self, briefing: Briefing) -> None:
-        """Begin a trial; raises HthorError when the participant did no such task."""
-        self._briefing = briefing
-        self._fitting = [one for one in self._trials if one.is_of(briefing)]
+        """Look up the task in the log.
+
+        Raises:
+            HthorError: when the log has no such task of this participant.
+        """
+        self._briefing, self.trial = briefing, None
+        self._fitting = [one for one in self._logged if one.is_of(briefing)]
         if not self._fitting:
             raise self._unknown()
 
-    def find(self, start: Pose, index: int) -> LoggedTrial:
-        """The trial with this task from this start, by preference number ``index`` of its session.
+    def find(self, start: Pose) -> LoggedTrial:
+        """The trial with this task from this start, by preference the one with the same place in its session.
 
         Raises:
             HthorError: when the participant did no such task from there.
@@ -173,14 +191,25 @@ class LoggedParticipant:
         here = [one for one in self._fitting if one.begins_at(start)]
         if not here:
             raise self._unknown()
-        return next((one for one in here if one.spec.index == index), here[0])
+        self.trial = next((one for one in here if one.spec.index == self._done), here[0])
+        return self.trial
+
+    def rate(self, met: bool, tick: int) -> int | None:  # noqa: ARG002  the log has the answer
+        """The logged rating; None without a robot."""
+        self._done += 1
+        has_robots = not all(is_person(seat) for seat in self._briefing.teammates)
+        return self.trial.rating if self.trial is not None and has_robots else None
+
+    def state(self) -> dict[str, Any]:
+        """The number of trials done."""
+        return {"trials": self._done}
 
     def _unknown(self) -> HthorError:
-        trials = ", ".join(f"{one.spec.index}: {one.spec.task.id}" for one in self._trials)
+        trials = ", ".join(f"{one.spec.index}: {one.spec.task.id}" for one in self._logged)
         return HthorError(
-            f"{self._source}: participant {self._number} did no such task as '{self._briefing.instruction}' from this "
-            f"place; their trials are {trials}. Only the trials of that log can be repeated: evaluate with that run's "
-            "suite, seed and number of participants."
+            f"{self.source}: participant {self.participant.number} did no such task as '{self._briefing.instruction}' "
+            f"from this place; their trials are {trials}. Only the trials of that log can be repeated: evaluate with "
+            "that run's suite, seed and number of participants."
         )
 
 

@@ -19,16 +19,13 @@ rules apply, which no real person would follow:
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import Any
 
 import msgspec
 
 from hthor import rules
 from hthor.geometry.plane import turn, wrap
 from hthor.humans.models import _logged_trials
-from hthor.humans.models._logged_trials import LoggedParticipant, LoggedTrial
-from hthor.humans.population.participant import Participant
+from hthor.humans.models._logged_trials import LoggedModel, LoggedTrial
 from hthor.types import (
     Action,
     Briefing,
@@ -44,7 +41,6 @@ from hthor.types import (
     Show,
     Signal,
     Wait,
-    is_person,
 )
 
 _EVERY = rules.LOG_EVERY_TICKS
@@ -62,52 +58,26 @@ _LAPSE_TICKS = 10
 ingredients = _logged_trials.ingredients
 
 
-class Model:
-    """A logged participant.
+class Model(LoggedModel):
+    """A logged participant."""
 
-    Args:
-        participant: its number selects the participant of the log.
-        state: the number of trials done.
-        source: the run folder or log.
-    """
-
-    def __init__(self, participant: Participant, state: Mapping[str, Any] | None = None, source: str = "") -> None:
-        self.participant = participant
-        self.trials = int(state["trials"]) if state else 0
-        self._logged = LoggedParticipant("replay", participant.number, source)
-        self._again: Reenactment | None = None
+    name = "replay"
+    _again: Reenactment | None = None
 
     def begin(self, briefing: Briefing) -> None:
-        """Look up the task in the log.
-
-        Raises:
-            HthorError: when the log has no such task of this participant.
-        """
-        self._brief, self._again = briefing, None
-        self._logged.begin(briefing)
+        """Look up the task in the log; errors as in `LoggedModel.begin`."""
+        self._again = None
+        super().begin(briefing)
 
     def act(self, observation: Observation) -> Action:
         """What the logged participant did at this point."""
         if self._again is None:
-            self._again = Reenactment(self._logged.find(observation.pose, self.trials), self._brief)
+            self._again = Reenactment(self.find(observation.pose), self._briefing)
         again = self._again
         observation = again.on_logged_time(observation)
         say = again.say(observation)
         signals: tuple[Signal, ...] = (*again.signals(observation), *again.ready(observation))
         return Action(motion=again.motion(observation) if observation.idle else Wait(), say=say, signals=signals)
-
-    def rate(self, met: bool, tick: int) -> int | None:  # noqa: ARG002  the log has the answer
-        """The logged rating."""
-        self.trials += 1
-        return self._again.trial.rating if self._again is not None and self._has_robots else None
-
-    def state(self) -> dict[str, Any]:
-        """The number of trials done."""
-        return {"trials": self.trials}
-
-    @property
-    def _has_robots(self) -> bool:
-        return not all(is_person(seat) for seat in self._brief.teammates)
 
 
 class Reenactment:
