@@ -1,4 +1,4 @@
-# `make demo` runs the main job, `make test` checks the whole project. For work on hthor itself: `make fmt` formats,
+# `make demo` runs the main job, `make live` lets you take part yourself, `make test` checks the whole project. For work on hthor itself: `make fmt` formats,
 # `make check` is the quick check before a commit, `make nightly` runs the checks that take longer, `make docs` builds the
 # documentation site in site/, `make bench` times trials, physics and pictures. All of them make their own .venv with the
 # pinned dependencies of constraints.txt.
@@ -11,7 +11,7 @@ JOBS ?= $(shell nproc 2>/dev/null || echo 1)
 # compiled files save each of the thousands of processes that tests start most of its start
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: demo savn test check nightly fmt lint docs bench install torch clean python
+.PHONY: demo savn live page test check nightly fmt lint docs bench install torch clean python
 
 demo: .venv/.installed
 	$(BIN)/hthor eval --agent none --agent frontier --agent oracle --humans proxy --suite smoke
@@ -19,6 +19,13 @@ demo: .venv/.installed
 # the same tasks with a robot that learned, and with one that goes to the nearest unknown place
 savn: .venv/.installed-torch
 	$(BIN)/hthor eval --agent none --agent nearest --agent frontier --agent savn --agent oracle --humans proxy --suite smoke
+
+# a page for you, and a robot that helps
+live: page
+	$(BIN)/hthor live --agent frontier --suite paper
+
+page: .venv/.installed-page
+	@$(BIN)/python scripts/build_page.py
 
 test: lint
 	@# a file's tests share worlds and runs, so one process does them all
@@ -51,7 +58,7 @@ bench: .venv/.installed-dev
 
 install: .venv/.installed
 
-# what robots that learn need, and the tests of them, which skip without it
+# what robots that learn need, what the page is built and opened with, and the tests of both, which skip without it
 torch: .venv/.installed-torch
 
 python:
@@ -67,16 +74,20 @@ python:
 	@touch $@
 
 .venv/.installed-dev: pyproject.toml constraints.txt | .venv/bin/python
-	@$(BIN)/python scripts/install.py dev calibration
+	@$(BIN)/python scripts/install.py dev calibration live
 	@touch .venv/.installed $@
 
 .venv/.installed-torch: pyproject.toml constraints.txt | .venv/bin/python
-	@$(BIN)/python scripts/install.py dev calibration torch
-	@touch .venv/.installed .venv/.installed-dev $@
+	@$(BIN)/python scripts/install.py dev browser calibration live page torch
+	@touch .venv/.installed .venv/.installed-dev .venv/.installed-page $@
+
+.venv/.installed-page: pyproject.toml constraints.txt | .venv/bin/python
+	@$(BIN)/python scripts/install.py live page
+	@touch .venv/.installed $@
 
 .venv/.installed-docs: pyproject.toml constraints.txt | .venv/bin/python
 	@$(BIN)/python scripts/install.py docs
 	@touch .venv/.installed $@
 
 clean:
-	rm -rf .venv build dist site *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis
+	rm -rf .venv build dist site hthor/live/page web/node_modules *.egg-info .mypy_cache .pytest_cache .ruff_cache .hypothesis

@@ -20,6 +20,7 @@ from hthor.commands import (
     correct,
     doctor,
     houses,
+    live,
     priors,
     replay,
     report,
@@ -44,6 +45,7 @@ app = typer.Typer(
     rich_markup_mode=None if os.environ.get("TERM") == "dumb" else "rich",
 )
 app.command("eval")(evaluate.evaluate)
+app.command("live")(live.live)
 app.command("merge")(merge.merge)
 app.command("migrate")(migrate.migrate)
 app.command("score")(score.score)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # wheel.sh [FOLDER]: builds the wheel and the sdist into FOLDER (default: a temporary one) and tries them without the source
-# tree: the wheel has every file of hthor/ that git tracks, the sdist builds a wheel with the same files, and in an empty
+# tree: the wheel has every file of hthor/ that git tracks and the built page, the sdist builds a wheel with the same files, and in an empty
 # environment, called from an empty folder, the wheel passes `hthor doctor`, plays a few trials, and imports every module.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -26,11 +26,12 @@ with zipfile.ZipFile(sys.argv[1]) as wheel:
 PY
 }
 
-make --silent -C "$root" .venv/.installed-dev
+make --silent -C "$root" .venv/.installed-dev page
 
 echo "-- build the sdist and the wheel"
 mkdir "$work/tree"
 (cd "$root" && git ls-files -z | xargs -0 ls -d 2>/dev/null | tar -cf - -T -) | tar -xf - -C "$work/tree"
+cp -r "$root/hthor/live/page" "$work/tree/hthor/live/page"
 "$python" -m build --outdir "$out" --sdist --wheel "$work/tree" >"$work/log" 2>&1 || { cat "$work/log" >&2; exit 1; }
 sdist=$(ls "$out"/hthor-*.tar.gz) wheel=$(ls "$out"/hthor-*.whl)
 

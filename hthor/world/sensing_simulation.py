@@ -1,5 +1,6 @@
 """A simulation with sensors: detections, range scans and pictures for every seat."""
 
+import functools
 import itertools
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, NamedTuple, cast
@@ -31,6 +32,9 @@ from hthor.world.editable_simulation import EditableSimulation
 from hthor.world.model import inventory
 from hthor.world.perception import view_frustum
 from hthor.world.rendering.lazy_images import LabelKey, LazyImages, Size
+from hthor.world.rendering.scene.asset_registry import AssetSource
+from hthor.world.rendering.scene.pose_sync import PoseSync
+from hthor.world.rendering.scene.scene_parts import SceneParts
 from hthor.world.rendering.viewpoint import Viewpoint
 from hthor.world.seat_senses import MEASURED, FrozenSenses, SeatSenses
 
@@ -230,6 +234,16 @@ class SensingSimulation(EditableSimulation):
         from hthor.world.rendering.opengl_renderer import OpenGLRenderer
 
         return OpenGLRenderer(self.house, self._contents, self.bodies, self._env.model, self._geoms, self._pack)
+
+    @functools.cached_property
+    def scene(self) -> SceneParts:
+        """Everything that can be seen, as plain meshes, for a program that draws the house itself."""
+        puppets = PoseSync(self._env.model, self._geoms)
+        return SceneParts(self.house, self._contents, puppets, self.bodies, AssetSource(self._pack))
+
+    def scene_poses(self) -> NDArray[np.float64]:
+        """Where everything in `scene` that moves is now, see `SceneParts.poses`."""
+        return self.scene.poses(self._pictures.moment())
 
     @property
     def top_view_bounds(self) -> tuple[float, float, float, float]:

@@ -27,7 +27,7 @@ from hthor.world.model.walls import WallSlab
 from hthor.world.rendering import contact_sheet
 from hthor.world.rendering.scene import lights, shell
 from hthor.world.rendering.scene.asset_registry import AssetSource
-from hthor.world.rendering.scene.compile_scene import SceneBuilder
+from hthor.world.rendering.scene.compile_scene import compile_scene
 from hthor.world.rendering.scene.pose_sync import PoseSync
 from hthor.world.rendering.scene.scene_mesh import facet, slab
 
@@ -73,8 +73,8 @@ def drawn(world: World) -> World:
 def undressed(world: World, pack: Any = None) -> Any:
     """The visual model of a world, without any OpenGL."""
     split = inventory.split_things(world.house, inventory.DEFAULT_OBJECTS)
-    dressing = SceneBuilder(world.house, split, PoseSync(world.model, world._geoms), AssetSource(pack))
-    return dressing.build(world.bodies, lights.RoomLights(world.house))
+    puppets, lamps = PoseSync(world.model, world._geoms), lights.RoomLights(world.house)
+    return compile_scene(world.house, split, puppets, AssetSource(pack), world.bodies, lamps)
 
 
 # ------------------------------------------------------------------------------------------------- without any OpenGL

@@ -96,7 +96,7 @@ class _Experiment:
         return run.run_evaluation(
             scheduled.config,
             scheduled.sessions,
-            scheduled.make_runner,
+            scheduled.runner or scheduled.make_runner,
             folder=scheduled.folder,
             watcher=watcher,
             engine=scheduled.engine,

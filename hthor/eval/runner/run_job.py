@@ -67,6 +67,7 @@ class ScheduledRun(RunJob, frozen=True, kw_only=True):
         engine: where its trials are played.
         files: what makes its folder complete in itself, by name, such as the suite's own houses.
         rerun_command: the command that runs one of its trials once more, without the trial's key.
+        runner: makes the session runners, if others than `RunJob.make_runner` does.
     """
 
     folder: RunFolder
@@ -76,6 +77,7 @@ class ScheduledRun(RunJob, frozen=True, kw_only=True):
     engine: Engine
     files: dict[str, bytes]
     rerun_command: str
+    runner: RunnerFactory | None = None
 
 
 class ResolvedRuns(Struct, frozen=True, kw_only=True):

@@ -14,17 +14,29 @@ from hthor.trials.trial_runner import TrialRunner
 if TYPE_CHECKING:
     from hthor.episode import TrialWorld
     from hthor.trials import Participants, Session, Sources
+    from hthor.trials.trial_runner import TrialLoop
     from hthor.types import TrialSpec
 
 
-def make_runner(sources: Sources | None = None) -> Callable[[Session], Iterator[TrialOutcome]]:
-    """A function that runs a session's trials in order. Called in the worker, as it imports large libraries."""
+def make_runner(
+    sources: Sources | None = None,
+    loop: TrialLoop | None = None,
+    welcome: Callable[[Participants], None] | None = None,
+) -> Callable[[Session], Iterator[TrialOutcome]]:
+    """A function that runs a session's trials in order. Called in the worker, as it imports large libraries.
+
+    Args:
+        loop: drives each trial; by default `hthor.episode.play`. welcome: called with a session's participants before
+            its first trial.
+    """
     from hthor.guest import GuestPool
 
-    runner = TrialRunner(sources, GuestPool())
+    runner = TrialRunner(sources, GuestPool(), loop=loop)
 
     def run_session(session: Session) -> Iterator[TrialOutcome]:
         with runner.enter(session) as participants:
+            if welcome is not None:
+                welcome(participants)
             for trial in session.trials:
                 yield run_trial(runner, participants, trial)
 

@@ -113,12 +113,12 @@ class LazyImages:
     def view(self, seat: str, mode: str, size: Size, profile: str | None, labels: LabelKey) -> NDArray[Any]:
         """The camera's picture now: rgb (H, W, 3) uint8, depth (H, W) float32 [m] or segmentation (H, W) int32."""
         _check(MODES, mode=mode)
-        return self._view(self._moment(), seat, mode, self._size(seat, size), profile, labels)
+        return self._view(self.moment(), seat, mode, self._size(seat, size), profile, labels)
 
     def look(self, seat: str, size: Size, profile: str | None, labels: LabelKey) -> View:
         """Colour, depth and segmentation of this moment."""
         size = self._size(seat, size)
-        images = self._look(self._moment(), seat, size, profile, labels)
+        images = self._look(self.moment(), seat, size, profile, labels)
         return View(
             rgb=images.rgb, depth=images.depth, segmentation=images.segmentation, camera=self.camera(seat, size)
         )
@@ -131,14 +131,14 @@ class LazyImages:
     def frame(self, seat: str, size: Size, profile: str | None) -> Callable[[], NDArray[np.uint8]]:
         """A function that draws the colour picture of the seat's camera at this moment."""
         _check(PROFILES, profile=profile or self.profile)
-        return functools.partial(self._view, self._moment(), seat, "rgb", self._size(seat, size), profile, LabelKey(0))
+        return functools.partial(self._view, self.moment(), seat, "rgb", self._size(seat, size), profile, LabelKey(0))
 
     def frozen(self, seat: str, labels: LabelKey) -> Callable[[str], NDArray[Any]]:
         """A function that draws the pictures of the seat's camera at this moment by their modes, each once.
 
         In the profile "fast" all three are drawn at once, which costs little more than one.
         """
-        size, moment, drawn = self._size(seat, None), self._moment(), dict[str, NDArray[Any]]()
+        size, moment, drawn = self._size(seat, None), self.moment(), dict[str, NDArray[Any]]()
 
         def draw(mode: str) -> NDArray[Any]:
             with self._lock:
@@ -157,7 +157,7 @@ class LazyImages:
         moves. Always "fast".
         """
         size = camera.image_size(self._seats[seat].spec)
-        for rgb, depth, found in self._fast().survey(self._moment(), seat, poses, size, colours):
+        for rgb, depth, found in self._fast().survey(self.moment(), seat, poses, size, colours):
             yield rgb, depth, self._labelled(found, labels)
 
     def top_view(self, pixels_per_metre: float, profile: str | None) -> NDArray[np.uint8]:
@@ -166,7 +166,7 @@ class LazyImages:
             raise ValueError(
                 f"pixels_per_metre must be more than 0 and at most 500, got {numbers.quoted(pixels_per_metre)}"
             )
-        moment = self._moment()
+        moment = self.moment()
         with self._lock:
             picture: NDArray[np.uint8] = self._draw(profile).top_view(moment, self.bounds, pixels_per_metre)
         return picture
@@ -175,7 +175,7 @@ class LazyImages:
         """The house now from any viewpoint, without ceilings: rgb (H, W, 3) uint8 or depth (H, W) float32 [m]."""
         _check(("rgb", "depth"), mode=mode)
         camera.check_size(size)
-        moment = self._moment()
+        moment = self.moment()
         with self._lock:
             picture: NDArray[Any] = self._draw(profile).overview(moment, viewpoint, mode, size)
         return picture
@@ -216,7 +216,8 @@ class LazyImages:
         labelled: NDArray[np.int32] = self._labels.of(numbers)
         return labelled
 
-    def _moment(self) -> PoseSnapshot:
+    def moment(self) -> PoseSnapshot:
+        """All poses of this moment."""
         self._env.pin()
         poses = {name: (seat.pose, seat.spec) for name, seat in self._seats.items()}
         return PoseSnapshot(self._env.data.qpos.copy(), poses)

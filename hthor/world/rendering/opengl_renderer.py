@@ -4,7 +4,6 @@ It draws copied poses with a model of its own (see `hthor.world.rendering.scene`
 """
 
 import atexit
-import math
 import weakref
 from collections.abc import Mapping
 from typing import Any
@@ -14,8 +13,6 @@ from numpy.typing import NDArray
 
 from hthor.looks.pack import Pack
 from hthor.types import BodySpec, CameraSpec, HouseSpec, Pose, Vec2
-from hthor.world.model import geoms
-from hthor.world.model.bodies import bodies
 from hthor.world.model.engine import mujoco
 from hthor.world.model.geom_index import GeomIndex
 from hthor.world.model.inventory import Contents
@@ -24,9 +21,9 @@ from hthor.world.rendering import camera as projection
 from hthor.world.rendering import opengl_context
 from hthor.world.rendering.camera import Images, PoseSnapshot
 from hthor.world.rendering.scene.asset_registry import AssetSource
-from hthor.world.rendering.scene.compile_scene import SceneBuilder
+from hthor.world.rendering.scene.compile_scene import compile_scene
 from hthor.world.rendering.scene.lights import RoomLights
-from hthor.world.rendering.scene.pose_sync import PoseSync
+from hthor.world.rendering.scene.pose_sync import PoseSync, seat_frames
 from hthor.world.rendering.scene.scene_mesh import ABOVE, ALWAYS, INSIDE
 from hthor.world.rendering.viewpoint import Viewpoint
 
@@ -61,7 +58,7 @@ class OpenGLRenderer:
         pack: Pack | None = None,
     ) -> None:
         self._puppets, self._lamps = PoseSync(model, scene), RoomLights(house)
-        dressed = SceneBuilder(house, contents, self._puppets, AssetSource(pack)).build(seats, self._lamps)
+        dressed = compile_scene(house, contents, self._puppets, AssetSource(pack), seats, self._lamps)
         self._model, self._followers, self._seats = dressed.model, dressed.followers, dressed.seats
         number = {name: index for index, name in enumerate(scene.names)}
         self._numbers = np.array([number.get(owner, -1) for owner in dressed.owner], np.int32)
@@ -122,20 +119,11 @@ class OpenGLRenderer:
         self._data.mocap_pos[:count], self._data.mocap_quat[:count] = position[self._followers], turn[self._followers]
         for seat, (pose, spec) in moment.seats.items():
             body, head = self._seats[seat]
-            self._stand(body, head, pose, spec)
+            for puppet, (place, turned) in zip((body, head), seat_frames(pose, spec), strict=True):
+                self._data.mocap_pos[puppet], self._data.mocap_quat[puppet] = place, turned
             if seat == without:
                 self._data.mocap_pos[[body, head]] = _FAR_AWAY
         mujoco.mj_kinematics(self._model, self._data)
-
-    def _stand(self, body: int, head: int, pose: Pose, spec: BodySpec) -> None:
-        turn, shift = bodies.head_transform(spec, pose.pitch, pose.head or 0.0)
-        about, cos, sin = geoms.quaternion(pose.yaw), math.cos(pose.yaw), math.sin(pose.yaw)
-        self._data.mocap_pos[body], self._data.mocap_quat[body] = (pose.x, pose.y, 0.0), about
-        x, y, z = shift
-        self._data.mocap_pos[head] = (pose.x + cos * x - sin * y, pose.y + sin * x + cos * y, z)
-        tilt = np.empty(4)
-        mujoco.mju_mat2Quat(tilt, np.asarray(turn, float).ravel())
-        mujoco.mju_mulQuat(self._data.mocap_quat[head], np.array(about), tilt)
 
     def _compose(self, extra: int) -> None:
         self._option.geomgroup[:] = [group in (ALWAYS, extra) for group in range(6)]

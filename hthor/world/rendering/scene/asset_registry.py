@@ -1,7 +1,7 @@
 """Meshes and materials as assets of the visual model, each stored once; those of an optional pack come first."""
 
 from collections.abc import Hashable
-from typing import Any
+from typing import Any, Protocol
 
 import msgspec
 import numpy as np
@@ -46,15 +46,43 @@ def _marked(piece: Piece) -> Piece:
     return piece._replace(material=msgspec.structs.replace(material, texture=f"pack:{material.texture}"))
 
 
+class Stage(Protocol):
+    """Where a `hthor.world.rendering.scene.compile_scene.SceneBuilder` puts what it builds."""
+
+    world: Any
+
+    def look(self, kind: str, size: Vec3, variant: int) -> tuple[Piece, ...]:
+        """The pieces of a thing, see `hthor.looks.look`."""
+
+    def puppet(self) -> Any:
+        """A new body that moves; puppets are counted in the order in which they are made."""
+
+    def geom(
+        self,
+        body: Any,
+        owner: str,
+        mesh: Mesh,
+        material: Material,
+        group: int = 0,
+        key: Hashable = None,
+        pos: Vec3 = (0.0, 0.0, 0.0),
+        quat: Quaternion = (1.0, 0.0, 0.0, 0.0),
+    ) -> None:
+        """Add a mesh to ``world`` or a puppet, in its frame; meshes with the same ``key`` are the same."""
+
+
 class AssetRegistry:
-    """Adds geoms to a `mujoco.MjSpec`.
+    """Adds geoms to a `mujoco.MjSpec`; the `Stage` of pictures.
 
     Args:
-        spec: the model that is being built. fabric: the source of textures.
+        spec: the model that is being built. fabric: the source of looks and textures.
+
+    Attributes:
+        world: the body of everything that never moves.
     """
 
     def __init__(self, spec: Any, fabric: AssetSource) -> None:
-        self._spec, self._fabric = spec, fabric
+        self._spec, self._fabric, self.world = spec, fabric, spec.worldbody
         self._meshes: dict[Hashable, str] = {}
         self._materials: dict[Material, str] = {}
         self._owners: list[str] = []
@@ -79,6 +107,16 @@ class AssetRegistry:
             geom.contype = geom.conaffinity = 0
             geom.group, geom.material, geom.rgba = group, self.material(material), material.rgba
             geom.pos, geom.quat = pos, quat
+
+    def look(self, kind: str, size: Vec3, variant: int) -> tuple[Piece, ...]:
+        """The pieces of a thing."""
+        return self._fabric.look(kind, size, variant)
+
+    def puppet(self) -> Any:
+        """A new body that pictures place where they like."""
+        body = self._spec.worldbody.add_body()
+        body.mocap = True
+        return body
 
     def named(self, owner: str) -> str:
         """A name for a new geom of ``owner``."""

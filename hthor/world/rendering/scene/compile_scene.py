@@ -13,7 +13,7 @@ from hthor.world.model.engine import mujoco
 from hthor.world.model.inventory import Contents, MovableSpec
 from hthor.world.rendering.scene import lights, materials
 from hthor.world.rendering.scene.apertures import apertures, leaf_meshes
-from hthor.world.rendering.scene.asset_registry import AssetRegistry, AssetSource
+from hthor.world.rendering.scene.asset_registry import AssetRegistry, AssetSource, Stage
 from hthor.world.rendering.scene.lights import RoomLights
 from hthor.world.rendering.scene.pose_sync import PoseSync
 from hthor.world.rendering.scene.scene_mesh import ABOVE, INSIDE, SceneMesh, join
@@ -38,48 +38,66 @@ class CompiledScene(NamedTuple):
     seats: Mapping[str, tuple[int, int]]
 
 
+def compile_scene(
+    house: HouseSpec,
+    contents: Contents,
+    puppets: PoseSync,
+    fabric: AssetSource,
+    seats: Mapping[str, BodySpec],
+    lamps: RoomLights,
+) -> CompiledScene:
+    """The visual model of a house with these bodies in it."""
+    spec = mujoco.MjSpec()
+    registry = AssetRegistry(spec, fabric)
+    _settings(spec)
+    for material, group in ((materials.LAWN, INSIDE), (materials.LAWN_ABOVE, ABOVE)):
+        _lawn(spec, registry, material, group)
+    builder = SceneBuilder(house, contents, puppets, registry)
+    places = builder.build(seats, lamps)
+    model = spec.compile()
+    return CompiledScene(model, registry.owners(model), np.array(builder.followers, int), places)
+
+
+def _settings(spec: Any) -> None:
+    spec.visual.headlight.active = 0
+    spec.visual.quality.shadowsize, spec.visual.quality.offsamples = _SHADOW_TEXELS, _SAMPLES
+    spec.visual.map.shadowclip, spec.visual.map.shadowscale = 1.0, 0.93
+    spec.stat.extent = _EXTENT_M
+    image, sky = lights.sky(), spec.add_texture()
+    sky.name, sky.type, sky.nchannel = "sky", mujoco.mjtTexture.mjTEXTURE_SKYBOX, 3
+    sky.height, sky.width, sky.data = image.shape[0], image.shape[1], image.tobytes()
+
+
+def _lawn(spec: Any, registry: AssetRegistry, material: Material, group: int) -> None:
+    lawn = spec.worldbody.add_geom()
+    lawn.name, lawn.type, lawn.size = registry.named("outdoors"), mujoco.mjtGeom.mjGEOM_PLANE, (60, 60, 1)
+    lawn.pos, lawn.contype, lawn.conaffinity, lawn.group = (0.0, 0.0, -0.05), 0, 0, group
+    lawn.material, lawn.rgba = registry.material(material), material.rgba
+
+
 class SceneBuilder:
-    """Builds the visual model of one house."""
+    """Puts one house, its things and the bodies in it on a stage.
 
-    def __init__(self, house: HouseSpec, contents: Contents, puppets: PoseSync, fabric: AssetSource) -> None:
-        self._house, self._contents, self._puppets, self._fabric = house, contents, puppets, fabric
-        self._spec = mujoco.MjSpec()
-        self._wardrobe = AssetRegistry(self._spec, fabric)
-        self._followers: list[int] = []
+    Attributes:
+        followers: for each of the first puppets, the body of the physics model that it follows.
+    """
 
-    def build(self, seats: Mapping[str, BodySpec], lamps: RoomLights) -> CompiledScene:
-        """The whole house, compiled."""
-        self._settings()
+    def __init__(self, house: HouseSpec, contents: Contents, puppets: PoseSync, stage: Stage) -> None:
+        self._house, self._contents, self._puppets, self._stage = house, contents, puppets, stage
+        self.followers: list[int] = []
+
+    def build(self, seats: Mapping[str, BodySpec], lamps: RoomLights) -> dict[str, tuple[int, int]]:
+        """Build everything; for each seat the numbers of the puppets of its body and its head."""
         self._merged((*shell(self._house), *apertures(self._house), *lamps.items()))
         for thing in self._contents.statics:
             self._thing(thing)
         for item in self._contents.movables:
             self._movable(item)
         self._doors()
-        first = len(self._followers)
+        first = len(self.followers)
         for seat, spec in seats.items():
             self._body(seat, spec)
-        places = {seat: (first + 2 * number, first + 2 * number + 1) for number, seat in enumerate(seats)}
-        model = self._spec.compile()
-        return CompiledScene(model, self._wardrobe.owners(model), np.array(self._followers, int), places)
-
-    def _settings(self) -> None:
-        spec = self._spec
-        spec.visual.headlight.active = 0
-        spec.visual.quality.shadowsize, spec.visual.quality.offsamples = _SHADOW_TEXELS, _SAMPLES
-        spec.visual.map.shadowclip, spec.visual.map.shadowscale = 1.0, 0.93
-        spec.stat.extent = _EXTENT_M
-        image, sky = lights.sky(), spec.add_texture()
-        sky.name, sky.type, sky.nchannel = "sky", mujoco.mjtTexture.mjTEXTURE_SKYBOX, 3
-        sky.height, sky.width, sky.data = image.shape[0], image.shape[1], image.tobytes()
-        self._lawn(materials.LAWN, INSIDE)
-        self._lawn(materials.LAWN_ABOVE, ABOVE)
-
-    def _lawn(self, material: Material, group: int) -> None:
-        lawn = self._spec.worldbody.add_geom()
-        lawn.name, lawn.type, lawn.size = self._wardrobe.named("outdoors"), mujoco.mjtGeom.mjGEOM_PLANE, (60, 60, 1)
-        lawn.pos, lawn.contype, lawn.conaffinity, lawn.group = (0.0, 0.0, -0.05), 0, 0, group
-        lawn.material, lawn.rgba = self._wardrobe.material(material), material.rgba
+        return {seat: (first + 2 * number, first + 2 * number + 1) for number, seat in enumerate(seats)}
 
     def _merged(self, items: Iterable[SceneMesh]) -> None:
         """Add the parts that never move, merged to one geom for each owner, material and group."""
@@ -87,14 +105,14 @@ class SceneBuilder:
         for item in items:
             heaps.setdefault((item.owner, item.material, item.group), []).append(item.mesh)
         for (owner, material, group), meshes in heaps.items():
-            self._wardrobe.geom(self._spec.worldbody, owner, join(meshes), material, group)
+            self._stage.geom(self._stage.world, owner, join(meshes), material, group)
 
     def _thing(self, thing: Thing) -> None:
         """Add a static thing: its fixed pieces to the world body, pieces on its joints to puppets."""
         frame = (thing.centre, geoms.quaternion(thing.yaw))
         key = (thing.kind, thing.size, thing.variant)
-        for joint, pieces in _by_joint(self._fabric.look(*key)).items():
-            body, at = self._spec.worldbody, frame
+        for joint, pieces in _by_joint(self._stage.look(*key)).items():
+            body, at = self._stage.world, frame
             if joint and (thing.id, joint) in self._puppets.hung:
                 body, at = self._follower(self._puppets.hung[thing.id, joint], frame)
             self._pieces(body, thing.id, pieces, (key, joint), at)
@@ -102,7 +120,7 @@ class SceneBuilder:
     def _movable(self, item: MovableSpec) -> None:
         body = self._puppet(self._puppets.free[item.id])
         key = (item.kind, item.size, item.variant)
-        for joint, pieces in _by_joint(self._fabric.look(*key)).items():
+        for joint, pieces in _by_joint(self._stage.look(*key)).items():
             self._pieces(body, item.id, pieces, (key, joint), _STILL)
 
     def _doors(self) -> None:
@@ -111,7 +129,7 @@ class SceneBuilder:
             for joint in opens.joints:
                 body, frame = self._follower(self._puppets.hung[opens.id, joint.name], _STILL)
                 for item in leaf_meshes(opens, joint):
-                    self._wardrobe.geom(body, item.owner, item.mesh, item.material, item.group, None, *frame)
+                    self._stage.geom(body, item.owner, item.mesh, item.material, item.group, None, *frame)
 
     def _body(self, seat: str, spec: BodySpec) -> None:
         """Add a seat's figure as two movable parts: its body and its head."""
@@ -125,7 +143,7 @@ class SceneBuilder:
             heaps.setdefault(piece.material, []).append(piece.mesh)
         for material, meshes in heaps.items():
             mesh = meshes[0] if len(meshes) == 1 else join(meshes)
-            self._wardrobe.geom(body, owner, mesh, material, 0, (key, material), *frame)
+            self._stage.geom(body, owner, mesh, material, 0, (key, material), *frame)
 
     def _follower(self, physical: int, frame: Any) -> tuple[Any, Any]:
         """A puppet for a body of the physics, and the house frame ``frame`` relative to that body at rest."""
@@ -133,10 +151,8 @@ class SceneBuilder:
 
     def _puppet(self, physical: int | None = None) -> Any:
         if physical is not None:
-            self._followers.append(physical)
-        body = self._spec.worldbody.add_body()
-        body.mocap = True
-        return body
+            self.followers.append(physical)
+        return self._stage.puppet()
 
 
 def _by_joint(pieces: Iterable[Piece]) -> dict[str, list[Piece]]:

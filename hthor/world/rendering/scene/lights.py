@@ -23,14 +23,14 @@ _LAMPS = 3
 """OpenGL has eight lights: headlight, fill, and two for each of these lamps. Each light with shadows costs a pass."""
 _SPAN_M2, _MOST = 24.0, 3
 """[m2] One lamp for this much floor of a room, and the most lamps per room."""
-_DROP_M = 0.14
+LAMP_DROP_M = 0.14
 """[m] Distance of a lamp's light below the ceiling."""
-_AMBIENT, _HEAD = (0.30, 0.30, 0.31), (0.12, 0.12, 0.12)
-_LAMP, _LAMP_FADE, _CUTOFF, _EXPONENT = (0.50, 0.48, 0.44), (1.0, 0.02, 0.012), 86.0, 2.0
+AMBIENT, HEAD = (0.30, 0.30, 0.31), (0.12, 0.12, 0.12)
+LAMP, LAMP_FADE, _CUTOFF, LAMP_EXPONENT = (0.50, 0.48, 0.44), (1.0, 0.02, 0.012), 86.0, 2.0
 """Of a lamp: colour, attenuation with distance, half its cone's angle [degrees], and concentration downwards."""
-_BOUNCE, _BOUNCE_FADE, _BOUNCE_DROP_M = (0.28, 0.27, 0.25), (1.0, 0.05, 0.06), 0.8
+BOUNCE, BOUNCE_FADE, BOUNCE_DROP_M = (0.28, 0.27, 0.25), (1.0, 0.05, 0.06), 0.8
 """Light reflected by the room: a point light without shadows below the lamp."""
-_FILL: tuple[Vec3, Vec3] = ((0.35, 0.55, -0.6), (0.10, 0.10, 0.10))
+FILL: tuple[Vec3, Vec3] = ((0.35, 0.55, -0.6), (0.10, 0.10, 0.10))
 _SUN, _SUNNY = ((0.10, 0.15, -1.0), (0.32, 0.31, 0.28)), (0.42, 0.42, 0.44)
 """In the view from above: the direction and colour of the sunlight, and the light that the sky adds."""
 _SHINE: Vec3 = (0.25, 0.25, 0.25)
@@ -45,6 +45,12 @@ _KINDS = {
 _SIDE = 256
 _ZENITH, _HORIZON = np.array((0.36, 0.58, 0.86)), np.array((0.86, 0.93, 0.98))
 _LEAVES, _GRASS = np.array((0.38, 0.52, 0.30)), np.array((0.52, 0.64, 0.36))
+
+
+def attenuation(factors: Vec3, distance: Any) -> Any:
+    """The share of a lamp's light that is left at a distance [m], as OpenGL computes it."""
+    constant, linear, square = factors
+    return 1.0 / (constant + linear * distance + square * distance**2)
 
 
 class RoomLights:
@@ -65,15 +71,15 @@ class RoomLights:
 
     def light(self, scene: Any, pose: Pose) -> None:
         """Light ``scene``, whose cameras are set, for a viewer at ``pose``."""
-        self._common(scene, _AMBIENT)
+        self._common(scene, AMBIENT)
         height = self._house.height
         for (x, y), share in self._active((pose.x, pose.y)):
-            bounce = (_BOUNCE[0] * share, _BOUNCE[1] * share, _BOUNCE[2] * share)
-            place = (x, y, height - _BOUNCE_DROP_M)
-            _add(scene, "point", pos=place, diffuse=bounce, attenuation=_BOUNCE_FADE)
-            place = (x, y, height - _DROP_M)
-            fade: dict[str, Any] = {"attenuation": _LAMP_FADE, "cutoff": _CUTOFF, "exponent": _EXPONENT}
-            _add(scene, "spot", pos=place, diffuse=_LAMP, castshadow=1, specular=_SHINE, **fade)
+            bounce = (BOUNCE[0] * share, BOUNCE[1] * share, BOUNCE[2] * share)
+            place = (x, y, height - BOUNCE_DROP_M)
+            _add(scene, "point", pos=place, diffuse=bounce, attenuation=BOUNCE_FADE)
+            place = (x, y, height - LAMP_DROP_M)
+            fade: dict[str, Any] = {"attenuation": LAMP_FADE, "cutoff": _CUTOFF, "exponent": LAMP_EXPONENT}
+            _add(scene, "spot", pos=place, diffuse=LAMP, castshadow=1, specular=_SHINE, **fade)
 
     def daylight(self, scene: Any, middle: Vec2, height: float) -> None:
         """Light ``scene``, whose cameras are set, for the view from above ``middle`` [m], a sun ``height`` [m] up."""
@@ -87,8 +93,8 @@ class RoomLights:
     def _common(self, scene: Any, ambient: Vec3) -> None:
         scene.nlight = 0
         forward = tuple(float(value) for value in scene.camera[0].forward)
-        _add(scene, "directional", headlight=1, dir=forward, ambient=ambient, diffuse=_HEAD)
-        _add(scene, "directional", dir=_unit(_FILL[0]), diffuse=_FILL[1])
+        _add(scene, "directional", headlight=1, dir=forward, ambient=ambient, diffuse=HEAD)
+        _add(scene, "directional", dir=_unit(FILL[0]), diffuse=FILL[1])
 
     def _active(self, place: Vec2) -> list[tuple[Vec2, float]]:
         """The lamps of the viewer's room, then the nearest lamps of rooms next to it, each with its share of bounce."""

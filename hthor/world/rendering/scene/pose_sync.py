@@ -4,11 +4,14 @@ The *rest* pose of a moving body is its pose with every door and drawer closed; 
 """
 
 import copy
+import math
 from typing import Any
 
 import numpy as np
 
-from hthor.types import Vec3
+from hthor.types import BodySpec, Pose, Vec3
+from hthor.world.model import geoms
+from hthor.world.model.bodies import bodies
 from hthor.world.model.engine import mujoco
 from hthor.world.model.geom_index import GeomIndex
 from hthor.world.model.geoms import Quaternion
@@ -65,3 +68,15 @@ class PoseSync:
         mujoco.mju_rotVecQuat(pos, np.array(frame[0]) - position, back)
         (x, y, z), (w, i, j, k) = pos.tolist(), quat.tolist()
         return (x, y, z), (w, i, j, k)
+
+
+def seat_frames(pose: Pose, spec: BodySpec) -> tuple[tuple[Vec3, Quaternion], tuple[Vec3, Quaternion]]:
+    """The frames of a seat's two puppets, its body and its head, at a pose."""
+    turn, shift = bodies.head_transform(spec, pose.pitch, pose.head or 0.0)
+    about, cos, sin = geoms.quaternion(pose.yaw), math.cos(pose.yaw), math.sin(pose.yaw)
+    x, y, z = shift
+    tilt, head = np.empty(4), np.empty(4)
+    mujoco.mju_mat2Quat(tilt, np.asarray(turn, float).ravel())
+    mujoco.mju_mulQuat(head, np.array(about), tilt)
+    w, i, j, k = head.tolist()
+    return ((pose.x, pose.y, 0.0), about), ((pose.x + cos * x - sin * y, pose.y + sin * x + cos * y, z), (w, i, j, k))

@@ -1,0 +1,71 @@
+"""`hthor live`."""
+
+from __future__ import annotations
+
+from functools import partial
+from typing import Annotated
+
+import msgspec
+import typer
+from msgspec import structs
+
+from hthor.commands.eval import results
+from hthor.commands.options import Json, takes_options
+from hthor.console import output
+from hthor.eval.config.option import Option, make_record
+from hthor.eval.config.options import EvalOptions
+
+_AS_IN_EVAL = (
+    *("agent", "agent_args", "readable", "humans", "suite", "kind", "robot", "robots", "detector", "camera"),
+    *("camera_size", "seed", "participants", "house", "difficulty", "limit", "out", "name", "step_limit"),
+    *("isolation", "require_isolation"),
+)
+_FIELDS = {one.name: (EvalOptions.__annotations__[one.name], one.default) for one in structs.fields(EvalOptions)}
+_FIELDS["humans"] = (
+    Annotated[
+        tuple[str, ...],
+        Option(
+            help="Who the people of a trial are, joined by commas: 'live' is somebody at a page, and every other word "
+            "of --humans in 'hthor eval' is a simulated person. For two people at pages: live,live.",
+            default="live",
+        ),
+    ],
+    ("live",),
+)
+_FIELDS["participants"] = (
+    Annotated[
+        int | None,
+        Option(least=1, help="How many people take part, one after another; each does ten tasks."),
+    ],
+    1,
+)
+LiveOptions = msgspec.defstruct(
+    "LiveOptions", [(name, *_FIELDS[name]) for name in _AS_IN_EVAL], frozen=True, kw_only=True
+)
+
+
+@takes_options(LiveOptions)
+def live(
+    port: Annotated[int, typer.Option(min=0, max=65535, help="The port of the pages; 0 for any that is free.")] = 8765,
+    json: Json = False,
+    **given: object,
+) -> None:
+    """Take part yourself: serve a page for each person, and play a session of trials with whoever opens it.
+
+    Running the same command again goes on with the first trial that is missing. The run is a run like any other:
+    'hthor score', 'report', 'compare' and 'replay' read it.
+    """
+    from hthor.eval.comparison import population_matrix
+    from hthor.eval.runner import progress
+    from hthor.live.run import LiveRun
+
+    talk = output.console(talk=True)
+    chosen = make_record(LiveOptions, given)
+    options = EvalOptions(**{name: getattr(chosen, name) for name in _AS_IN_EVAL})
+    with LiveRun(options, port=port, tell=lambda words: output.say(words, talk)) as run:
+        for seat in run.seats:
+            output.say(f"open {run.server.url(seat)}" + (f" as {seat}" if len(run.seats) > 1 else ""), talk)
+        done = run.play(partial(progress.make_watcher, talk, quiet=False, live=output.live()))
+    results.show_run(talk if json else output.console(), done)
+    if json:
+        output.put_json(population_matrix.make_evaluation([(str(done.folder), done.result)]))

@@ -1,0 +1,87 @@
+"""Runs the sessions of a run in this process, one after another, with people at their pages."""
+
+from __future__ import annotations
+
+import functools
+import queue
+import threading
+from collections.abc import Collection, Generator, Mapping, Sequence
+
+import msgspec
+
+from hthor.eval.records import trial_record
+from hthor.eval.records.trial_log import BEAT_S
+from hthor.eval.runner import session_runner
+from hthor.eval.runner.engines import SessionFailed
+from hthor.eval.runner.messages import Failed, News, RunnerFactory, SessionRunner
+from hthor.eval.runner.worker import SessionPlayer
+from hthor.humans.models import live
+from hthor.live.loop import RealTimeLoop, SessionControl
+from hthor.live.seat import LiveSeat
+from hthor.trials import Participants, Sources
+from hthor.trials.sessions import Session
+
+
+class LiveEngine:
+    """An engine of `hthor.eval.runner.engines` for people.
+
+    Args:
+        control: what the experimenter may do. done: the keys of trials that are over, which are not played again.
+    """
+
+    def __init__(self, control: SessionControl, done: Collection[str] = ()) -> None:
+        self._control, self._done = control, frozenset(done)
+
+    def run_sessions(self, sessions: Sequence[Session], make: RunnerFactory) -> Generator[News | None, None, None]:
+        """Run what is left of the sessions, and report what happens; closing the generator ends the session."""
+        news: queue.SimpleQueue[News | None] = queue.SimpleQueue()
+        left = [rest for session in sessions if (rest := self._rest(session)).trials]
+        thread = threading.Thread(target=self._play, args=(left, make, news), name="trials", daemon=True)
+        thread.start()
+        try:
+            while True:
+                try:
+                    message = news.get(timeout=BEAT_S)
+                except queue.Empty:
+                    yield None
+                    continue
+                if message is None:
+                    return
+                if isinstance(message, Failed):
+                    raise SessionFailed(message)
+                yield message
+        finally:
+            self._control.stop()
+            thread.join()
+
+    def drain(self) -> None:
+        """Start no more trials; the one that is going on is finished."""
+        self._control.draining = True
+
+    def _rest(self, session: Session) -> Session:
+        trials = tuple(trial for trial in session.trials if trial_record.key(trial) not in self._done)
+        return msgspec.structs.replace(session, trials=trials)
+
+    def _play(self, sessions: Sequence[Session], make: RunnerFactory, news: queue.SimpleQueue[News | None]) -> None:
+        player = SessionPlayer(make)
+        try:
+            for session in sessions:
+                for message in player.run(session):
+                    news.put(message)
+                    if self._control.draining or self._control.stopped:
+                        return
+        finally:
+            news.put(None)
+
+
+def make_runner(sources: Sources, seats: Mapping[str, LiveSeat], loop: RealTimeLoop) -> SessionRunner:
+    """The session runner of a live session, whose people sit at these pages."""
+    return session_runner.make_runner(sources, loop, functools.partial(welcome, seats=seats))
+
+
+def welcome(participants: Participants, seats: Mapping[str, LiveSeat]) -> None:
+    """Connect the people of a session with the pages in their seats."""
+    for name, seat in seats.items():
+        human = participants.humans[name]
+        assert isinstance(human, live.Model)
+        human.port = seat

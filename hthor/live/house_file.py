@@ -1,0 +1,261 @@
+"""The house of a trial as a glTF file, with the light of its lamps in the colours of its corners.
+
+What never moves is one node, whose primitives are merged by texture. Each part that moves (a thing, a door, a body or a
+head) is a node of its own, called by its number, in the order of `hthor.live.poses`; it has the colours of its
+materials, and the page lights it by the grid of probes that the scene's ``extras`` hold.
+"""
+
+from __future__ import annotations
+
+import gzip
+import hashlib
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from hthor import installation, jsonio
+from hthor.live.glb import GlbWriter
+
+if TYPE_CHECKING:
+    from hthor.types import HouseSpec
+    from hthor.world.rendering.scene.scene_parts import ScenePart, SceneParts
+
+_VERSION = 1
+"""Counts what changes the files that the same house gives."""
+_EDGE_M, _FLOOR_EDGE_M = 0.6, 0.45
+"""[m] No edge of a mesh, or of a floor, is longer, as light is computed at corners only. Our choice: no shadow that one
+would miss is lost, and the largest of our houses has fewer than 250,000 triangles.
+"""
+_TEXTURE_PX = 256
+"""[pixels] Side of the textures. Our choice: a person looks from half a metre at the least."""
+_JPEG_QUALITY = 85
+_HALF = 0.5
+"""Colours are stored times this, as light may be brighter than 1."""
+_OPAQUE = 0.99
+_ABOVE = 5
+"""The draw group of what is seen from above only."""
+_FLOOR = "floor"
+_SHADE_ONLY = "ceiling of"
+"""What the owners of lamps begin with: they hide no light, as it comes out of them."""
+
+
+class HouseFile(NamedTuple):
+    """A glTF file, compressed by gzip; ``key`` is the hash of what it was made from."""
+
+    key: str
+    data: bytes
+
+
+def house_file(scene: SceneParts, house: HouseSpec, folder: Path | None = None) -> HouseFile:
+    """The file of a house and of everything in it; computed once, and then read from hthor's cache.
+
+    Args:
+        folder: where files are kept; by default in the cache.
+    """
+    key = _key(scene)
+    path = (folder or installation.cache() / "live") / f"{key}.glb.gz"
+    if not path.exists():
+        jsonio.write(path, gzip.compress(_make(scene, house), 6, mtime=0))
+    return HouseFile(key, path.read_bytes())
+
+
+def _key(scene: SceneParts) -> str:
+    digest = hashlib.sha256(str((_VERSION, len(scene.moving), scene.lamps.places)).encode())
+    for part in scene.parts:
+        digest.update(repr((part.puppet, part.owner, part.material, part.group, part.position, part.turn)).encode())
+        for values in part.mesh:
+            digest.update(np.ascontiguousarray(values).tobytes())
+    return digest.hexdigest()[:32]
+
+
+def _make(scene: SceneParts, house: HouseSpec) -> bytes:
+    from hthor.world.rendering.scene.baked_light import BakedLight
+
+    still = [_Surface.of(part) for part in scene.parts if part.puppet < 0 and part.group != _ABOVE]
+    hides = [one.corners for one in still if one.alpha >= _OPAQUE and not one.owner.startswith(_SHADE_ONLY)]
+    light = BakedLight(np.concatenate(hides), scene.lamps.places, house.height)
+    file = GlbWriter("hthor")
+    book = _Materials(file, scene)
+    still = [one.refined() for one in still]
+    lit = light.light(np.concatenate([one.vertices for one in still]), np.concatenate([one.normals for one in still]))
+    ends = np.cumsum([len(one.vertices) for one in still])
+    shown = [
+        one._replace(colours=one.tint * (own + one.emission))
+        for one, own in zip(still, np.split(lit, ends[:-1]), strict=True)
+    ]
+    nodes = [file.node(name="still", mesh=_mesh(file, book, shown))]
+    for number in range(len(scene.moving)):
+        parts = [_Surface.of(part) for part in scene.parts if part.puppet == number]
+        if parts:
+            owner = parts[0].owner
+            nodes.append(
+                file.node(
+                    name=str(number), mesh=_mesh(file, book, _creased(parts)), extras={"owner": owner, "part": number}
+                )
+            )
+    xs, ys = zip(*(point for room in house.rooms for point in room.polygon), strict=True)
+    probes = light.probes((min(xs), min(ys), max(xs), max(ys)))
+    turned = file.node(root=True, name="house", children=nodes, rotation=[-(0.5**0.5), 0.0, 0.0, 0.5**0.5])
+    file.extras(
+        {
+            "house": turned,
+            "moving": list(scene.moving),
+            "probes": {
+                "origin": [round(value, 3) for value in probes.origin],
+                "side": probes.side,
+                "light": [[round(value, 2) for value in row] for row in probes.light.tolist()],
+            },
+        }
+    )
+    return file.file()
+
+
+def _creased(parts: list[_Surface]) -> list[_Surface]:
+    """Parts that move together, with the shade that they throw on each other."""
+    from hthor.world.rendering.scene.baked_light import BakedLight
+
+    light = BakedLight(np.concatenate([one.corners for one in parts]), {}, 0.0)
+    return [
+        one._replace(
+            colours=one.tint
+            * np.minimum(1.0 / _HALF, light.openness(one.vertices, one.normals) + one.emission)[:, None]
+        )
+        for one in parts
+    ]
+
+
+class _Surface(NamedTuple):
+    """A mesh in the frame of the house, or of what it moves with; ``colours`` (V, 3)."""
+
+    owner: str
+    texture: str
+    tint: Any
+    alpha: float
+    emission: float
+    vertices: Any
+    normals: Any
+    uv: Any
+    faces: Any
+    colours: Any = None
+
+    @classmethod
+    def of(cls, part: ScenePart) -> _Surface:
+        """The surface of a part."""
+        mesh, material = part.mesh, part.material
+        turn = _matrix(part.turn)
+        return cls(
+            part.owner,
+            material.texture,
+            np.array(material.rgba[:3]),
+            material.rgba[3],
+            material.emission,
+            np.asarray(mesh.vertices, float) @ turn.T + part.position,
+            _unit(np.asarray(mesh.normals, float) @ turn.T),
+            np.asarray(mesh.uv, float),
+            np.asarray(mesh.faces),
+        )
+
+    @property
+    def corners(self) -> Any:
+        """(F, 3, 3) [m]."""
+        return self.vertices[self.faces]
+
+    def refined(self) -> _Surface:
+        """The same surface without long edges: each is halved again and again, so that neighbours stay neighbours."""
+        faces = self.faces
+        rows = np.concatenate([self.vertices, self.normals, self.uv], axis=1)
+        while True:
+            corners = rows[faces][:, :, :3]
+            edges = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2)
+            longest = edges.argmax(1)
+            long = edges.max(1) > (_FLOOR_EDGE_M if self.owner.startswith(_FLOOR) else _EDGE_M)
+            if not long.any():
+                break
+            split, side = faces[long], longest[long]
+            a, b, c = (np.take_along_axis(split, ((side + k) % 3)[:, None], 1)[:, 0] for k in range(3))
+            ends, which = np.unique(np.sort(np.stack([a, b], 1), axis=1), axis=0, return_inverse=True)
+            middle = len(rows) + which.reshape(-1)
+            rows = np.concatenate([rows, rows[ends].mean(1)])
+            halves = np.concatenate([np.stack([a, middle, c], 1), np.stack([middle, b, c], 1)])
+            faces = np.concatenate([faces[~long], halves])
+        return self._replace(vertices=rows[:, :3], normals=_unit(rows[:, 3:6]), uv=rows[:, 6:], faces=faces)
+
+
+class _Materials:
+    """The materials of a file: one for each texture, and one for each kind of glass."""
+
+    def __init__(self, file: GlbWriter, scene: SceneParts) -> None:
+        self._file, self._scene = file, scene
+        self._known: dict[tuple[str, float], int] = {}
+
+    def number(self, texture: str, alpha: float) -> int:
+        """The number of a material, which is made at its first use."""
+        key = texture, alpha
+        if key not in self._known:
+            paint: dict[str, Any] = {"baseColorFactor": [1.0, 1.0, 1.0, alpha]}
+            if texture:
+                paint["baseColorTexture"] = {"index": self._file.texture(self._picture(texture), "image/jpeg", texture)}
+            kind = {} if alpha >= _OPAQUE else {"alphaMode": "BLEND"}
+            self._known[key] = self._file.material(
+                pbrMetallicRoughness=paint, extensions={"KHR_materials_unlit": {}}, **kind
+            )
+        return self._known[key]
+
+    def _picture(self, texture: str) -> bytes:
+        import cv2
+
+        picture = np.asarray(self._scene.texture(texture))[:, :, ::-1]
+        small = cv2.resize(picture, (_TEXTURE_PX, _TEXTURE_PX), interpolation=cv2.INTER_AREA)
+        found, data = cv2.imencode(".jpg", small, [cv2.IMWRITE_JPEG_QUALITY, _JPEG_QUALITY])
+        assert found
+        return bytes(data.tobytes())
+
+
+def _mesh(file: GlbWriter, book: _Materials, surfaces: list[_Surface]) -> int:
+    """A mesh of surfaces, merged by texture."""
+    heaps: dict[tuple[str, float], list[_Surface]] = {}
+    for one in surfaces:
+        alpha = 1.0 if one.alpha >= _OPAQUE else round(one.alpha, 3)
+        heaps.setdefault((one.texture, alpha), []).append(one)
+    primitives = []
+    for key, heap in heaps.items():
+        offsets = np.cumsum([0, *(len(one.vertices) for one in heap[:-1])])
+        faces = np.concatenate([one.faces + offset for one, offset in zip(heap, offsets, strict=True)])
+        attributes = {
+            "POSITION": (_rounded(np.concatenate([one.vertices for one in heap])), False),
+            "NORMAL": (_signed_bytes(np.concatenate([one.normals for one in heap])), True),
+            "COLOR_0": (_bytes(_HALF * np.concatenate([one.colours for one in heap])), True),
+        }
+        if key[0]:
+            attributes["TEXCOORD_0"] = (_rounded(np.concatenate([one.uv for one in heap])), False)
+        primitives.append(file.primitive(faces, attributes, book.number(*key)))
+    return file.mesh(primitives)
+
+
+def _rounded(values: Any) -> Any:
+    """Values to the nearest part of 2048, whose many zero bits make the file small."""
+    return (np.round(values * 2048.0) / 2048.0).astype("f4")
+
+
+def _bytes(values: Any) -> Any:
+    return np.clip(np.round(values * 255.0), 0, 255).astype("u1")
+
+
+def _signed_bytes(values: Any) -> Any:
+    return np.clip(np.round(values * 127.0), -127, 127).astype("i1")
+
+
+def _unit(vectors: Any) -> Any:
+    return vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-9)
+
+
+def _matrix(turn: Any) -> Any:
+    w, x, y, z = turn
+    return np.array(
+        (
+            (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+            (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+            (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
+        )
+    )

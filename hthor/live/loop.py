@@ -1,0 +1,272 @@
+"""A trial in real time: six steps a tick, each a sixtieth of a second, with people at their pages."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, cast
+from weakref import WeakKeyDictionary
+
+import msgspec
+
+from hthor import rules
+from hthor.episode import Concurrent, Episode, EpisodeLog, Frames, TrialWorld, begin, take_answers
+from hthor.episode.play import record_beliefs
+from hthor.errors import HthorError
+from hthor.humans.model import HumanModel
+from hthor.live import wire
+from hthor.live.scenery import Scenery
+from hthor.live.seat import AWAY_S, LiveSeat
+from hthor.types import SUBTICKS, BodySpec, Mind, TrialSpec
+
+if TYPE_CHECKING:
+    from hthor.live.house_file import HouseFile
+    from hthor.world.sensing_simulation import SensingSimulation
+
+STEP_S = rules.TICK_S / SUBTICKS
+"""[s] of a step."""
+ABSENT_S = 2.0
+"""[s] When somebody's page has been gone for so long, the trial is paused. Our choice."""
+_BEHIND_S = 0.25
+"""[s] A trial that is later than this gives up the time, so that it does not hurry afterwards. Our choice."""
+_TURN_S = 0.05
+"""[s] How often a trial that waits looks whether it may go on. Our choice."""
+
+
+class SessionStopped(HthorError):
+    """The session ends now, in the middle of a trial."""
+
+    exit_code = 130
+
+    def __init__(self) -> None:
+        super().__init__(
+            "the session was ended before its end; the same command goes on with the trial that was not finished."
+        )
+
+
+class SessionControl:
+    """What the experimenter may do to a session, from any thread.
+
+    Attributes:
+        paused: why the trial is paused; empty while it goes on.
+        void: why the trial that is going on is to be voided; empty if it is not.
+        draining: whether the session ends with the trial that is going on, which then waits for nobody.
+    """
+
+    def __init__(self) -> None:
+        self.paused = self.void = ""
+        self.draining = False
+        self._stopped = threading.Event()
+
+    def stop(self) -> None:
+        """End the session now."""
+        self._stopped.set()
+
+    @property
+    def stopped(self) -> bool:
+        """Whether the session is to end."""
+        return self._stopped.is_set()
+
+    def wait(self, seconds: float) -> None:
+        """Wait so long; raises SessionStopped when the session is to end."""
+        if self._stopped.wait(seconds):
+            raise SessionStopped
+
+
+class RealTimeLoop:
+    """Drives trials in real time; the loop of a `hthor.trials.TrialRunner`.
+
+    Args:
+        seats: the people at pages, by seat.
+        trials: how many trials the session has.
+        publish: makes the file of a house known to the pages, and returns its address; without it pages draw nothing.
+        now, sleep: the time [s] and how to wait.
+    """
+
+    def __init__(
+        self,
+        seats: Mapping[str, LiveSeat],
+        control: SessionControl,
+        *,
+        trials: int = 1,
+        publish: Callable[[HouseFile], str] | None = None,
+        now: Callable[[], float] = time.perf_counter,
+        sleep: Callable[[float], None] = time.sleep,
+    ) -> None:
+        self._seats, self._control, self.trials = dict(seats), control, trials
+        self._now, self._sleep, self._publish = now, sleep, publish
+        self._sceneries: WeakKeyDictionary[TrialWorld, Scenery] = WeakKeyDictionary()
+
+    def __call__(
+        self, trial: TrialSpec, world: TrialWorld, humans: Mapping[str, HumanModel], robots: Mapping[str, Mind]
+    ) -> EpisodeLog:
+        """Run one trial from its announcement to the ratings."""
+        episode = Episode(trial, world, (*humans, *robots))
+        clock = Concurrent(pace=lambda _: None)
+        episode.reset()
+        frames = Frames(episode, humans)
+        try:
+            begin(episode, humans, robots, clock)
+            scenery = self._scenery(world)
+            self._announce(episode, scenery)
+            self._show_bodies(episode, scenery)
+            pacer = Pacer(self._now, self._sleep)
+            while not episode.done:
+                if self._hold(episode):
+                    pacer.restart()
+                    continue
+                for seat in episode.waiting:
+                    if seat in frames.seats:
+                        continue
+                    if seat in humans:
+                        episode.submit(seat, humans[seat].act(episode.observe(seat)))
+                    elif not clock.busy(seat):
+                        clock.ask(seat, robots[seat], episode.observe(seat, frozen=True))
+                take_answers(episode, clock)
+                for _ in range(SUBTICKS):
+                    frames.step()
+                    self._show_bodies(episode, scenery)
+                    pacer.wait()
+                record_beliefs(episode.advance(), humans)
+        finally:
+            clock.close()
+        self._note(episode, pacer)
+        return self._end(episode, humans, bool(robots))
+
+    def _announce(self, episode: Episode, scenery: Scenery | None) -> None:
+        """Show everybody the task, and wait until all are ready."""
+        trial = episode.trial
+        ahead = wire.TrialAhead(
+            trial=trial.index,
+            trials=self.trials,
+            house=trial.task.house,
+            instruction=trial.task.instruction,
+            time_limit=trial.task.time_limit,
+            bodies=tuple(_body(seat, episode.world.bodies[seat]) for seat in episode.seats),
+        )
+        for name, seat in self._seats.items():
+            if scenery is not None:
+                assert self._publish is not None
+                address, own = self._publish(scenery.file), scenery.own[name]
+                seat.open(msgspec.structs.replace(ahead, file=address, own=own))
+            else:
+                seat.open(ahead)
+        while not all(seat.is_ready for seat in self._seats.values()):
+            if self._control.draining:
+                raise SessionStopped
+            self._control.wait(_TURN_S)
+        for seat in self._seats.values():
+            seat.show(wire.Began(trial=trial.index))
+
+    def _scenery(self, world: TrialWorld) -> Scenery | None:
+        """What pages draw of a world, as it is now."""
+        if self._publish is None:
+            return None
+        if world not in self._sceneries:
+            self._sceneries[world] = Scenery(cast("SensingSimulation", world))
+        scenery = self._sceneries[world]
+        scenery.restart()
+        return scenery
+
+    def _hold(self, episode: Episode) -> bool:
+        """Whether time stands still: the experimenter has paused the trial, or somebody's page is gone."""
+        control = self._control
+        away = {name: seat.absent_s() for name, seat in self._seats.items()}
+        if control.stopped or (control.draining and max(away.values()) > ABSENT_S):
+            raise SessionStopped
+        gone = [name for name, seconds in away.items() if seconds > AWAY_S]
+        if control.void or gone:
+            if episode.paused:
+                episode.resume()
+            episode.void(control.void or f"the page of {', '.join(gone)} did not come back")
+            control.void = ""
+            return True
+        lost = [name for name, seconds in away.items() if seconds > (0.0 if episode.paused else ABSENT_S)]
+        reason = control.paused or (f"the page of {', '.join(lost)} is gone" if lost else "")
+        if bool(reason) != episode.paused:
+            if reason:
+                episode.pause(reason)
+            else:
+                episode.resume()
+            for seat in self._seats.values():
+                seat.show(wire.Paused(reason=reason))
+        if reason:
+            control.wait(_TURN_S)
+        return bool(reason)
+
+    def _show_bodies(self, episode: Episode, scenery: Scenery | None) -> None:
+        moved = scenery.moved() if scenery is not None else {}
+        for name, seat in self._seats.items():
+            seat.show_frame(episode.tick, episode.step, episode.world.pose(name), moved)
+
+    def _note(self, episode: Episode, pacer: Pacer) -> None:
+        """Note in the journals how well the trial kept the time."""
+        for seat in self._seats.values():
+            seat.note(episode.tick, "real time", **pacer.figures(episode.tick * rules.TICK_S))
+
+    def _end(self, episode: Episode, humans: Mapping[str, HumanModel], robots: bool) -> EpisodeLog:
+        rate = robots and not episode.voided
+        for seat in self._seats.values():
+            seat.show(
+                wire.Ended(trial=episode.trial.index, met=episode.met, voided=episode.voided, rate=rate),
+                instead_of=(wire.Panel, wire.Map, wire.Paused),
+            )
+        ratings = {seat: human.rate(episode.met, episode.tick) for seat, human in humans.items() if not episode.voided}
+        return episode.log(ratings, {seat: getattr(human, "journal", ()) for seat, human in humans.items()})
+
+
+class Pacer:
+    """Lets every step of a trial take its time; `figures` says how well that worked."""
+
+    def __init__(self, now: Callable[[], float], sleep: Callable[[float], None]) -> None:
+        self._now, self._sleep = now, sleep
+        self._steps = self._late = 0
+        self._worst = self._lost = self._spent = 0.0
+        self.restart()
+
+    def restart(self) -> None:
+        """Begin to count time now, after a pause."""
+        self._due = self._now()
+
+    def wait(self) -> None:
+        """Wait until the time of this step is over."""
+        self._steps += 1
+        self._due += STEP_S
+        left = self._due - self._now()
+        if left > 0.0:
+            self._sleep(left)
+            return
+        self._late += left < -STEP_S
+        self._worst = max(self._worst, -left)
+        if -left > _BEHIND_S:
+            self._lost -= left
+            self._due -= left
+
+    def figures(self, trial_s: float) -> dict[str, float]:
+        """How well a trial of ``trial_s`` [s] kept the time.
+
+        Returns:
+            "late": steps that ended more than a step too late; "worst_s" [s]: the longest delay; "lost_s" [s]: the time
+            that was given up; "factor": trial time by wall-clock time.
+        """
+        taken = self._steps * STEP_S + self._lost
+        return {
+            "late": self._late,
+            "worst_s": round(self._worst, 3),
+            "lost_s": round(self._lost, 3),
+            "factor": round(trial_s / taken, 4) if taken else 1.0,
+        }
+
+
+def _body(seat: str, body: BodySpec) -> wire.Body:
+    return wire.Body(
+        seat=seat,
+        name=body.name,
+        radius=body.radius,
+        height=body.height,
+        eye=body.eye,
+        reach=body.reach,
+        speed=body.speed,
+        turn_rate=body.turn_rate,
+    )

@@ -1,0 +1,307 @@
+"""The server of a live session: pages, and one socket for each person, in a thread of its own."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import secrets
+import socket
+import threading
+import time
+from collections import deque
+from collections.abc import Collection, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from hthor.errors import HthorError, MissingExtra
+from hthor.live import wire
+from hthor.live.seat import LiveSeat
+from hthor.live.wire import Malformed, ToPage
+
+if TYPE_CHECKING:
+    from starlette.requests import Request
+    from starlette.responses import Response
+    from starlette.websockets import WebSocket
+
+    from hthor.live.house_file import HouseFile
+
+FOLDER = Path(__file__).resolve().parent / "page"
+"""The built page; its sources are in the folder web of the repository."""
+PAGE = "index.html"
+_LOG = logging.getLogger("hthor.live")
+LOCAL_HOSTS = ("localhost", "127.0.0.1", "[::1]")
+"""The names by which a browser on this machine reaches a server on it."""
+_JOIN_S = 10.0
+"""[s] A connection that has not joined a seat by then is closed. Our choice."""
+_WAITING = 512
+"""[count] Messages that may wait for a slow page before its connection is given up. Our choice."""
+_POLICY = (
+    "default-src 'self'; connect-src 'self' blob:; img-src 'self' blob: data:; worker-src 'self' blob:; "
+    "style-src 'self' 'unsafe-inline'; object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+)
+_HEADERS = {
+    "Content-Security-Policy": _POLICY,
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Referrer-Policy": "no-referrer",
+    "X-Content-Type-Options": "nosniff",
+    "Cache-Control": "no-store",
+}
+
+
+class Connection:
+    """A page that has joined a seat: a queue that loses nothing, and one place for the newest frame."""
+
+    def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
+        self._loop = loop
+        self._messages: deque[str | bytes] = deque()
+        self._head: wire.FrameHead | None = None
+        self._moved: dict[int, bytes] = {}
+        self._lock = threading.Lock()
+        self._news = asyncio.Event()
+        self.overrun = False
+
+    def send(self, message: ToPage) -> None:
+        """Send a message."""
+        self._put(wire.encode(message))
+
+    def send_picture(self, message: int, jpeg: bytes) -> None:
+        """Send the picture of a message."""
+        self._put(wire.encode_picture(message, jpeg))
+
+    def show(self, head: wire.FrameHead, moved: Mapping[int, bytes]) -> None:
+        """Send a frame, unless a newer one comes first; what has moved is sent in any case."""
+        with self._lock:
+            self._head = head
+            self._moved.update(moved)
+        self._wake()
+
+    async def next(self) -> list[str | bytes]:
+        """What is to be sent next."""
+        await self._news.wait()
+        self._news.clear()
+        ready: list[str | bytes] = []
+        while self._messages:
+            ready.append(self._messages.popleft())
+        with self._lock:
+            head, moved = self._head, self._moved
+            self._head, self._moved = None, {}
+        if head is not None:
+            ready.append(wire.encode_frame(head, moved))
+        return ready
+
+    def _put(self, data: str | bytes) -> None:
+        self._messages.append(data)
+        self.overrun = self.overrun or len(self._messages) > _WAITING
+        self._wake()
+
+    def _wake(self) -> None:
+        with contextlib.suppress(RuntimeError):  # the server is closed
+            self._loop.call_soon_threadsafe(self._news.set)
+
+
+class LiveServer:
+    """Serves the pages of the people in these seats, from `start` to `close`.
+
+    Args:
+        host, port: where to listen; port 0 takes any that is free.
+        hosts: names by which browsers may reach the server, besides those of this machine itself.
+
+    Attributes:
+        tokens: the token of each seat.
+    """
+
+    def __init__(
+        self, seats: Mapping[str, LiveSeat], *, host: str = "127.0.0.1", port: int = 0, hosts: Collection[str] = ()
+    ) -> None:
+        self._seats = dict(seats)
+        self._host, self._port, self._hosts = host, port, (*LOCAL_HOSTS, *hosts)
+        self.tokens = {seat: secrets.token_urlsafe(16) for seat in self._seats}
+        self._page_files = {path.name: path for path in sorted(FOLDER.glob("*.*"))}
+        self._houses: dict[str, bytes] = {}
+        self._server: Any = None
+        self._thread: threading.Thread | None = None
+
+    @property
+    def address(self) -> str:
+        """The address of the server, such as http://127.0.0.1:8765."""
+        return f"http://{self._host}:{self._port}"
+
+    def url(self, seat: str) -> str:
+        """The address that the person in a seat opens. The token is behind a #, so that browsers do not send it."""
+        return f"{self.address}/#{self.tokens[seat]}"
+
+    def start(self, *, page: bool = True) -> None:
+        """Begin to serve.
+
+        Args:
+            page: whether people come with browsers, which need the built page; other clients do not.
+
+        Raises:
+            HthorError: when the port is taken, the extra is missing, or the page was not built.
+        """
+        try:
+            import uvicorn
+        except ImportError:
+            raise MissingExtra("a session with people", "live") from None
+        if page and PAGE not in self._page_files:
+            raise HthorError(
+                "the page is not built: this is a clone of the repository, and 'make live' builds it there. "
+                "An installed hthor has it."
+            )
+        try:
+            listener = socket.create_server((self._host, self._port))
+        except OSError as error:
+            raise HthorError(
+                f"--port {self._port}: {error.strerror}. Choose another port, or 0 for any that is free."
+            ) from None
+        self._port = listener.getsockname()[1]
+        config = uvicorn.Config(
+            self.app(),
+            log_level="warning",
+            access_log=False,
+            lifespan="off",
+            ws="websockets-sansio",
+            ws_max_size=wire.LARGEST,
+            ws_per_message_deflate=False,
+            timeout_graceful_shutdown=1,
+        )
+        self._server = uvicorn.Server(config)
+        serve = self._server.serve
+        self._thread = threading.Thread(target=lambda: asyncio.run(serve(sockets=[listener])), name="server")
+        self._thread.start()
+        while not self._server.started and self._thread.is_alive():
+            time.sleep(0.01)
+
+    def close(self) -> None:
+        """Stop serving."""
+        if self._server is not None and self._thread is not None:
+            self._server.should_exit = True
+            self._thread.join()
+
+    def app(self) -> Any:
+        """The application, as ASGI servers take it."""
+        from starlette.applications import Starlette
+        from starlette.responses import FileResponse, PlainTextResponse, Response
+        from starlette.routing import Route, WebSocketRoute
+
+        async def page_file(request: Request) -> Response:
+            name = request.path_params.get("name", PAGE)
+            if not self._is_ours(request.headers.get("host", "")) or name not in self._page_files:
+                return PlainTextResponse("Not found.", status_code=404, headers=_HEADERS)
+            return FileResponse(self._page_files[name], headers=_HEADERS)
+
+        async def house(request: Request) -> Response:
+            data = self._houses.get(request.path_params["key"])
+            if not self._is_ours(request.headers.get("host", "")) or data is None:
+                return PlainTextResponse("Not found.", status_code=404, headers=_HEADERS)
+            kept = {**_HEADERS, "Cache-Control": "private, max-age=31536000, immutable", "Content-Encoding": "gzip"}
+            return Response(data, media_type="model/gltf-binary", headers=kept)
+
+        pages = [Route("/", page_file), Route("/{name}", page_file), Route("/house/{key}.glb", house)]
+        return Starlette(routes=[*pages, WebSocketRoute("/live", self._connect)])
+
+    def publish(self, file: HouseFile) -> str:
+        """Serve the file of a house; its address on this server."""
+        self._houses[file.key] = file.data
+        return f"/house/{file.key}.glb"
+
+    def _is_ours(self, host: str) -> bool:
+        """Whether a page of this host's is one of ours; a foreign site may lead a browser here under its own name."""
+        name, _, port = host.rpartition(":") if ":" in host.replace("[::1]", "") else (host, "", "80")
+        return name in self._hosts and (not self._port or port == str(self._port))
+
+    async def _connect(self, socket: WebSocket) -> None:
+        """Let a page join its seat, and listen to it until it leaves."""
+        origin, host = socket.headers.get("origin"), socket.headers.get("host", "")
+        if not self._is_ours(host) or (origin is not None and not self._is_ours(origin.partition("://")[2])):
+            _LOG.warning("refused a connection from the page of another site: %s", _short(origin or host))
+            await socket.close(1008)
+            return
+        versions = socket.scope.get("subprotocols", [])
+        if wire.VERSION not in versions:
+            await socket.accept()
+            asked = _short(", ".join(versions)) or "nothing"
+            await _refuse(socket, f"this server speaks {wire.VERSION}, the page {asked}. Reload the page.")
+            return
+        await socket.accept(wire.VERSION)
+        seat = await self._join(socket)
+        if seat is None:
+            return
+        page = Connection(asyncio.get_running_loop())
+        if (before := seat.join(page)) is not None:
+            before.send(wire.Problem(words="This seat was opened in another window; close this one."))
+        sender = asyncio.create_task(_send(socket, page))
+        try:
+            await self._listen(socket, seat, page)
+        finally:
+            seat.leave(page)
+            sender.cancel()
+            with contextlib.suppress(asyncio.CancelledError, Exception):
+                await sender
+
+    async def _join(self, socket: WebSocket) -> LiveSeat | None:
+        """The seat that a page has the token of; None if it has none, and the connection is closed then."""
+        try:
+            first = await asyncio.wait_for(socket.receive(), _JOIN_S)
+            joined = wire.decode(first.get("text") or "") if first["type"] == "websocket.receive" else None
+        except (Malformed, TimeoutError):
+            joined = None
+        if isinstance(joined, wire.Join):
+            for name, token in self.tokens.items():
+                if secrets.compare_digest(token, joined.token):
+                    return self._seats[name]
+        _LOG.warning("refused a connection without the token of a seat")
+        await _refuse(socket, "this address belongs to no seat of the session. Open the address that hthor printed.")
+        return None
+
+    async def _listen(self, socket: WebSocket, seat: LiveSeat, page: Connection) -> None:
+        while not page.overrun:
+            received = await socket.receive()
+            if received["type"] != "websocket.receive":
+                return
+            try:
+                if (data := received.get("bytes")) is not None:
+                    seat.steer(wire.decode_steering(data))
+                else:
+                    _take(seat, page, wire.decode(received.get("text") or ""))
+            except Malformed as error:
+                _LOG.warning("%s: a message that is none: %s", seat.seat, _short(str(error)))
+        _LOG.warning("%s: the page is too slow; its connection is given up", seat.seat)
+
+
+def _take(seat: LiveSeat, page: Connection, message: wire.FromPage) -> None:
+    match message:
+        case wire.Act():
+            seat.act(message)
+        case wire.Begin():
+            seat.begin_trial(message.trial)
+        case wire.Rate():
+            if not wire.is_rating(message.value):
+                raise Malformed(f"{message.value} is no rating")
+            seat.rate(message.trial, message.value)
+        case wire.Ping():
+            page.send(wire.Pong(sent=message.sent))
+        case wire.Join():
+            raise Malformed("the page has joined already")
+
+
+async def _send(socket: WebSocket, page: Connection) -> None:
+    with contextlib.suppress(Exception):  # a page that is gone is noticed by the one who listens to it
+        while True:
+            for data in await page.next():
+                if isinstance(data, str):
+                    await socket.send_text(data)
+                else:
+                    await socket.send_bytes(data)
+
+
+async def _refuse(socket: WebSocket, words: str) -> None:
+    with contextlib.suppress(Exception):
+        await socket.send_text(wire.encode(wire.Problem(words=words)))
+        await socket.close(1008)
+
+
+def _short(text: str) -> str:
+    """A text from outside as it may stand in a line of a log."""
+    return "".join(one if one.isprintable() else "?" for one in text[:120])

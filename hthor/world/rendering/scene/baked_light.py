@@ -1,0 +1,127 @@
+"""The light of a house's lamps at the corners of its meshes, with shadows, for programs that draw without lights.
+
+It is computed once for a house. What moves gets only its own creases, and the light of the place where it is, which
+`BakedLight.probes` tells.
+"""
+
+from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from hthor.types import Vec2
+from hthor.world.rendering.scene import lights, triangle_kernel
+
+_RAYS = 24
+"""[count] Rays that look for what is near a point."""
+_NEAR_M = 0.9
+"""[m] What is farther away makes a point no darker."""
+_OFF_M = 0.012
+"""[m] Rays begin so far above their surface."""
+_LAMP_FAR_M = 9.0
+"""[m] A lamp that is farther away adds nothing."""
+_LAMP_M = 0.18
+"""[m] Size of a lamp, of which four points give light: shadows have soft edges."""
+_DARKEST = 0.35
+"""The share of the light from all sides that reaches the deepest crease."""
+_PROBE_M, _PROBE_HEIGHT_M = 0.25, 0.9
+"""[m] Side of the cells of the grid of probes, and the height that they are for."""
+_CHUNK = 8192
+"""[count] Points of one task of a thread."""
+
+
+class Probes(NamedTuple):
+    """The light of the lamps in a grid over the house: ``light`` (H, W) float32, cell [j, i] is around ``origin`` +
+    ``side`` (i, j) [m].
+    """
+
+    origin: Vec2
+    side: float
+    light: Any
+
+
+class BakedLight:
+    """The light in one house.
+
+    Args:
+        corners: (F, 3, 3) [m], the triangles that hide light. lamps: the places of each room's lamps.
+        height: [m] of the ceiling. threads: how many to use.
+    """
+
+    def __init__(self, corners: Any, lamps: Mapping[str, Any], height: float, threads: int = 2) -> None:
+        self._tree = (corners, *triangle_kernel.build_tree(corners))
+        self._lamps = [(place, 1.0 / len(places) ** 0.5) for places in lamps.values() for place in places]
+        self._height, self._threads = height, threads
+        self._ways = _cosine_directions(_RAYS)
+
+    def openness(self, points: Any, normals: Any) -> Any:
+        """(N,) How open each point is to its surroundings, from `_DARKEST` in a crease to 1."""
+        found = self._in_chunks(self._open, points, normals)
+        return _DARKEST + (1.0 - _DARKEST) * found
+
+    def light(self, points: Any, normals: Any) -> Any:
+        """(N, 3) The light at static points with these normals; 1 shows a surface in its own colour."""
+        return self._in_chunks(self._light, points, normals)
+
+    def probes(self, bounds: tuple[float, float, float, float]) -> Probes:
+        """The light of the lamps at the height of a table, on the area x0, y0, x1, y1 [m]."""
+        x0, y0, x1, y1 = bounds
+        xs, ys = np.arange(x0, x1 + _PROBE_M, _PROBE_M), np.arange(y0, y1 + _PROBE_M, _PROBE_M)
+        grid = np.stack([*np.meshgrid(xs, ys), np.full((len(ys), len(xs)), _PROBE_HEIGHT_M)], axis=-1).reshape(-1, 3)
+        up = np.tile((0.0, 0.0, 1.0), (len(grid), 1))
+        lamp = np.zeros(len(grid))
+        for place, share in self._lamps:
+            lamp += self._lamp(place, share, grid, up)[:, 1]
+        return Probes((x0, y0), _PROBE_M, lamp.reshape(len(ys), len(xs)).astype(np.float32))
+
+    def _light(self, points: Any, normals: Any) -> Any:
+        lit = np.zeros((len(points), 3))
+        for place, share in self._lamps:
+            near = np.hypot(points[:, 0] - place[0], points[:, 1] - place[1]) < _LAMP_FAR_M
+            if near.any():
+                lit[near] += self._lamp(place, share, points[near], normals[near])
+        way, colour = lights.FILL
+        aim = -np.array(way) / np.linalg.norm(way)
+        around = np.array(lights.AMBIENT) + 0.5 * np.array(lights.HEAD) + np.clip(normals @ aim, 0, 1)[:, None] * colour
+        return lit + around * self._open_share(points, normals)[:, None]
+
+    def _open_share(self, points: Any, normals: Any) -> Any:
+        return _DARKEST + (1.0 - _DARKEST) * self._open(points, normals)
+
+    def _lamp(self, place: Vec2, share: float, points: Any, normals: Any) -> Any:
+        """(N, 3) What one lamp adds: its own light with shadows, and what the room throws back where it is seen."""
+        bulb = np.array((*place, self._height - lights.LAMP_DROP_M))
+        seen = np.zeros(len(points))
+        begin = points + _OFF_M * normals
+        steps = ((1.0, 0.4), (-0.4, 1.0), (0.4, -1.0), (-1.0, -0.4))
+        for dx, dy in steps:
+            at = bulb + np.array((dx, dy, 0.0)) * _LAMP_M
+            seen += triangle_kernel.unhidden(*self._tree, begin, normals, at) / len(steps)
+        way = bulb - points
+        distance = np.linalg.norm(way, axis=1)
+        slope = np.clip(np.einsum("na,na->n", way, normals) / distance, 0.0, 1.0)
+        fade, cone = lights.attenuation(lights.LAMP_FADE, distance), np.clip(way[:, 2] / distance, 0.0, 1.0)
+        direct = seen * slope * fade * cone**lights.LAMP_EXPONENT
+        low = np.array((*place, self._height - lights.BOUNCE_DROP_M))
+        way = low - points
+        distance = np.linalg.norm(way, axis=1)
+        slope = np.clip(np.einsum("na,na->n", way, normals) / distance, 0.0, 1.0)
+        thrown = share * seen * slope * lights.attenuation(lights.BOUNCE_FADE, distance)
+        return direct[:, None] * np.array(lights.LAMP) + thrown[:, None] * np.array(lights.BOUNCE)
+
+    def _open(self, points: Any, normals: Any) -> Any:
+        begin = points + _OFF_M * normals
+        return triangle_kernel.openness(*self._tree, begin, normals, self._ways, _NEAR_M)
+
+    def _in_chunks(self, work: Callable[[Any, Any], Any], points: Any, normals: Any) -> Any:
+        spans = [slice(k, k + _CHUNK) for k in range(0, len(points), _CHUNK)]
+        with ThreadPoolExecutor(self._threads) as pool:
+            return np.concatenate(list(pool.map(lambda span: work(points[span], normals[span]), spans)))
+
+
+def _cosine_directions(count: int) -> Any:
+    """(count, 3) unit vectors about +z, evenly spread as a matt surface sees them."""
+    k = np.arange(count) + 0.5
+    radius, angle = np.sqrt(k / count), k * np.pi * (3.0 - 5.0**0.5)
+    return np.stack([radius * np.cos(angle), radius * np.sin(angle), np.sqrt(1.0 - radius**2)], axis=1)

@@ -1,0 +1,113 @@
+"""The visual model of a house as plain meshes, for programs that draw it themselves, such as a page in a browser."""
+
+from collections.abc import Hashable, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hthor.looks import Material, Mesh, Piece
+from hthor.types import BodySpec, HouseSpec, Vec3
+from hthor.world.model.geoms import Quaternion
+from hthor.world.model.inventory import Contents
+from hthor.world.rendering.camera import PoseSnapshot
+from hthor.world.rendering.scene.asset_registry import AssetSource
+from hthor.world.rendering.scene.compile_scene import SceneBuilder
+from hthor.world.rendering.scene.lights import RoomLights
+from hthor.world.rendering.scene.pose_sync import PoseSync, seat_frames
+
+STATIC = -1
+"""The puppet of what never moves."""
+
+
+class ScenePart(NamedTuple):
+    """One mesh of the visual model.
+
+    Attributes:
+        puppet: what it moves with, the number of a row of `SceneParts.poses`; `STATIC` for nothing.
+        owner: the id of the thing or the seat that it belongs to. group: see `hthor.world.rendering.scene.scene_mesh`.
+        position, turn: [m], quaternion (w, x, y, z): its frame in that of the puppet, or of the house.
+    """
+
+    puppet: int
+    owner: str
+    mesh: Mesh
+    material: Material
+    group: int
+    position: Vec3
+    turn: Quaternion
+
+
+class SceneParts:
+    """Everything of one house that can be seen.
+
+    Attributes:
+        parts: the meshes. lamps: the places of each room's lamps.
+        moving: for each puppet, the id of what moves with it; a seat has two, its body and its head.
+    """
+
+    def __init__(
+        self,
+        house: HouseSpec,
+        contents: Contents,
+        puppets: PoseSync,
+        seats: Mapping[str, BodySpec],
+        fabric: AssetSource,
+    ) -> None:
+        self._puppets, self._fabric = puppets, fabric
+        self.lamps = RoomLights(house)
+        collector = _Collector(fabric)
+        builder = SceneBuilder(house, contents, puppets, collector)
+        self.seats = builder.build(seats, self.lamps)
+        self.parts = tuple(collector.parts)
+        self._followers = np.array(builder.followers, int)
+        owners = {part.puppet: part.owner for part in self.parts}
+        self.moving = tuple(owners.get(number, "") for number in range(collector.puppets))
+
+    def texture(self, name: str) -> Any:
+        """The picture of a material's texture, (H, W, 3) uint8, its first row at v = 0."""
+        return self._fabric.texture(name)
+
+    def poses(self, moment: PoseSnapshot) -> NDArray[np.float64]:
+        """Where everything that moves is, (P, 7): position [m] and quaternion (w, x, y, z) of each puppet."""
+        position, turn = self._puppets.at(moment.qpos)
+        poses = np.empty((len(self.moving), 7))
+        count = len(self._followers)
+        poses[:count, :3], poses[:count, 3:] = position[self._followers], turn[self._followers]
+        for seat, places in self.seats.items():
+            for place, (at, turned) in zip(places, seat_frames(*moment.seats[seat]), strict=True):
+                poses[place, :3], poses[place, 3:] = at, turned
+        return poses
+
+
+class _Collector:
+    """A `hthor.world.rendering.scene.asset_registry.Stage` that keeps what is put on it."""
+
+    def __init__(self, fabric: AssetSource) -> None:
+        self.world: Any = STATIC
+        self.parts: list[ScenePart] = []
+        self.puppets = 0
+        self._fabric = fabric
+
+    def look(self, kind: str, size: Vec3, variant: int) -> tuple[Piece, ...]:
+        """The pieces of a thing."""
+        return self._fabric.look(kind, size, variant)
+
+    def puppet(self) -> int:
+        """The number of a new puppet."""
+        self.puppets += 1
+        return self.puppets - 1
+
+    def geom(
+        self,
+        body: Any,
+        owner: str,
+        mesh: Mesh,
+        material: Material,
+        group: int = 0,
+        key: Hashable = None,  # noqa: ARG002  every mesh is kept
+        pos: Vec3 = (0.0, 0.0, 0.0),
+        quat: Quaternion = (1.0, 0.0, 0.0, 0.0),
+    ) -> None:
+        """Keep a mesh."""
+        self.parts.append(ScenePart(body, owner, mesh, material, group, pos, quat))

@@ -1,0 +1,128 @@
+"""The file of a house that a page draws."""
+
+from __future__ import annotations
+
+import gzip
+import json
+import struct
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from two_rooms import house, thing
+
+from hthor import houses
+from hthor.live import house_file
+from hthor.live.house_file import HouseFile
+from hthor.live.scenery import Scenery
+from hthor.world import World
+
+MOST_TRIANGLES, MOST_BYTES = 250_000, 4_000_000
+
+
+class Glb:
+    """A glTF file that was read."""
+
+    def __init__(self, file: HouseFile) -> None:
+        data = gzip.decompress(file.data)
+        magic, version, length = struct.unpack_from("<4sII", data)
+        assert (magic, version, length) == (b"glTF", 2, len(data))
+        size = struct.unpack_from("<I", data, 12)[0]
+        self.document: dict[str, Any] = json.loads(data[20 : 20 + size])
+        self._data = data[28 + size :]
+        assert self.document["buffers"] == [{"byteLength": len(self._data)}]
+
+    def primitives(self, node: dict[str, Any]) -> list[dict[str, Any]]:
+        found: list[dict[str, Any]] = self.document["meshes"][node["mesh"]]["primitives"]
+        return found
+
+    @property
+    def meshes(self) -> list[dict[str, Any]]:
+        return [node for node in self.document["nodes"] if "mesh" in node]
+
+    @property
+    def triangles(self) -> int:
+        ends = [one["indices"] for node in self.meshes for one in self.primitives(node)]
+        return sum(self.document["accessors"][end]["count"] // 3 for end in ends)
+
+    def values(self, number: int) -> Any:
+        accessor = self.document["accessors"][number]
+        view = self.document["bufferViews"][accessor["bufferView"]]
+        kind = {5120: "i1", 5121: "u1", 5123: "u2", 5125: "u4", 5126: "f4"}[accessor["componentType"]]
+        width = {"SCALAR": 1, "VEC2": 2, "VEC3": 3}[accessor["type"]]
+        stride = view.get("byteStride", np.dtype(kind).itemsize * width) // np.dtype(kind).itemsize
+        raw = np.frombuffer(self._data, kind, accessor["count"] * stride, view["byteOffset"])
+        return raw.reshape(accessor["count"], stride)[:, :width]
+
+
+@pytest.fixture(scope="module")
+def world() -> World:
+    table = thing("table", "dining_table", 2.0, 2.0)
+    return World(house(table, thing("fridge", "fridge", 6.0, 4.5)), robots=["tender"])
+
+
+@pytest.fixture(scope="module")
+def file(world: World, tmp_path_factory: pytest.TempPathFactory) -> HouseFile:
+    return house_file.house_file(world.scene, world.house, tmp_path_factory.mktemp("files"))
+
+
+def test_the_file_holds_the_house_and_everything_that_moves(world: World, file: HouseFile) -> None:
+    read = Glb(file)
+    still, *moving = read.meshes
+    assert still["name"] == "still"
+    assert {node["extras"]["owner"] for node in moving} >= {"human", "robot", "apple"}
+    assert [node["extras"]["part"] for node in moving] == sorted(node["extras"]["part"] for node in moving)
+    places = np.concatenate([read.values(one["attributes"]["POSITION"]) for one in read.primitives(still)])
+    x0, y0, x1, y1 = world.top_view_bounds
+    assert places[:, :2].min(0) == pytest.approx((x0, y0), abs=0.5)
+    assert places[:, :2].max(0) == pytest.approx((x1, y1), abs=0.5)
+    for node in read.meshes:
+        for one in read.primitives(node):
+            count = len(read.values(one["attributes"]["POSITION"]))
+            assert read.values(one["indices"]).max() < count
+            assert np.linalg.norm(read.values(one["attributes"]["NORMAL"]) / 127.0, axis=1) == pytest.approx(
+                1, abs=0.02
+            )
+
+
+def test_light_falls_from_lamps_and_not_through_walls(file: HouseFile) -> None:
+    read = Glb(file)
+    bright = np.concatenate(
+        [read.values(one["attributes"]["COLOR_0"]).max(1) for one in read.primitives(read.meshes[0])]
+    )
+    assert 40 < np.median(bright) < 200
+    assert bright.min() < 30 < 170 < bright.max()
+    light = np.array(read.document["scenes"][0]["extras"]["probes"]["light"])
+    assert light.max() > 0.5
+    assert light.min() < 0.1
+
+
+def test_the_same_house_gives_the_same_file_and_is_computed_once(
+    world: World, file: HouseFile, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    again = house_file.house_file(world.scene, world.house, tmp_path)
+    assert again == file
+    monkeypatch.setattr(house_file, "_make", None)
+    assert house_file.house_file(world.scene, world.house, tmp_path) == file
+
+
+def test_scenery_tells_what_has_moved(world: World, monkeypatch: pytest.MonkeyPatch, file: HouseFile) -> None:
+    monkeypatch.setattr(house_file, "house_file", lambda scene, house: file)
+    scenery = Scenery(world)
+    assert set(scenery.moved()) == set(range(len(world.scene.moving)))
+    assert scenery.moved() == {}
+    world.robot.rotate(1.0)
+    assert set(scenery.moved()) == set(scenery.own["robot"])
+    scenery.restart()
+    assert set(scenery.moved()) == set(range(len(world.scene.moving)))
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("name", [*houses.names(), *sorted(map(str, Path("../shared/houses").glob("*.json")))])
+def test_every_house_is_small_enough_for_a_headset(name: str, tmp_path: Path) -> None:
+    world = World(name, robots=["tender"])
+    file = house_file.house_file(world.scene, world.house, tmp_path)
+    assert len(file.data) <= MOST_BYTES
+    own = sum(len(part.mesh.faces) for part in world.scene.parts if part.puppet in world.scene.seats["human"])
+    assert Glb(file).triangles - own <= MOST_TRIANGLES

@@ -1,0 +1,175 @@
+"""The page in a real browser: a person walks, confirms and declines messages, delivers and searches."""
+
+from __future__ import annotations
+
+import math
+import shutil
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import msgspec
+import pytest
+from live_session import LiveSession
+from world_house import COUNTER, TABLE, house, on, task
+
+from hthor.live import server
+from hthor.types import HUMAN, Goal, Pose, TaskSpec
+from hthor.types.events import Accepted, Declined, Displayed
+from hthor.world import World
+
+pytest.importorskip("starlette", reason="live sessions need an optional dependency: pip install 'hthor[live]'")
+browsers = pytest.importorskip(
+    "playwright.sync_api", reason="pages are opened with an optional dependency: pip install 'hthor[browser]'"
+)
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
+_GRAPHICS = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist")
+_PATIENCE_MS = 60_000
+APPLE = (2.95, 2.8)
+
+_WALK = """([x, y]) => new Promise((done) => {
+  let last = Infinity;
+  const step = () => {
+    const left = Math.hypot(page.head.x - x, page.head.y - y);
+    if (left < 0.12 || (left < 0.5 && left > last + 1e-3)) {
+      page.keys.held.clear();
+      return done();
+    }
+    last = left;
+    page.keys.yaw = Math.atan2(y - page.motion.y, x - page.motion.x);
+    requestAnimationFrame(step);
+  };
+  step();
+})"""
+"""Looks to a place, with the key to walk held down, until the person is there or has just passed it."""
+
+pytestmark = [
+    pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on the PATH"),
+    pytest.mark.skipif(not (server.FOLDER / server.PAGE).exists(), reason="the page is not built: make page"),
+]
+
+
+def tasks() -> tuple[TaskSpec, ...]:
+    """A delivery and a search in one room."""
+    objects = (on(TABLE, "apple", u=0.45, v=0.2), on(COUNTER, "mug", u=-0.4))
+    first = task(*objects, robots=(Pose(x=4.3, y=3.4, yaw=3.0),))
+    delivery = msgspec.structs.replace(
+        first,
+        goal=Goal(target="apple", relation="in", destination="fridge"),
+        kind="mobile_manipulation",
+        instruction="Pick the apple and place it in the fridge.",
+    )
+    search = msgspec.structs.replace(
+        first, kind="object_goal_navigation", instruction="Find an apple.", human_start=Pose(x=4.0, y=2.0, yaw=-1.0)
+    )
+    return delivery, search
+
+
+@pytest.fixture
+def live(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[LiveSession]:
+    plan = house()
+    rooms = msgspec.structs.replace(plan, things=tuple(one for one in plan.things if one.id != "chair|1"))
+    world = World(rooms, robots=["scout"], objects=(("apple", "apple"), ("mug", "mug")))
+    made = LiveSession(tmp_path, tasks(), world, faster=1.0)
+    yield made
+    made.close()
+
+
+class Person:
+    """Somebody at the browser."""
+
+    def __init__(self, page: Any) -> None:
+        self.page = page
+
+    def until(self, condition: str) -> None:
+        end = time.monotonic() + 60.0
+        while not self.page.evaluate(condition):
+            assert time.monotonic() < end, condition
+            self.page.wait_for_timeout(20)
+
+    def look_at(self, x: float, y: float, z: float) -> None:
+        here = self.page.evaluate("[page.motion.x, page.motion.y, page.self.eye]")
+        dx, dy, dz = x - here[0], y - here[1], z - here[2]
+        pitch = math.atan2(dz, math.hypot(dx, dy))
+        self.page.evaluate(f"page.keys.yaw = {math.atan2(dy, dx)}; page.keys.pitch = {pitch}")
+
+    def walk_to(self, x: float, y: float) -> None:
+        self.page.keyboard.down("w")
+        self.page.evaluate(_WALK, [x, y])
+        self.page.keyboard.up("w")
+
+    def press_when_offered(self, key: str, words: str) -> None:
+        self.page.wait_for_selector(f"#offers :text('{words}')")
+        self.page.keyboard.press(key)
+
+
+def test_a_person_plays_a_delivery_and_a_search_in_the_browser(live: LiveSession) -> None:
+    complaints: list[str] = []
+    with browsers.sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=list(_GRAPHICS))
+        page = browser.new_page(viewport={"width": 480, "height": 300})
+        page.on("console", lambda message: complaints.append(message.text))
+        page.on("pageerror", lambda error: complaints.append(str(error)))
+        page.on("request", lambda request: note_foreign(request.url, live.server.address, complaints))
+        page.goto(live.server.url(HUMAN).replace("/#", "/?plain#"))
+        page.set_default_timeout(_PATIENCE_MS)
+        person = Person(page)
+        deliver(person)
+        search(person)
+        page.wait_for_selector("#title:text('Thank you')")
+        live.thread.join(60.0)
+        browser.close()
+    assert complaints == []
+    delivery, found = live.logs
+    assert delivery.met
+    assert found.met
+    assert [log.ratings for log in live.logs] == [{HUMAN: 6}, {HUMAN: 2}]
+    assert any(isinstance(event, Accepted) for event in delivery.events)
+    assert any(isinstance(event, Declined) for event in found.events)
+    shown = [(event.what, event.on) for event in delivery.events if isinstance(event, Displayed)]
+    assert shown[-2:] == [("map", False), ("map", True)]
+
+
+def note_foreign(url: str, address: str, complaints: list[str]) -> None:
+    if not url.startswith((address, "blob:" + address, address.replace("http", "ws"))):
+        complaints.append(url)
+
+
+def deliver(person: Person) -> None:
+    page = person.page
+    page.click("#go")
+    page.wait_for_selector("#words:text('It is over there.')")
+    page.wait_for_selector("#picture:not(.hidden)")
+    page.keyboard.press("y")
+    page.wait_for_selector("#map:not(.hidden)")
+    page.keyboard.press("m")
+    page.wait_for_selector("#map", state="hidden")
+    page.keyboard.press("m")
+    page.wait_for_selector("#map:not(.hidden)")
+    person.walk_to(3.65, 2.15)
+    person.look_at(*APPLE, 0.78)
+    person.press_when_offered("e", "pick up the apple")
+    person.until("page.now.holding === 'apple'")
+    person.walk_to(3.5, 1.75)
+    person.walk_to(1.3, 1.75)
+    person.walk_to(0.75, 2.45)
+    person.look_at(0.6, 3.2, 1.0)
+    person.press_when_offered("f", "open the fridge")
+    page.wait_for_selector("#offers :text('close the fridge')")
+    person.press_when_offered("e", "put the apple in the fridge")
+    page.click("#scale [data-value='6']")
+
+
+def search(person: Person) -> None:
+    page = person.page
+    page.click("#go")
+    page.wait_for_selector("#words:text('It is over there.')")
+    page.keyboard.press("n")
+    page.wait_for_selector("#panel", state="hidden")
+    person.look_at(*APPLE, 1.6)
+    page.keyboard.down("w")  # until it is found, which is when they see it from near
+    page.wait_for_selector("#scale [data-value='2']")
+    page.keyboard.up("w")
+    page.click("#scale [data-value='2']")

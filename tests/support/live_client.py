@@ -1,0 +1,117 @@
+"""A scripted person: a client of a live session's server, without a browser."""
+
+from __future__ import annotations
+
+import json
+import threading
+import time
+from collections.abc import Callable
+from contextlib import ExitStack, suppress
+from typing import Any
+
+from websockets.exceptions import ConnectionClosed
+from websockets.sync.client import ClientConnection, connect
+
+from hthor.live import wire
+from hthor.types import Drive
+
+
+class ScriptedPerson:
+    """Joins a seat and keeps what it is shown; `drive`, `act`, `begin` and `rate` are what a page does."""
+
+    def __init__(self, address: str, token: str, *, version: str = wire.VERSION, origin: str = "") -> None:
+        self.received: list[dict[str, Any]] = []
+        self.frames: list[wire.FrameHead] = []
+        self.places: dict[int, tuple[int, ...]] = {}
+        self.pictures: dict[int, bytes] = {}
+        self.steered = self.acts = 0
+        self.changed = threading.Condition()
+        self._token, self._open = token, ExitStack()
+        self._connection = connect(
+            address.replace("http", "ws") + "/live",
+            subprotocols=[version],  # type: ignore[list-item]
+            origin=origin or address,  # type: ignore[arg-type]
+        )
+        self._drive, self._gone = Drive(), False
+
+    def __enter__(self) -> ScriptedPerson:
+        self.socket: ClientConnection = self._open.enter_context(self._connection)
+        with suppress(ConnectionClosed):  # of another version
+            self.send({"type": "join", "token": self._token})
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+        threading.Thread(target=self._push, daemon=True).start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.leave()
+
+    def leave(self) -> None:
+        """Close the page."""
+        self._gone = True
+        self._open.close()
+        self._reader.join()
+
+    def send(self, message: dict[str, Any]) -> None:
+        self.socket.send(json.dumps(message))
+
+    def drive(self, **drive: float) -> None:
+        self._drive = Drive(**drive)
+
+    def stop_steering(self) -> None:
+        """Send no more steering, as a page does that hangs."""
+        self._gone = True
+
+    def act(self, **act: Any) -> int:
+        """Do something with hands, buttons or words; its number."""
+        self.acts += 1
+        self.send({"type": "act", "number": self.acts, **act})
+        return self.acts
+
+    def last(self, kind: str) -> dict[str, Any] | None:
+        """The last message of a kind."""
+        return next((one for one in reversed(self.received) if one["type"] == kind), None)
+
+    def wait_for(self, kind: str, seconds: float = 60.0, **fields: Any) -> dict[str, Any]:
+        """The first message of this kind with these fields, which may have come already."""
+
+        def found() -> dict[str, Any] | None:
+            fits = (one for one in self.received if one["type"] == kind)
+            return next((one for one in fits if all(one.get(k) == v for k, v in fields.items())), None)
+
+        with self.changed:
+            assert self.changed.wait_for(found, seconds), (kind, fields, self.received[-5:])
+        message = found()
+        assert message is not None
+        return message
+
+    def wait_until(self, done: Callable[[], bool], seconds: float = 60.0) -> None:
+        with self.changed:
+            assert self.changed.wait_for(done, seconds)
+
+    def _push(self) -> None:
+        try:
+            while not self._gone:
+                self.steered += 1
+                self.socket.send(wire.encode_steering(wire.Steering(self.steered, self._drive)))
+                time.sleep(1 / 60)
+        except ConnectionClosed:
+            return
+
+    def _read(self) -> None:
+        try:
+            for data in self.socket:
+                with self.changed:
+                    if isinstance(data, str):
+                        self.received.append(json.loads(data))
+                        if self.received[-1]["type"] == "welcome":
+                            self.acts = self.received[-1]["acts"]
+                    elif data[0] == 3:
+                        self.pictures[int.from_bytes(data[1:5], "little")] = data[5:]
+                    else:
+                        head, moved = wire.decode_frame(data)
+                        self.frames.append(head)
+                        self.places.update(moved)
+                    self.changed.notify_all()
+        except ConnectionClosed:
+            return

@@ -1,0 +1,148 @@
+// What is written over the picture: the task, what can be done here, the message, the map, and the questions.
+
+import { ACTIONS, keyName } from "./keys.js";
+import { drawMap } from "./map.js";
+
+/** @param {string} id */
+const find = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
+
+/** @param {string} id @param {boolean} on */
+const toggle = (id, on) => find(id).classList.toggle("hidden", !on);
+
+/** The panels of the page. */
+export class Panels {
+  /** @param {import("./keys.js").Keys} keys */
+  constructor(keys) {
+    this.keys = keys;
+    /** @type {number | undefined} */
+    this.noticed = undefined;
+    this.url = "";
+  }
+
+  /** Show the house and what belongs to it, or nothing. @param {boolean} on */
+  reveal(on) {
+    for (const id of ["view", "top", "bottom", "aim"]) toggle(id, on);
+  }
+
+  /** The task, and how far the session is. @param {any} trial */
+  task(trial) {
+    find("task").textContent = trial.instruction;
+    find("trial").textContent = `${trial.trial + 1} of ${trial.trials}`;
+  }
+
+  /** @param {number} seconds @param {string} phase */
+  time(seconds, phase) {
+    const left = Math.max(0, Math.ceil(seconds));
+    find("time").textContent = phase ? phase : `${Math.floor(left / 60)}:${String(left % 60).padStart(2, "0")}`;
+    find("time").classList.toggle("short", !phase && left <= 10);
+  }
+
+  /** What is in hand. @param {string} name */
+  holding(name) {
+    find("held").textContent = name ? `in hand: ${name.replaceAll("_", " ")}` : "hands free";
+  }
+
+  /** What can be done here. @param {[string, string][]} offers pairs of an action and its words */
+  offers(offers) {
+    find("offers").replaceChildren(...offers.map(([action, words]) => this.#hint(action, words)));
+  }
+
+  /** The message on the panel, null to hide it. @param {any} panel */
+  message(panel) {
+    toggle("panel", panel !== null);
+    if (panel === null) return;
+    find("sender").textContent = panel.sender;
+    find("words").textContent = panel.text;
+    const [yes, no] = panel.question ? ["yes", "no"] : ["confirm", "decline"];
+    find("answers").replaceChildren(
+      this.#hint("accept", yes),
+      this.#hint("decline", no),
+      this.#hint("panel", "hide"),
+    );
+    if (!panel.picture) this.picture(null);
+  }
+
+  /** The picture of the message. @param {Blob | null} jpeg */
+  picture(jpeg) {
+    if (this.url) URL.revokeObjectURL(this.url);
+    this.url = jpeg ? URL.createObjectURL(jpeg) : "";
+    const image = /** @type {HTMLImageElement} */ (find("picture"));
+    image.classList.toggle("hidden", !jpeg);
+    if (jpeg) image.src = this.url;
+  }
+
+  /** The map, null to hide it. @param {import("./map.js").DisplayMap | null} map */
+  map(map) {
+    toggle("map", map !== null);
+    if (map === null) return;
+    find("drawing").innerHTML = drawMap(map);
+    find("map-keys").replaceChildren(this.#hint("map", "hide"));
+  }
+
+  /** Words that go away after a while. @param {string} words */
+  notice(words) {
+    find("notice").textContent = words;
+    toggle("notice", words !== "");
+    clearTimeout(this.noticed);
+    if (words) this.noticed = setTimeout(() => toggle("notice", false), 4000);
+  }
+
+  /** A card in the middle, with a button; null takes it away. @param {{title: string, text: string, button?: string} | null} card
+   * @param {() => void} [done] */
+  card(card, done) {
+    toggle("card", card !== null);
+    if (card === null) return;
+    document.exitPointerLock?.();
+    find("title").textContent = card.title;
+    find("text").textContent = card.text;
+    const button = /** @type {HTMLButtonElement} */ (find("go"));
+    button.classList.toggle("hidden", !card.button);
+    button.textContent = card.button ?? "";
+    button.onclick = () => done?.();
+    toggle("scale", false);
+    find("help").replaceChildren();
+    if (card.button) button.focus();
+  }
+
+  /** Ask for a rating from 1 to 7. @param {string} text @param {(value: number) => void} done */
+  rating(text, done) {
+    this.card({ title: text, text: "1: not at all   ·   7: completely" });
+    const buttons = Array.from({ length: 7 }, (_, k) => {
+      const button = document.createElement("button");
+      button.textContent = String(k + 1);
+      button.dataset.value = String(k + 1);
+      button.onclick = () => done(k + 1);
+      return button;
+    });
+    find("scale").replaceChildren(...buttons);
+    toggle("scale", true);
+  }
+
+  /** The list of keys, in the card. */
+  help() {
+    find("help").replaceChildren(
+      ...Object.entries(ACTIONS).map(([action, [words]]) => {
+        const row = document.createElement("button");
+        row.className = "key-row";
+        row.dataset.action = action;
+        row.append(this.#hint(action, words));
+        row.onclick = () => {
+          row.textContent = `press a key to ${words}, Escape to leave it`;
+          row.blur();
+          this.keys.choose(action, () => this.help());
+        };
+        return row;
+      }),
+    );
+  }
+
+  /** @param {string} action @param {string} words */
+  #hint(action, words) {
+    const hint = document.createElement("span");
+    hint.className = "hint";
+    const key = document.createElement("kbd");
+    key.textContent = keyName(this.keys.codes[action]);
+    hint.append(key, ` ${words}`);
+    return hint;
+  }
+}
