@@ -10,7 +10,11 @@ const out = process.argv[2] ?? join(here, "..", "hthor", "live", "page");
 rmSync(out, { recursive: true, force: true });
 mkdirSync(out, { recursive: true });
 await build({
-  entryPoints: { page: join(here, "src", "main.js"), socket: join(here, "src", "socket_worker.js") },
+  entryPoints: {
+    page: join(here, "src", "main.js"),
+    socket: join(here, "src", "socket_worker.js"),
+    experimenter: join(here, "src", "experimenter.js"),
+  },
   outdir: out,
   bundle: true,
   minify: true,
@@ -19,4 +23,4 @@ await build({
   legalComments: "linked",
   logLevel: "warning",
 });
-for (const name of ["index.html", "page.css", "icon.svg"]) copyFileSync(join(here, "src", name), join(out, name));
+for (const name of ["index.html", "page.css", "experimenter.html", "experimenter.css", "icon.svg"]) copyFileSync(join(here, "src", name), join(out, name));

@@ -65,6 +65,7 @@ def live(
     with LiveRun(options, port=port, tell=lambda words: output.say(words, talk)) as run:
         for seat in run.seats:
             output.say(f"open {run.server.url(seat)}" + (f" as {seat}" if len(run.seats) > 1 else ""), talk)
+        output.say(f"the experimenter's page: {run.server.desk_url}", talk)
         done = run.play(partial(progress.make_watcher, talk, quiet=False, live=output.live()))
     results.show_run(talk if json else output.console(), done)
     if json:

@@ -16,7 +16,8 @@ from hthor.eval.runner.engines import SessionFailed
 from hthor.eval.runner.messages import Failed, News, RunnerFactory, SessionRunner
 from hthor.eval.runner.worker import SessionPlayer
 from hthor.humans.models import live
-from hthor.live.loop import RealTimeLoop, SessionControl
+from hthor.live.control import SessionControl
+from hthor.live.loop import RealTimeLoop
 from hthor.live.seat import LiveSeat
 from hthor.trials import Participants, Sources
 from hthor.trials.sessions import Session

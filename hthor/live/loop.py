@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 import time
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, cast
@@ -10,12 +9,12 @@ from weakref import WeakKeyDictionary
 
 import msgspec
 
-from hthor import rules
 from hthor.episode import Concurrent, Episode, EpisodeLog, Frames, TrialWorld, begin, take_answers
 from hthor.episode.play import record_beliefs
-from hthor.errors import HthorError
 from hthor.humans.model import HumanModel
 from hthor.live import wire
+from hthor.live.control import Pacer, SessionControl, SessionStopped
+from hthor.live.desk import Desk
 from hthor.live.scenery import Scenery
 from hthor.live.seat import AWAY_S, LiveSeat
 from hthor.types import SUBTICKS, BodySpec, Mind, TrialSpec
@@ -24,54 +23,10 @@ if TYPE_CHECKING:
     from hthor.live.house_file import HouseFile
     from hthor.world.sensing_simulation import SensingSimulation
 
-STEP_S = rules.TICK_S / SUBTICKS
-"""[s] of a step."""
 ABSENT_S = 2.0
 """[s] When somebody's page has been gone for so long, the trial is paused. Our choice."""
-_BEHIND_S = 0.25
-"""[s] A trial that is later than this gives up the time, so that it does not hurry afterwards. Our choice."""
 _TURN_S = 0.05
 """[s] How often a trial that waits looks whether it may go on. Our choice."""
-
-
-class SessionStopped(HthorError):
-    """The session ends now, in the middle of a trial."""
-
-    exit_code = 130
-
-    def __init__(self) -> None:
-        super().__init__(
-            "the session was ended before its end; the same command goes on with the trial that was not finished."
-        )
-
-
-class SessionControl:
-    """What the experimenter may do to a session, from any thread.
-
-    Attributes:
-        paused: why the trial is paused; empty while it goes on.
-        void: why the trial that is going on is to be voided; empty if it is not.
-        draining: whether the session ends with the trial that is going on, which then waits for nobody.
-    """
-
-    def __init__(self) -> None:
-        self.paused = self.void = ""
-        self.draining = False
-        self._stopped = threading.Event()
-
-    def stop(self) -> None:
-        """End the session now."""
-        self._stopped.set()
-
-    @property
-    def stopped(self) -> bool:
-        """Whether the session is to end."""
-        return self._stopped.is_set()
-
-    def wait(self, seconds: float) -> None:
-        """Wait so long; raises SessionStopped when the session is to end."""
-        if self._stopped.wait(seconds):
-            raise SessionStopped
 
 
 class RealTimeLoop:
@@ -81,6 +36,7 @@ class RealTimeLoop:
         seats: the people at pages, by seat.
         trials: how many trials the session has.
         publish: makes the file of a house known to the pages, and returns its address; without it pages draw nothing.
+        desk: shows the trials to the experimenter.
         now, sleep: the time [s] and how to wait.
     """
 
@@ -91,11 +47,12 @@ class RealTimeLoop:
         *,
         trials: int = 1,
         publish: Callable[[HouseFile], str] | None = None,
+        desk: Desk | None = None,
         now: Callable[[], float] = time.perf_counter,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
         self._seats, self._control, self.trials = dict(seats), control, trials
-        self._now, self._sleep, self._publish = now, sleep, publish
+        self._now, self._sleep, self._publish, self._desk = now, sleep, publish, desk
         self._sceneries: WeakKeyDictionary[TrialWorld, Scenery] = WeakKeyDictionary()
 
     def __call__(
@@ -108,6 +65,8 @@ class RealTimeLoop:
         frames = Frames(episode, humans)
         try:
             begin(episode, humans, robots, clock)
+            if self._desk is not None:
+                self._desk.open(episode)
             scenery = self._scenery(world)
             self._announce(episode, scenery)
             self._show_bodies(episode, scenery)
@@ -115,6 +74,8 @@ class RealTimeLoop:
             while not episode.done:
                 if self._hold(episode):
                     pacer.restart()
+                    if self._desk is not None:
+                        self._desk.watch(episode, pacer)
                     continue
                 for seat in episode.waiting:
                     if seat in frames.seats:
@@ -129,6 +90,8 @@ class RealTimeLoop:
                     self._show_bodies(episode, scenery)
                     pacer.wait()
                 record_beliefs(episode.advance(), humans)
+                if self._desk is not None:
+                    self._desk.watch(episode, pacer)
         finally:
             clock.close()
         self._note(episode, pacer)
@@ -203,7 +166,7 @@ class RealTimeLoop:
     def _note(self, episode: Episode, pacer: Pacer) -> None:
         """Note in the journals how well the trial kept the time."""
         for seat in self._seats.values():
-            seat.note(episode.tick, "real time", **pacer.figures(episode.tick * rules.TICK_S))
+            seat.note(episode.tick, "real time", **pacer.figures())
 
     def _end(self, episode: Episode, humans: Mapping[str, HumanModel], robots: bool) -> EpisodeLog:
         rate = robots and not episode.voided
@@ -214,49 +177,6 @@ class RealTimeLoop:
             )
         ratings = {seat: human.rate(episode.met, episode.tick) for seat, human in humans.items() if not episode.voided}
         return episode.log(ratings, {seat: getattr(human, "journal", ()) for seat, human in humans.items()})
-
-
-class Pacer:
-    """Lets every step of a trial take its time; `figures` says how well that worked."""
-
-    def __init__(self, now: Callable[[], float], sleep: Callable[[float], None]) -> None:
-        self._now, self._sleep = now, sleep
-        self._steps = self._late = 0
-        self._worst = self._lost = self._spent = 0.0
-        self.restart()
-
-    def restart(self) -> None:
-        """Begin to count time now, after a pause."""
-        self._due = self._now()
-
-    def wait(self) -> None:
-        """Wait until the time of this step is over."""
-        self._steps += 1
-        self._due += STEP_S
-        left = self._due - self._now()
-        if left > 0.0:
-            self._sleep(left)
-            return
-        self._late += left < -STEP_S
-        self._worst = max(self._worst, -left)
-        if -left > _BEHIND_S:
-            self._lost -= left
-            self._due -= left
-
-    def figures(self, trial_s: float) -> dict[str, float]:
-        """How well a trial of ``trial_s`` [s] kept the time.
-
-        Returns:
-            "late": steps that ended more than a step too late; "worst_s" [s]: the longest delay; "lost_s" [s]: the time
-            that was given up; "factor": trial time by wall-clock time.
-        """
-        taken = self._steps * STEP_S + self._lost
-        return {
-            "late": self._late,
-            "worst_s": round(self._worst, 3),
-            "lost_s": round(self._lost, 3),
-            "factor": round(trial_s / taken, 4) if taken else 1.0,
-        }
 
 
 def _body(seat: str, body: BodySpec) -> wire.Body:

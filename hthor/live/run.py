@@ -16,8 +16,11 @@ from hthor.eval.runner.experiment import FinishedRun
 from hthor.eval.runner.progress import Watcher
 from hthor.eval.runner.run_job import ScheduledRun
 from hthor.live import engine, wire
+from hthor.live.control import SessionControl
+from hthor.live.desk import Desk
 from hthor.live.engine import LiveEngine
-from hthor.live.loop import RealTimeLoop, SessionControl
+from hthor.live.loop import RealTimeLoop
+from hthor.live.run_book import RunBook
 from hthor.live.seat import LiveSeat
 from hthor.live.server import LiveServer
 
@@ -67,7 +70,8 @@ class LiveRun:
             )
         self.seats = {seat: LiveSeat(seat) for seat in live}
         self.control = SessionControl()
-        self.server = LiveServer(self.seats, host=host, port=port)
+        self.desk = Desk(self.control, self.seats, RunBook(self.scheduled.folder))
+        self.server = LiveServer(self.seats, self.desk, host=host, port=port)
         self._resolved, self._now, self._sleep, self._page = resolved, now, sleep, page
 
     def __enter__(self) -> LiveRun:
@@ -83,7 +87,13 @@ class LiveRun:
         run = self.scheduled
         most = max(len(one.trials) for one in run.sessions)
         loop = RealTimeLoop(
-            self.seats, self.control, trials=most, publish=self.server.publish, now=self._now, sleep=self._sleep
+            self.seats,
+            self.control,
+            trials=most,
+            publish=self.server.publish,
+            desk=self.desk,
+            now=self._now,
+            sleep=self._sleep,
         )
         live = msgspec.structs.replace(
             run,

@@ -47,7 +47,11 @@ class Page(Protocol):
 
 
 class LiveSeat:
-    """One person's seat. ``now`` is the time [s] on a clock that never goes back."""
+    """One person's seat. ``now`` is the time [s] on a clock that never goes back.
+
+    Attributes:
+        round_trip: [s] of a message to the page and back. frames: [1/s] pictures that the page draws.
+    """
 
     def __init__(self, seat: str, now: Callable[[], float] = time.monotonic) -> None:
         self.seat, self._now = seat, now
@@ -66,6 +70,7 @@ class LiveSeat:
         self._head: FrameHead | None = None
         self._places: dict[int, bytes] = {}  # where everything that moves is, by its number
         self._drive = Drive()
+        self.round_trip = self.frames = 0.0
         self._notes: list[Note] = []
         self._last: Observation | None = None
         self._trial = -1
@@ -108,6 +113,10 @@ class LiveSeat:
                 self._acted += 1
             if self._page is not None:
                 self._page.send(wire.Acknowledged(act=self._acted))
+
+    def ping(self, ping: wire.Ping) -> None:
+        """Note how the page and its connection are."""
+        self.round_trip, self.frames = ping.round_trip, ping.frames
 
     def begin_trial(self, trial: int) -> None:
         """The person is ready for this trial."""

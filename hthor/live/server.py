@@ -15,7 +15,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hthor.errors import HthorError, MissingExtra
-from hthor.live import wire
+from hthor.live import desk_wire, wire
+from hthor.live.desk import Desk
+from hthor.live.desk_wire import ToDesk
 from hthor.live.seat import LiveSeat
 from hthor.live.wire import Malformed, ToPage
 
@@ -28,7 +30,7 @@ if TYPE_CHECKING:
 
 FOLDER = Path(__file__).resolve().parent / "page"
 """The built page; its sources are in the folder web of the repository."""
-PAGE = "index.html"
+PAGE, DESK_PAGE = "index.html", "experimenter.html"
 _LOG = logging.getLogger("hthor.live")
 LOCAL_HOSTS = ("localhost", "127.0.0.1", "[::1]")
 """The names by which a browser on this machine reaches a server on it."""
@@ -61,7 +63,7 @@ class Connection:
         self._news = asyncio.Event()
         self.overrun = False
 
-    def send(self, message: ToPage) -> None:
+    def send(self, message: ToPage | ToDesk) -> None:
         """Send a message."""
         self._put(wire.encode(message))
 
@@ -104,6 +106,7 @@ class LiveServer:
     """Serves the pages of the people in these seats, from `start` to `close`.
 
     Args:
+        desk: of the experimenter, whose page is served too.
         host, port: where to listen; port 0 takes any that is free.
         hosts: names by which browsers may reach the server, besides those of this machine itself.
 
@@ -112,9 +115,16 @@ class LiveServer:
     """
 
     def __init__(
-        self, seats: Mapping[str, LiveSeat], *, host: str = "127.0.0.1", port: int = 0, hosts: Collection[str] = ()
+        self,
+        seats: Mapping[str, LiveSeat],
+        desk: Desk | None = None,
+        *,
+        host: str = "127.0.0.1",
+        port: int = 0,
+        hosts: Collection[str] = (),
     ) -> None:
-        self._seats = dict(seats)
+        self._seats, self._desk = dict(seats), desk
+        self._desk_token = secrets.token_urlsafe(16)
         self._host, self._port, self._hosts = host, port, (*LOCAL_HOSTS, *hosts)
         self.tokens = {seat: secrets.token_urlsafe(16) for seat in self._seats}
         self._page_files = {path.name: path for path in sorted(FOLDER.glob("*.*"))}
@@ -130,6 +140,11 @@ class LiveServer:
     def url(self, seat: str) -> str:
         """The address that the person in a seat opens. The token is behind a #, so that browsers do not send it."""
         return f"{self.address}/#{self.tokens[seat]}"
+
+    @property
+    def desk_url(self) -> str:
+        """The address of the experimenter's page."""
+        return f"{self.address}/{DESK_PAGE}#{self._desk_token}"
 
     def start(self, *, page: bool = True) -> None:
         """Begin to serve.
@@ -225,23 +240,25 @@ class LiveServer:
             await _refuse(socket, f"this server speaks {wire.VERSION}, the page {asked}. Reload the page.")
             return
         await socket.accept(wire.VERSION)
-        seat = await self._join(socket)
-        if seat is None:
+        place = await self._join(socket)
+        if place is None:
             return
         page = Connection(asyncio.get_running_loop())
-        if (before := seat.join(page)) is not None:
-            before.send(wire.Problem(words="This seat was opened in another window; close this one."))
         sender = asyncio.create_task(_send(socket, page))
         try:
-            await self._listen(socket, seat, page)
+            if isinstance(place, Desk):
+                await asyncio.to_thread(place.join, page)
+            elif (before := place.join(page)) is not None:
+                before.send(wire.Problem(words="This seat was opened in another window; close this one."))
+            await self._listen(socket, place, page)
         finally:
-            seat.leave(page)
+            place.leave(page)
             sender.cancel()
             with contextlib.suppress(asyncio.CancelledError, Exception):
                 await sender
 
-    async def _join(self, socket: WebSocket) -> LiveSeat | None:
-        """The seat that a page has the token of; None if it has none, and the connection is closed then."""
+    async def _join(self, socket: WebSocket) -> LiveSeat | Desk | None:
+        """What a page has the token of; None if it has none, and the connection is closed then."""
         try:
             first = await asyncio.wait_for(socket.receive(), _JOIN_S)
             joined = wire.decode(first.get("text") or "") if first["type"] == "websocket.receive" else None
@@ -251,23 +268,29 @@ class LiveServer:
             for name, token in self.tokens.items():
                 if secrets.compare_digest(token, joined.token):
                     return self._seats[name]
+            if self._desk is not None and secrets.compare_digest(self._desk_token, joined.token):
+                return self._desk
         _LOG.warning("refused a connection without the token of a seat")
         await _refuse(socket, "this address belongs to no seat of the session. Open the address that hthor printed.")
         return None
 
-    async def _listen(self, socket: WebSocket, seat: LiveSeat, page: Connection) -> None:
+    async def _listen(self, socket: WebSocket, place: LiveSeat | Desk, page: Connection) -> None:
+        whose = "the experimenter" if isinstance(place, Desk) else place.seat
         while not page.overrun:
             received = await socket.receive()
             if received["type"] != "websocket.receive":
                 return
             try:
-                if (data := received.get("bytes")) is not None:
-                    seat.steer(wire.decode_steering(data))
+                text, data = received.get("text") or "", received.get("bytes")
+                if isinstance(place, Desk):
+                    await asyncio.to_thread(_command, place, page, desk_wire.decode(text))
+                elif data is not None:
+                    place.steer(wire.decode_steering(data))
                 else:
-                    _take(seat, page, wire.decode(received.get("text") or ""))
+                    _take(place, page, wire.decode(text))
             except Malformed as error:
-                _LOG.warning("%s: a message that is none: %s", seat.seat, _short(str(error)))
-        _LOG.warning("%s: the page is too slow; its connection is given up", seat.seat)
+                _LOG.warning("%s: a message that is none: %s", whose, _short(str(error)))
+        _LOG.warning("%s: the page is too slow; its connection is given up", whose)
 
 
 def _take(seat: LiveSeat, page: Connection, message: wire.FromPage) -> None:
@@ -281,9 +304,17 @@ def _take(seat: LiveSeat, page: Connection, message: wire.FromPage) -> None:
                 raise Malformed(f"{message.value} is no rating")
             seat.rate(message.trial, message.value)
         case wire.Ping():
+            seat.ping(message)
             page.send(wire.Pong(sent=message.sent))
         case wire.Join():
             raise Malformed("the page has joined already")
+
+
+def _command(desk: Desk, page: Connection, command: desk_wire.FromDesk) -> None:
+    try:
+        desk.do(command)
+    except HthorError as error:
+        page.send(desk_wire.Refused(words=str(error)))
 
 
 async def _send(socket: WebSocket, page: Connection) -> None:

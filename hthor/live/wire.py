@@ -290,8 +290,8 @@ def encode_steering(steering: Steering) -> bytes:
     return _STEERING.pack(_STEER, steering.number, drive.forward, drive.left, drive.yaw, drive.pitch)
 
 
-def encode(message: ToPage) -> str:
-    """A message for a page, as JSON."""
+def encode(message: Struct) -> str:
+    """A message of the server's, for a person's page or the experimenter's, as JSON."""
     return _TO_PAGE.encode(message).decode()
 
 

@@ -138,7 +138,7 @@ def offline(monkeypatch, tmp_path):
 
 
 MODELS = (
-    *(name for name in plugins.names("human model") if name != "recorded"),
+    *(name for name in plugins.names("human model") if name not in ("live", "recorded")),
     str(EXAMPLES / "llm_person.py"),
     str(EXAMPLES / "cloned_person.py"),
 )

@@ -39,8 +39,8 @@ _WORLDS = Worlds()
 class _Runner(TrialRunner):
     """Keeps its world for the next run too, which saves building it for every agent."""
 
-    def __init__(self, sources: Sources | None = None, pool: GuestPool | None = None) -> None:
-        super().__init__(sources, pool, _WORLDS)
+    def __init__(self, sources: Sources | None = None, pool: GuestPool | None = None, loop: None = None) -> None:
+        super().__init__(sources, pool, _WORLDS, loop)
 
 
 class _Here:

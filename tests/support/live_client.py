@@ -19,7 +19,9 @@ from hthor.types import Drive
 class ScriptedPerson:
     """Joins a seat and keeps what it is shown; `drive`, `act`, `begin` and `rate` are what a page does."""
 
-    def __init__(self, address: str, token: str, *, version: str = wire.VERSION, origin: str = "") -> None:
+    def __init__(
+        self, address: str, token: str, *, version: str = wire.VERSION, origin: str = "", steers: bool = True
+    ) -> None:
         self.received: list[dict[str, Any]] = []
         self.frames: list[wire.FrameHead] = []
         self.places: dict[int, tuple[int, ...]] = {}
@@ -32,7 +34,7 @@ class ScriptedPerson:
             subprotocols=[version],  # type: ignore[list-item]
             origin=origin or address,  # type: ignore[arg-type]
         )
-        self._drive, self._gone = Drive(), False
+        self._drive, self._gone = Drive(), not steers
 
     def __enter__(self) -> ScriptedPerson:
         self.socket: ClientConnection = self._open.enter_context(self._connection)
@@ -72,7 +74,7 @@ class ScriptedPerson:
         """The last message of a kind."""
         return next((one for one in reversed(self.received) if one["type"] == kind), None)
 
-    def wait_for(self, kind: str, seconds: float = 60.0, **fields: Any) -> dict[str, Any]:
+    def wait_for(self, kind: str, seconds: float = 60.0, /, **fields: Any) -> dict[str, Any]:
         """The first message of this kind with these fields, which may have come already."""
 
         def found() -> dict[str, Any] | None:

@@ -13,9 +13,13 @@ import msgspec
 from live_client import ScriptedPerson
 
 from hthor.episode import EpisodeLog
+from hthor.errors import HthorError
 from hthor.guest import GuestPool
+from hthor.live.control import SessionControl, SessionStopped
+from hthor.live.desk import Desk
+from hthor.live.desk_wire import PlayedTrial
 from hthor.live.engine import welcome
-from hthor.live.loop import RealTimeLoop, SessionControl, SessionStopped
+from hthor.live.loop import RealTimeLoop
 from hthor.live.seat import LiveSeat
 from hthor.live.server import LiveServer
 from hthor.trials import TrialRunner, form_team, make_sessions, make_sources
@@ -58,6 +62,21 @@ def with_tasks(session: Session, tasks: Sequence[TaskSpec]) -> Session:
     return msgspec.structs.replace(session, trials=tuple(trials))
 
 
+class Book:
+    """A run's log without a run."""
+
+    def __init__(self) -> None:
+        self.corrections: list[tuple[str, str, bool | None, str]] = []
+
+    def played(self) -> tuple[PlayedTrial, ...]:
+        return ()
+
+    def correct(self, trial: str, seat: str, adopted: bool | None, reason: str) -> None:
+        if not reason:
+            raise HthorError("a correction needs a reason.")
+        self.corrections.append((trial, seat, adopted, reason))
+
+
 class LiveSession:
     """A session that is played in a thread, with a robot that sends a message after half a second.
 
@@ -82,7 +101,9 @@ class LiveSession:
             self.session = with_tasks(self.session, tasks)
         self.seat, self.control = LiveSeat(HUMAN), SessionControl()
         self.seats = {HUMAN: self.seat}
-        self.server = LiveServer(self.seats)
+        self.book = Book()
+        self.desk = Desk(self.control, self.seats, self.book)
+        self.server = LiveServer(self.seats, self.desk)
         self.server.start(page=world is not None)
         self.logs: list[EpisodeLog] = []
         loop = RealTimeLoop(
@@ -90,6 +111,7 @@ class LiveSession:
             self.control,
             trials=len(self.session.trials),
             publish=self.server.publish if world is not None else None,
+            desk=self.desk,
             now=lambda: faster * time.perf_counter(),
             sleep=lambda seconds: time.sleep(seconds / faster),
         )
@@ -103,7 +125,7 @@ class LiveSession:
             for trial in self.session.trials:
                 self.logs.append(self._runner.run(participants, trial, self._world).log)
 
-    def person(self, *, token: str = "", **changes: str) -> ScriptedPerson:
+    def person(self, *, token: str = "", **changes: Any) -> ScriptedPerson:
         """Somebody at a page without a browser."""
         return ScriptedPerson(self.server.address, token or self.server.tokens[HUMAN], **changes)
 

@@ -65,11 +65,11 @@ class CorrectionList(Struct, frozen=True, kw_only=True):
     written: bool = False
 
 
-def correct(folder: Path, options: CorrectionOptions, *, dry: bool = False) -> CorrectionList:
+def correct(folder: Path, options: CorrectionOptions, *, dry: bool = False, locked: bool = False) -> CorrectionList:
     """Make the correction that the options ask for, if they do, and list all.
 
     Args:
-        dry: check everything, and write nothing.
+        dry: check everything, and write nothing. locked: this process has locked the run already.
 
     Raises:
         UnknownName, HthorError: when the options ask for nothing that can be done; says what can.
@@ -86,12 +86,13 @@ def correct(folder: Path, options: CorrectionOptions, *, dry: bool = False) -> C
     if dry:
         line = _make(run, options)
         return _listed(run, (*run.corrections.lines, line), line.number)
-    lock = trial_log.lock(folder)
+    lock = None if locked else trial_log.lock(folder)
     try:
         line = _make(run, options)
         append(folder, (line,))
     finally:
-        os.close(lock)
+        if lock is not None:
+            os.close(lock)
     run = RunFolder(folder)  # with the new correction
     return _listed(run, run.corrections.lines, line.number, written=True)
 

@@ -62,7 +62,7 @@ def test_a_house_is_traced_as_the_engine_s_rays_see_it(
 ) -> None:
     world._seats["robot"].pose = Pose(x=x, y=y, yaw=yaw, pitch=pitch)
     drawn = ray_renderer.RayRenderer(world.model, world._geoms, world.house)
-    view, w, hit = drawn._fill(world._pictures._moment(), "robot", SIZE, camera.OWN)
+    view, w, hit = drawn._fill(world._pictures.moment(), "robot", SIZE, camera.OWN)
     offset = np.abs(np.einsum("nji,nj->ni", drawn._mat.reshape(-1, 3, 3), view[:3] - drawn._pos))
     assume(not (offset < drawn._half + 0.05).all(axis=1).any())  # what is inside or nearer than NEAR_M is not seen
     model = drawn._model

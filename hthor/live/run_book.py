@@ -1,0 +1,51 @@
+"""The log of a run that is being played, as the experimenter's desk reads and corrects it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from hthor import rules
+from hthor.eval.records import corrections
+from hthor.eval.records.corrections import CorrectionOptions
+from hthor.eval.records.run_folder import RunFolder
+from hthor.live.desk_wire import PlayedTrial
+
+if TYPE_CHECKING:
+    from hthor.eval.records.scored_trial import ScoredTrial
+
+_WORDS = {True: "yes", False: "no", None: "exclude"}
+"""What `hthor correct --adoption` calls them."""
+
+
+class RunBook:
+    """The `hthor.live.desk.Book` of a run in a folder, which this process has locked."""
+
+    def __init__(self, folder: RunFolder) -> None:
+        self._path = folder.path
+
+    def played(self) -> tuple[PlayedTrial, ...]:
+        """The trials that are over, in the order of the session; an attempt that was voided comes before the next."""
+        folder = RunFolder(self._path)
+        if not folder.holds_run or not folder.log_file.exists():
+            return ()
+        return tuple(_line(folder, record) for record in folder.attempts())
+
+    def correct(self, trial: str, seat: str, adopted: bool | None, reason: str) -> None:
+        """Add a correction to the run's; errors as in `hthor.eval.records.corrections.correct`."""
+        options = CorrectionOptions(trial=trial, adoption=_WORDS[adopted], seat=seat, reason=reason)
+        corrections.correct(self._path, options, locked=True)
+
+
+def _line(folder: RunFolder, record: ScoredTrial) -> PlayedTrial:
+    made = folder.corrections.of(record.key)
+    found = record.metrics.by_seat("adoption_by")
+    return PlayedTrial(
+        key=record.key,
+        task=record.spec.task.id,
+        index=record.spec.index,
+        met=record.met,
+        seconds=round(record.ticks * rules.TICK_S, 1),
+        voided=record.log.voided,
+        adopted={human.seat: bool(found[human.seat]) if human.seat in found else None for human in record.spec.humans},
+        corrections=tuple(f"{one.number}: {one.reason}" for one in made),
+    )

@@ -1,0 +1,162 @@
+// The experimenter's page: a session from outside. Everything on it comes from the server's log of the session.
+
+import { VERSION } from "./wire.js";
+
+const TICKS_PER_S = 10;
+const COLOURS = ["#0072b2", "#d55e00", "#001f54", "#7a3b8f", "#009e73"];
+const RETRY_MS = 1000;
+
+/** @param {string} id */
+const find = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
+
+/** An element with text in it. @param {string} tag @param {string} text @param {string} [kind] */
+function make(tag, text, kind = "") {
+  const made = document.createElement(tag);
+  made.textContent = text;
+  made.className = kind;
+  return made;
+}
+
+class Desk {
+  constructor() {
+    /** @type {any} */ this.plan = null;
+    /** Where everybody has been. @type {Map<string, number[][]>} */
+    this.trails = new Map();
+    const reason = () => /** @type {HTMLInputElement} */ (find("reason")).value;
+    find("pause").onclick = () => this.tell({ type: "pause", reason: reason() });
+    find("go-on").onclick = () => this.tell({ type: "go_on" });
+    find("void").onclick = () => this.tell({ type: "void", reason: reason() });
+    this.connect();
+  }
+
+  connect() {
+    const scheme = location.protocol === "https:" ? "wss" : "ws";
+    this.socket = new WebSocket(`${scheme}://${location.host}/live`, [VERSION]);
+    this.socket.onopen = () => this.tell({ type: "join", token: location.hash.slice(1) });
+    this.socket.onmessage = ({ data }) => {
+      const message = JSON.parse(data);
+      /** @type {any} */ (this)[`on_${message.type}`]?.(message);
+    };
+    this.socket.onclose = () => {
+      find("state").textContent = "not connected";
+      if (!this.refused) setTimeout(() => this.connect(), RETRY_MS);
+    };
+  }
+
+  /** @param {object} message */
+  tell(message) {
+    find("refused").textContent = "";
+    if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
+  }
+
+  /** @param {any} message */
+  on_problem({ words }) {
+    this.refused = true;
+    find("task").textContent = words;
+  }
+
+  /** @param {any} message */
+  on_refused({ words }) {
+    find("refused").textContent = words;
+  }
+
+  /** @param {any} plan */
+  on_plan(plan) {
+    this.plan = plan;
+    this.trails = new Map(plan.seats.map((/** @type {string} */ seat) => [seat, []]));
+    const attempt = plan.attempt ? `, attempt ${plan.attempt + 1}` : "";
+    find("task").textContent = `Trial ${plan.trial + 1}${attempt}: ${plan.instruction}`;
+    find("state").textContent = "waiting for everybody to begin";
+    find("events").replaceChildren();
+    this.draw([]);
+  }
+
+  /** @param {any} watch */
+  on_watch({ tick, paused, factor, people }) {
+    const left = this.plan.time_limit - tick / TICKS_PER_S;
+    const speed = factor < 0.98 ? `, real-time factor ${factor.toFixed(2)}` : "";
+    find("state").textContent = paused ? `paused: ${paused}` : `${left.toFixed(0)} s left${speed}`;
+    find("state").classList.toggle("paused", paused !== "");
+    for (const one of people) this.trails.get(one.seat)?.push([one.x, one.y]);
+    this.draw(people);
+    const rows = people.map((/** @type {any} */ one) => {
+      const row = make("tr", "");
+      const page = one.away_s === null ? "no page" : one.away_s > 0 ? `away for ${one.away_s} s` : "there";
+      const time = one.round_trip_ms === null ? "" : `${one.round_trip_ms} ms`;
+      const frames = one.frames === null ? "" : `${one.frames} pictures/s`;
+      row.append(...[one.seat, page, time, frames].map((words) => make("td", words)));
+      return row;
+    });
+    find("people").replaceChildren(...rows);
+  }
+
+  /** @param {any} event */
+  on_happened({ tick, seat, kind, words }) {
+    const line = make("li", "");
+    line.append(make("b", (tick / TICKS_PER_S).toFixed(1)), `${seat} ${kind.replaceAll("_", " ")} ${words}`);
+    find("events").prepend(line);
+  }
+
+  /** @param {any} message */
+  on_played({ trials }) {
+    const head = make("tr", "");
+    head.append(...["task", "", "time", "adopted"].map((words) => make("th", words)));
+    const rows = trials.map((/** @type {any} */ trial) => {
+      const row = make("tr", "", trial.voided ? "void" : "");
+      const outcome = trial.voided ? `void: ${trial.voided}` : trial.met ? "done" : "not done";
+      row.append(make("td", trial.task), make("td", outcome), make("td", `${trial.seconds} s`), this.adoption(trial));
+      row.title = trial.corrections.join("\n");
+      return row;
+    });
+    find("trials").replaceChildren(head, ...rows);
+  }
+
+  /** The adoption of everybody in a trial, with what corrects it. @param {any} trial */
+  adoption(trial) {
+    const cell = make("td", "");
+    for (const [seat, adopted] of Object.entries(trial.adopted)) {
+      const line = make("div", `${seat}: ${adopted === null ? "–" : adopted ? "yes" : "no"} `);
+      if (!trial.voided) {
+        for (const [words, value] of /** @type {[string, boolean | null][]} */ ([["yes", true], ["no", false], ["exclude", null]])) {
+          const button = make("button", words);
+          const reason = () => /** @type {HTMLInputElement} */ (find("reason")).value;
+          button.onclick = () => this.tell({ type: "adoption", trial: trial.key, seat, adopted: value, reason: reason() });
+          line.append(button, " ");
+        }
+      }
+      cell.append(line);
+    }
+    return cell;
+  }
+
+  /** The house from above, with the way of everybody. @param {any[]} people */
+  draw(people) {
+    const points = this.plan.rooms.flatMap((/** @type {any} */ room) => room.polygon);
+    const xs = points.map((/** @type {number[]} */ [x]) => x);
+    const ys = points.map((/** @type {number[]} */ [, y]) => y);
+    const [x0, y1] = [Math.min(...xs) - 0.3, Math.max(...ys) + 0.3];
+    const [wide, high] = [Math.max(...xs) + 0.3 - x0, y1 - Math.min(...ys) + 0.3];
+    const at = (/** @type {number[]} */ [x, y]) => `${(x - x0).toFixed(2)},${(y1 - y).toFixed(2)}`;
+    const safe = (/** @type {string} */ text) => text.replace(/[&<>"]/g, (sign) => `&#${sign.charCodeAt(0)};`);
+    const parts = this.plan.rooms.flatMap((/** @type {any} */ room) => {
+      const [x, y] = [0, 1].map((k) => room.polygon.reduce((/** @type {number} */ sum, /** @type {number[]} */ p) => sum + p[k], 0) / room.polygon.length);
+      return [
+        `<polygon points="${room.polygon.map(at).join(" ")}" fill="#fff" stroke="#464a52" stroke-width="0.06"/>`,
+        `<text x="${x - x0}" y="${y1 - y}" font-size="0.35" text-anchor="middle" fill="#8a9099">${safe(room.name)}</text>`,
+      ];
+    });
+    [...this.trails].forEach(([seat, trail], k) => {
+      const colour = COLOURS[k % COLOURS.length];
+      parts.push(`<polyline points="${trail.map(at).join(" ")}" fill="none" stroke="${colour}" stroke-width="0.05"/>`);
+      const one = people.find((person) => person.seat === seat);
+      if (!one) return;
+      const ahead = [one.x + 0.45 * Math.cos(one.yaw), one.y + 0.45 * Math.sin(one.yaw)];
+      parts.push(`<polyline points="${at([one.x, one.y])} ${at(ahead)}" stroke="${colour}" stroke-width="0.08"/>`);
+      parts.push(`<circle cx="${one.x - x0}" cy="${y1 - one.y}" r="0.2" fill="${colour}"/>`);
+      parts.push(`<text x="${one.x - x0}" y="${y1 - one.y + 0.6}" font-size="0.35" text-anchor="middle" fill="${colour}">${safe(seat)}</text>`);
+    });
+    find("map").innerHTML = `<svg viewBox="0 0 ${wide} ${high}">${parts.join("")}</svg>`;
+  }
+}
+
+Object.assign(window, { desk: new Desk() });
