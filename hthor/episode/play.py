@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 
-from hthor.episode.clocks import DecisionClock, make_clock
+from hthor.episode.clocks import DecisionClock, LockStep, make_clock
 from hthor.episode.episode import Episode
 from hthor.episode.frames import Frames
 from hthor.episode.recording.episode_log import EpisodeLog
@@ -31,9 +31,11 @@ def play(
     Raises:
         Exception: any exception of a human model or the world; errors of agents become faults in the log.
     """
-    episode, clock = Episode(trial, world, (*humans, *robots)), clock or make_clock(trial)
+    episode = Episode(trial, world, (*humans, *robots))
     episode.reset()
     frames = Frames(episode, {**humans, **robots})
+    if clock is None:
+        clock = make_clock(trial) if robots.keys() - frames.seats else LockStep()  # nobody's thinking takes time
     try:
         begin(episode, humans, robots, clock)
         while not episode.done:

@@ -9,9 +9,13 @@ from typing import Any
 
 import pytest
 from live_client import ScriptedPerson
+from live_session import AGENT
 
 from hthor.errors import HthorError
 from hthor.eval.config.options import EvalOptions
+from hthor.eval.records.run_folder import RunFolder
+from hthor.eval.replay import session_history
+from hthor.eval.replay.session_history import RunFiles
 from hthor.eval.runner.progress import Silent
 from hthor.live import house_file
 from hthor.live.run import LiveRun
@@ -32,8 +36,8 @@ def make_run(folder: Path, **options: Any) -> LiveRun:
     )
 
 
-class Idler:
-    """Somebody who begins so many trials of a run and does nothing in them."""
+class Walker:
+    """Somebody who walks in a circle in so many trials of a run, and confirms the first message of each."""
 
     def __init__(self, run: LiveRun, trials: int) -> None:
         self._run, self._trials = run, trials
@@ -48,7 +52,11 @@ class Idler:
                 person.wait_until(lambda count=count: len(_all(person, "trial")) >= count)  # type: ignore[misc]
                 self.begun.append(_all(person, "trial")[-1]["trial"])
                 person.send({"type": "begin", "trial": self.begun[-1]})
+                person.drive(forward=0.5, yaw=0.7 * count, pitch=-0.1)
+                person.wait_until(lambda count=count: len(_shown(person)) >= count)  # type: ignore[misc]
+                person.act(say={"type": "reply", "message": _shown(person)[-1]["message"], "accept": True})
                 person.wait_until(lambda count=count: len(_all(person, "ended")) >= count)  # type: ignore[misc]
+                person.send({"type": "rate", "trial": self.begun[-1], "value": 5})
 
     def join(self) -> list[int]:
         self._thread.join(60.0)
@@ -59,6 +67,10 @@ def _all(person: ScriptedPerson, kind: str) -> list[dict[str, Any]]:
     return [one for one in person.received if one["type"] == kind]
 
 
+def _shown(person: ScriptedPerson) -> list[dict[str, Any]]:
+    return [one for one in _all(person, "panel") if one["message"] is not None]
+
+
 @pytest.fixture
 def no_looks(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(house_file, "_make", lambda scene, house: b"")
@@ -66,12 +78,18 @@ def no_looks(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 
 
 def test_a_run_with_a_person_is_played_and_scored(tmp_path: Path, no_looks: None) -> None:
-    with make_run(tmp_path / "run") as run:
-        idler = Idler(run, 2)
+    agent = tmp_path / "teller.py"
+    agent.write_text(AGENT, encoding="utf-8")
+    with make_run(tmp_path / "run", agent=(str(agent),)) as run:
+        walker = Walker(run, 2)
         run.play(lambda _: Silent())
-        assert idler.join() == [0, 1]
-    again = make_run(tmp_path / "run")
-    assert [record.log.ticks for record in again.scheduled.folder.played()] == [900, 900]
+        assert walker.join() == [0, 1]
+    folder = RunFolder(tmp_path / "run")
+    for record in folder.played():
+        assert record.log.ticks == 900
+        assert record.log.ratings == {HUMAN: 5}
+        again = session_history.rerun_trial(folder, record, RunFiles())
+        assert again.same, "everybody's inputs give the trial again, without the agent's file"
 
 
 @pytest.mark.parametrize(

@@ -12,12 +12,13 @@ from hthor.eval.config import run_config
 from hthor.eval.records import trial_record
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
+from hthor.eval.replay import recorded_session
 from hthor.eval.runner.fault_report import FaultReport
 from hthor.eval.runner.messages import TrialOutcome
-from hthor.eval.runner.session_runner import make_runner
-from hthor.guest import AgentInputs, GuestConfig
+from hthor.eval.runner.session_runner import run_trial
+from hthor.guest import AgentInputs, GuestConfig, GuestPool
 from hthor.guest.agent import manifest
-from hthor.trials import Sources, make_sources, robot_team
+from hthor.trials import Sources, TrialRunner, make_sources, robot_team
 from hthor.trials.robot_team import AgentInfo, RobotInfo, RobotTeam
 from hthor.trials.sessions import Session
 from hthor.types import RobotSeat, TrialSpec
@@ -92,7 +93,8 @@ def replay_team(
     Raises:
         HthorError: when a file is needed and not given.
     """
-    submitted = [seat for seat in spec.robots if seat.agent.name not in plugins.names("agent")]
+    asked = () if recorded_session.is_live(spec) else spec.robots  # decisions beside living people are in the log
+    submitted = [seat for seat in asked if seat.agent.name not in plugins.names("agent")]
     given = [robot_team.load_agent_info(path, guests) for path in files.agents] if submitted else []
     choose = choose or same_agent
     agents = [choose(folder, seat, given) if seat in submitted else AgentInfo(ref=seat.agent) for seat in spec.robots]
@@ -176,14 +178,25 @@ def rerun_trial(
     trials = tuple(msgspec.structs.replace(spec, robots=robots) for spec in specs)
     session = Session(number=trial.spec.session, trials=trials)
     sources = replay_sources(folder, trial.spec, files, guests, team)
-    outcome = _last(make_runner(sources)(session), len(trials))
+    outcome = _last(_outcomes(sources, session, folder), len(trials))
     return Rerun(
         record=outcome.record,
         before=len(trials) - 1,
         changed=robots != trial.spec.robots,
-        same=trial_record.encode(folder.corrected(outcome.record)) == trial_record.encode(trial),
+        same=_encoded(folder.corrected(outcome.record)) == _encoded(trial),
         left=outcome.fault_report,
     )
+
+
+def _outcomes(sources: Sources, session: Session, folder: RunFolder) -> Iterator[TrialOutcome]:
+    runner = TrialRunner(sources, GuestPool())
+    with recorded_session.enter(runner, session, folder) as participants:
+        for trial in session.trials:
+            yield run_trial(runner, participants, trial)
+
+
+def _encoded(record: TrialRecord) -> bytes:
+    return trial_record.encode(recorded_session.without_pauses(record))
 
 
 def _last(outcomes: Iterator[TrialOutcome], count: int) -> TrialOutcome:

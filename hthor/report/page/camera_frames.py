@@ -16,7 +16,7 @@ from hthor.errors import RunError
 from hthor.eval.records import trial_record
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
-from hthor.eval.replay import session_history
+from hthor.eval.replay import recorded_session, session_history
 from hthor.eval.replay.session_history import RunFiles
 from hthor.eval.runner import session_runner
 from hthor.guest import AgentInputs, GuestConfig
@@ -155,7 +155,7 @@ def film_trial(
     session = Session(number=spec.session, trials=session_history.session_before(run, wanted))
     guests = GuestConfig(hidden=(str(folder.resolve()),), inputs=given or AgentInputs())
     stage = TrialRunner(session_history.replay_sources(run, spec, files, guests))
-    with stage.enter(session) as company:
+    with recorded_session.enter(stage, session, run) as company:
         for number, trial in enumerate(session.trials, 1):
             activity.say(f"playing {folder.name} again, trial {number} of {len(session.trials)}")
             world = CameraFrames(stage.world(trial), ticks if trial == spec else (), profile, seats, height)
@@ -189,4 +189,4 @@ def _averaged(picture: Any) -> Any:
 def _course(done: TrialRecord) -> bytes:
     """Everything that happened, without the texts of faults, which agents write."""
     plain = tuple(msgspec.structs.replace(fault, detail="") for fault in done.faults)
-    return trial_record.encode(msgspec.structs.replace(done, faults=plain))
+    return trial_record.encode(msgspec.structs.replace(recorded_session.without_pauses(done), faults=plain))
