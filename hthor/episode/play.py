@@ -39,21 +39,14 @@ def play(
     try:
         begin(episode, humans, robots, clock)
         while not episode.done:
-            for seat in episode.waiting:
-                if seat in frames.seats:
-                    continue
-                if seat in humans:
-                    episode.submit(seat, humans[seat].act(episode.observe(seat)))
-                elif not clock.busy(seat):
-                    clock.ask(seat, robots[seat], episode.observe(seat, frozen=clock.frozen))
+            ask(episode, humans, robots, clock, frames)
             take_answers(episode, clock)
             frames.play()
             if happened := episode.advance():
                 record_beliefs(happened, humans)
     finally:
         clock.close()
-    ratings = {seat: human.rate(episode.met, episode.tick) for seat, human in humans.items() if not episode.voided}
-    return episode.log(ratings, {seat: getattr(human, "journal", ()) for seat, human in humans.items()})
+    return finish(episode, humans)
 
 
 def record_beliefs(events: Sequence[Event], humans: Mapping[str, HumanModel]) -> None:
@@ -61,6 +54,29 @@ def record_beliefs(events: Sequence[Event], humans: Mapping[str, HumanModel]) ->
     for event in events:
         if isinstance(event, Predicted) and (tell := getattr(humans[event.person], "record_belief", None)) is not None:
             tell(event.tick, event.object)
+
+
+def ask(
+    episode: Episode,
+    humans: Mapping[str, HumanModel],
+    robots: Mapping[str, Mind],
+    clock: DecisionClock,
+    frames: Frames,
+) -> None:
+    """Ask everybody who is free what to do, except those who act in every step; agents may answer later."""
+    for seat in episode.waiting:
+        if seat in frames.seats:
+            continue
+        if seat in humans:
+            episode.submit(seat, humans[seat].act(episode.observe(seat)))
+        elif not clock.busy(seat):
+            clock.ask(seat, robots[seat], episode.observe(seat, frozen=clock.frozen))
+
+
+def finish(episode: Episode, humans: Mapping[str, HumanModel]) -> EpisodeLog:
+    """Ask people for their ratings, unless the trial is void, and return the log."""
+    ratings = {seat: human.rate(episode.met, episode.tick) for seat, human in humans.items() if not episode.voided}
+    return episode.log(ratings, {seat: getattr(human, "journal", ()) for seat, human in humans.items()})
 
 
 def begin(episode: Episode, humans: Mapping[str, HumanModel], robots: Mapping[str, Mind], clock: DecisionClock) -> None:

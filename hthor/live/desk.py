@@ -29,7 +29,7 @@ _UNSHOWN = (Thought, Progress)
 
 
 class Book(Protocol):
-    """The run's log, for the desk; `hthor.live.run` implements it."""
+    """The run's log, for the desk; `hthor.live.run_book.RunBook` implements it."""
 
     def played(self) -> tuple[PlayedTrial, ...]:
         """The trials that are over, with their corrections."""
@@ -60,16 +60,18 @@ class Desk:
 
     def join(self, page: DeskPage) -> None:
         """Show a page everything."""
+        played = self._played()  # reads the log, for which the trial must not wait
         with self._lock:
             self._pages.append(page)
-            for message in (self._plan, *self._events, self._watch, self._played()):
+            for message in (self._plan, *self._events, self._watch, played):
                 if message is not None:
                     page.send(message)
 
     def leave(self, page: DeskPage) -> None:
         """The page is gone."""
         with self._lock:
-            self._pages.remove(page)
+            if page in self._pages:  # else it could not join
+                self._pages.remove(page)
 
     def do(self, command: FromDesk) -> None:
         """Do what the experimenter asks for.
@@ -138,8 +140,9 @@ class Desk:
 
     def show_played(self) -> None:
         """Show which trials are over."""
+        played = self._played()
         with self._lock:
-            self._tell(self._played())
+            self._tell(played)
 
     def _note(self, _: Episode, events: Sequence[Event]) -> None:
         with self._lock:

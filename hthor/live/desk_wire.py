@@ -5,7 +5,7 @@ from __future__ import annotations
 import msgspec
 from msgspec import Struct
 
-from hthor.live.wire import Malformed
+from hthor.live import wire
 from hthor.types import Vec2
 from hthor.types.events import Event
 
@@ -123,20 +123,12 @@ class Refused(Struct, frozen=True, kw_only=True, tag="refused"):
 ToDesk = Plan | Watch | Happened | Played | Refused
 """What the server sends."""
 
-_FROM_DESK = msgspec.json.Decoder(FromDesk)
+_FROM_DESK: msgspec.json.Decoder[FromDesk] = msgspec.json.Decoder(FromDesk)
 
 
 def decode(text: str) -> FromDesk:
-    """A message of the page.
-
-    Raises:
-        Malformed: says what is wrong.
-    """
-    try:
-        command: FromDesk = _FROM_DESK.decode(text)
-    except (msgspec.MsgspecError, UnicodeError, RecursionError) as error:
-        raise Malformed(str(error)) from None
-    return command
+    """A message of the page; errors as in `hthor.live.wire.read`."""
+    return wire.read(text, _FROM_DESK)
 
 
 def happened(event: Event) -> Happened:

@@ -1,7 +1,7 @@
 """The house of a trial as a glTF file, with the light of its lamps in the colours of its corners.
 
 What never moves is one node, whose primitives are merged by texture. Each part that moves (a thing, a door, a body or a
-head) is a node of its own, called by its number, in the order of `hthor.live.poses`; it has the colours of its
+head) is a node of its own, called by its number, as `SceneParts.poses` counts them; it has the colours of its
 materials, and the page lights it by the grid of probes that the scene's ``extras`` hold.
 """
 
@@ -16,16 +16,18 @@ import numpy as np
 
 from hthor import installation, jsonio
 from hthor.live.glb import GlbWriter
+from hthor.live.pictures import to_jpeg
+from hthor.world.rendering.scene.baked_light import BakedLight
+from hthor.world.rendering.scene.scene_mesh import ABOVE
+from hthor.world.rendering.scene.scene_parts import STATIC
 
 if TYPE_CHECKING:
     from hthor.types import HouseSpec
     from hthor.world.rendering.scene.scene_parts import ScenePart, SceneParts
 
-_VERSION = 1
-"""Counts what changes the files that the same house gives."""
 _EDGE_M, _FLOOR_EDGE_M = 0.6, 0.45
-"""[m] No edge of a mesh, or of a floor, is longer, as light is computed at corners only. Our choice: no shadow that one
-would miss is lost, and the largest of our houses has fewer than 250,000 triangles.
+"""[m] No edge of a mesh, or of a floor, is longer, as light is computed at corners only. Our choice: finer would
+give the largest of our houses more than 250,000 triangles.
 """
 _TEXTURE_PX = 256
 """[pixels] Side of the textures. Our choice: a person looks from half a metre at the least."""
@@ -33,15 +35,12 @@ _JPEG_QUALITY = 85
 _HALF = 0.5
 """Colours are stored times this, as light may be brighter than 1."""
 _OPAQUE = 0.99
-_ABOVE = 5
-"""The draw group of what is seen from above only."""
-_FLOOR = "floor"
-_SHADE_ONLY = "ceiling of"
-"""What the owners of lamps begin with: they hide no light, as it comes out of them."""
+_FLOOR, _CEILING = "floor of", "ceiling of"
+"""What the owners of floors begin with, and those of ceilings and their lamps, which hide no light."""
 
 
 class HouseFile(NamedTuple):
-    """A glTF file, compressed by gzip; ``key`` is the hash of what it was made from."""
+    """A glTF file, compressed by gzip; ``key`` is the hash of what it was made from, hthor's code included."""
 
     key: str
     data: bytes
@@ -61,19 +60,17 @@ def house_file(scene: SceneParts, house: HouseSpec, folder: Path | None = None) 
 
 
 def _key(scene: SceneParts) -> str:
-    digest = hashlib.sha256(str((_VERSION, len(scene.moving), scene.lamps.places)).encode())
+    digest = hashlib.sha256(repr((installation.sha256(), scene.assets, scene.lamps.places)).encode())
     for part in scene.parts:
-        digest.update(repr((part.puppet, part.owner, part.material, part.group, part.position, part.turn)).encode())
+        digest.update(repr((part.puppet, part.owner, part.material, part.group)).encode())
         for values in part.mesh:
             digest.update(np.ascontiguousarray(values).tobytes())
     return digest.hexdigest()[:32]
 
 
 def _make(scene: SceneParts, house: HouseSpec) -> bytes:
-    from hthor.world.rendering.scene.baked_light import BakedLight
-
-    still = [_Surface.of(part) for part in scene.parts if part.puppet < 0 and part.group != _ABOVE]
-    hides = [one.corners for one in still if one.alpha >= _OPAQUE and not one.owner.startswith(_SHADE_ONLY)]
+    still = [_Surface.of(part) for part in scene.parts if part.puppet == STATIC and part.group != ABOVE]
+    hides = [one.corners for one in still if one.alpha >= _OPAQUE and not one.owner.startswith(_CEILING)]
     light = BakedLight(np.concatenate(hides), scene.lamps.places, house.height)
     file = GlbWriter("hthor")
     book = _Materials(file, scene)
@@ -113,8 +110,6 @@ def _make(scene: SceneParts, house: HouseSpec) -> bytes:
 
 def _creased(parts: list[_Surface]) -> list[_Surface]:
     """Parts that move together, with the shade that they throw on each other."""
-    from hthor.world.rendering.scene.baked_light import BakedLight
-
     light = BakedLight(np.concatenate([one.corners for one in parts]), {}, 0.0)
     return [
         one._replace(
@@ -143,15 +138,14 @@ class _Surface(NamedTuple):
     def of(cls, part: ScenePart) -> _Surface:
         """The surface of a part."""
         mesh, material = part.mesh, part.material
-        turn = _matrix(part.turn)
         return cls(
             part.owner,
             material.texture,
             np.array(material.rgba[:3]),
             material.rgba[3],
             material.emission,
-            np.asarray(mesh.vertices, float) @ turn.T + part.position,
-            _unit(np.asarray(mesh.normals, float) @ turn.T),
+            np.asarray(mesh.vertices, float),
+            _unit(np.asarray(mesh.normals, float)),
             np.asarray(mesh.uv, float),
             np.asarray(mesh.faces),
         )
@@ -205,11 +199,8 @@ class _Materials:
     def _picture(self, texture: str) -> bytes:
         import cv2
 
-        picture = np.asarray(self._scene.texture(texture))[:, :, ::-1]
-        small = cv2.resize(picture, (_TEXTURE_PX, _TEXTURE_PX), interpolation=cv2.INTER_AREA)
-        found, data = cv2.imencode(".jpg", small, [cv2.IMWRITE_JPEG_QUALITY, _JPEG_QUALITY])
-        assert found
-        return bytes(data.tobytes())
+        picture = np.asarray(self._scene.texture(texture))
+        return to_jpeg(cv2.resize(picture, (_TEXTURE_PX, _TEXTURE_PX), interpolation=cv2.INTER_AREA), _JPEG_QUALITY)
 
 
 def _mesh(file: GlbWriter, book: _Materials, surfaces: list[_Surface]) -> int:
@@ -248,14 +239,3 @@ def _signed_bytes(values: Any) -> Any:
 
 def _unit(vectors: Any) -> Any:
     return vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-9)
-
-
-def _matrix(turn: Any) -> Any:
-    w, x, y, z = turn
-    return np.array(
-        (
-            (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
-            (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
-            (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
-        )
-    )

@@ -10,7 +10,7 @@ from weakref import WeakKeyDictionary
 import msgspec
 
 from hthor.episode import Concurrent, Episode, EpisodeLog, Frames, TrialWorld, begin, take_answers
-from hthor.episode.play import record_beliefs
+from hthor.episode.play import ask, finish, record_beliefs
 from hthor.humans.model import HumanModel
 from hthor.live import wire
 from hthor.live.control import Pacer, SessionControl, SessionStopped
@@ -33,10 +33,9 @@ class RealTimeLoop:
     """Drives trials in real time; the loop of a `hthor.trials.TrialRunner`.
 
     Args:
-        seats: the people at pages, by seat.
+        seats: the people at pages, by seat. desk: shows the trials to the experimenter.
         trials: how many trials the session has.
         publish: makes the file of a house known to the pages, and returns its address; without it pages draw nothing.
-        desk: shows the trials to the experimenter.
         now, sleep: the time [s] and how to wait.
     """
 
@@ -44,10 +43,10 @@ class RealTimeLoop:
         self,
         seats: Mapping[str, LiveSeat],
         control: SessionControl,
+        desk: Desk,
         *,
         trials: int = 1,
         publish: Callable[[HouseFile], str] | None = None,
-        desk: Desk | None = None,
         now: Callable[[], float] = time.perf_counter,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
@@ -65,8 +64,7 @@ class RealTimeLoop:
         frames = Frames(episode, humans)
         try:
             begin(episode, humans, robots, clock)
-            if self._desk is not None:
-                self._desk.open(episode)
+            self._desk.open(episode)
             scenery = self._scenery(world)
             self._announce(episode, scenery)
             self._show_bodies(episode, scenery)
@@ -74,28 +72,22 @@ class RealTimeLoop:
             while not episode.done:
                 if self._hold(episode):
                     pacer.restart()
-                    if self._desk is not None:
-                        self._desk.watch(episode, pacer)
+                    self._desk.watch(episode, pacer)
                     continue
-                for seat in episode.waiting:
-                    if seat in frames.seats:
-                        continue
-                    if seat in humans:
-                        episode.submit(seat, humans[seat].act(episode.observe(seat)))
-                    elif not clock.busy(seat):
-                        clock.ask(seat, robots[seat], episode.observe(seat, frozen=True))
+                ask(episode, humans, robots, clock, frames)
                 take_answers(episode, clock)
                 for _ in range(SUBTICKS):
                     frames.step()
                     self._show_bodies(episode, scenery)
                     pacer.wait()
                 record_beliefs(episode.advance(), humans)
-                if self._desk is not None:
-                    self._desk.watch(episode, pacer)
+                self._desk.watch(episode, pacer)
         finally:
             clock.close()
-        self._note(episode, pacer)
-        return self._end(episode, humans, bool(robots))
+        for seat in self._seats.values():
+            seat.note(episode.tick, "real time", **pacer.figures())
+        self._show_end(episode, rate=bool(robots) and not episode.voided)
+        return finish(episode, humans)
 
     def _announce(self, episode: Episode, scenery: Scenery | None) -> None:
         """Show everybody the task, and wait until all are ready."""
@@ -163,20 +155,12 @@ class RealTimeLoop:
         for name, seat in self._seats.items():
             seat.show_frame(episode.tick, episode.step, episode.world.pose(name), moved)
 
-    def _note(self, episode: Episode, pacer: Pacer) -> None:
-        """Note in the journals how well the trial kept the time."""
-        for seat in self._seats.values():
-            seat.note(episode.tick, "real time", **pacer.figures())
-
-    def _end(self, episode: Episode, humans: Mapping[str, HumanModel], robots: bool) -> EpisodeLog:
-        rate = robots and not episode.voided
+    def _show_end(self, episode: Episode, *, rate: bool) -> None:
         for seat in self._seats.values():
             seat.show(
                 wire.Ended(trial=episode.trial.index, met=episode.met, voided=episode.voided, rate=rate),
                 instead_of=(wire.Panel, wire.Map, wire.Paused),
             )
-        ratings = {seat: human.rate(episode.met, episode.tick) for seat, human in humans.items() if not episode.voided}
-        return episode.log(ratings, {seat: getattr(human, "journal", ()) for seat, human in humans.items()})
 
 
 def _body(seat: str, body: BodySpec) -> wire.Body:

@@ -89,9 +89,9 @@ class LiveRun:
         loop = RealTimeLoop(
             self.seats,
             self.control,
+            self.desk,
             trials=most,
             publish=self.server.publish,
-            desk=self.desk,
             now=self._now,
             sleep=self._sleep,
         )

@@ -21,20 +21,17 @@ from hthor.types import Action, Briefing, Controls, Drive, Observation, Pose
 from hthor.types.events import Note
 
 STALE_S = 0.25
-"""[s] Somebody whose page has sent no steering for so long stands still. Source: the bar of the design."""
-
-
+"""[s] Somebody whose page has sent no steering for so long stands still. Our choice."""
 AWAY_S = 60.0
 """[s] Somebody whose page has been gone for so long has left the trial. Our choice."""
 _TURN_S = 0.25
-"""[s] How often somebody who waits looks whether it is still worth it. Our choice."""
-
-
+"""[s] How often the trial, while it waits for a rating, looks whether the page is still there. Our choice."""
 _OF_A_TRIAL = (wire.Began, wire.Now, wire.Choices, wire.Panel, wire.Map, wire.Paused, wire.Ended)
+"""What a page no longer shows when the next trial is opened."""
 
 
 class Page(Protocol):
-    """The connection to a page; both methods return at once and may be called from any thread."""
+    """The connection to a page; its methods return at once and may be called from any thread."""
 
     def send(self, message: ToPage) -> None:
         """Send a message; none is lost as long as the page is connected."""
@@ -63,8 +60,8 @@ class LiveSeat:
         self._steered_at = -1.0
         self._acts: deque[Act] = deque()
         self._acted = 0  # the number of the last act that was taken
-        self._ready_for = -1  # the trial that the person is ready for
-        self._rating: tuple[int, int] | None = None  # a trial and its rating
+        self._ready = False  # for the trial that was opened last
+        self._rating: int | None = None  # of that trial
         self._screen: dict[type[ToPage], ToPage] = {}  # what the page shows, by kind, for a page that joins again
         self._picture: tuple[int, bytes] | None = None
         self._head: FrameHead | None = None
@@ -121,14 +118,13 @@ class LiveSeat:
     def begin_trial(self, trial: int) -> None:
         """The person is ready for this trial."""
         with self._lock:
-            self._ready_for = trial
-            self._changed.notify_all()
+            self._ready = self._ready or trial == self._trial
 
     def rate(self, trial: int, value: int) -> None:
         """Take the rating of a trial."""
         with self._lock:
-            if self._rating is None or self._rating[0] != trial:
-                self._rating = trial, value
+            if self._rating is None and trial == self._trial:
+                self._rating = value
                 self._changed.notify_all()
 
     # ------------------------------------------------------------------------------------------ from the trial's thread
@@ -157,7 +153,9 @@ class LiveSeat:
 
     def open(self, ahead: wire.TrialAhead) -> None:
         """Show the person the next trial."""
-        self._trial, self._head, self._places = ahead.trial, None, {}
+        with self._lock:
+            self._trial, self._ready, self._rating = ahead.trial, False, None
+            self._head, self._places = None, {}
         self._body = next(body for body in ahead.bodies if body.seat == self.seat)
         self.show(ahead, instead_of=_OF_A_TRIAL)
 
@@ -165,16 +163,16 @@ class LiveSeat:
     def is_ready(self) -> bool:
         """Whether the person is there and ready for the trial that was opened last."""
         with self._lock:
-            return self._page is not None and self._ready_for == self._trial
+            return self._page is not None and self._ready
 
     def ask_rating(self) -> int | None:
         """The person's trust in the robots, 1 to 7; waits for it, but not for somebody who has gone away."""
         with self._changed:
-            while self._rating is None or self._rating[0] != self._trial:
+            while self._rating is None:
                 if self._page is None and self._now() - self._left_at > AWAY_S:
                     return None
                 self._changed.wait(_TURN_S)
-            return self._rating[1]
+            return self._rating
 
     def begin(self, briefing: Briefing) -> None:  # noqa: ARG002  the page has been told
         """A trial begins: what was done before it does not count."""

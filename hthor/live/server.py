@@ -39,8 +39,8 @@ _JOIN_S = 10.0
 _WAITING = 512
 """[count] Messages that may wait for a slow page before its connection is given up. Our choice."""
 _POLICY = (
-    "default-src 'self'; connect-src 'self' blob:; img-src 'self' blob: data:; worker-src 'self' blob:; "
-    "style-src 'self' 'unsafe-inline'; object-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+    "default-src 'self'; connect-src 'self' blob:; img-src 'self' blob:; object-src 'none'; base-uri 'none'; "
+    "form-action 'none'; frame-ancestors 'none'"
 )
 _HEADERS = {
     "Content-Security-Policy": _POLICY,
@@ -117,7 +117,7 @@ class LiveServer:
     def __init__(
         self,
         seats: Mapping[str, LiveSeat],
-        desk: Desk | None = None,
+        desk: Desk,
         *,
         host: str = "127.0.0.1",
         port: int = 0,
@@ -268,7 +268,7 @@ class LiveServer:
             for name, token in self.tokens.items():
                 if secrets.compare_digest(token, joined.token):
                     return self._seats[name]
-            if self._desk is not None and secrets.compare_digest(self._desk_token, joined.token):
+            if secrets.compare_digest(self._desk_token, joined.token):
                 return self._desk
         _LOG.warning("refused a connection without the token of a seat")
         await _refuse(socket, "this address belongs to no seat of the session. Open the address that hthor printed.")

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 import struct
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import msgspec
 import numpy as np
@@ -246,7 +246,8 @@ ToPage = (
 """What the server sends."""
 
 _TO_PAGE = msgspec.json.Encoder()
-_FROM_PAGE = msgspec.json.Decoder(FromPage)
+_FROM_PAGE: msgspec.json.Decoder[FromPage] = msgspec.json.Decoder(FromPage)
+_Message = TypeVar("_Message")
 _STEERING = struct.Struct("<BIffff")
 _HEAD = struct.Struct("<BIBIfffff")
 _NUMBER, _ROW = struct.Struct("<H"), struct.Struct("<H7h")
@@ -258,16 +259,20 @@ class Malformed(ValueError):
 
 
 def decode(text: str) -> FromPage:
+    """A JSON message of a person's page; errors as in `read`."""
+    return read(text, _FROM_PAGE)
+
+
+def read(text: str, decoder: msgspec.json.Decoder[_Message]) -> _Message:
     """A JSON message of a page.
 
     Raises:
         Malformed: says what is wrong.
     """
     try:
-        message: FromPage = _FROM_PAGE.decode(text)
+        return decoder.decode(text)
     except (msgspec.MsgspecError, UnicodeError, RecursionError) as error:
         raise Malformed(str(error)) from None
-    return message
 
 
 def decode_steering(data: bytes) -> Steering:

@@ -19,6 +19,7 @@ from hthor.eval.replay.session_history import RunFiles
 from hthor.eval.runner.progress import Silent
 from hthor.live import house_file
 from hthor.live.run import LiveRun
+from hthor.report.page import camera_frames
 from hthor.types import HUMAN
 
 pytest.importorskip("starlette", reason="live sessions need an optional dependency: pip install 'hthor[live]'")
@@ -90,6 +91,8 @@ def test_a_run_with_a_person_is_played_and_scored(tmp_path: Path, no_looks: None
         assert record.log.ratings == {HUMAN: 5}
         again = session_history.rerun_trial(folder, record, RunFiles())
         assert again.same, "everybody's inputs give the trial again, without the agent's file"
+    seen = camera_frames.film_trial(folder.path, record, {40}, RunFiles(), seats=(HUMAN,), height=48)
+    assert seen.views()[40][HUMAN].shape[0] == 48
 
 
 @pytest.mark.parametrize(

@@ -168,6 +168,8 @@ def deliver(person: Person) -> None:
     person.look_at(0.6, 3.2, 1.0)
     person.open_fridge()
     person.press_when_offered("e", "put the apple in the fridge")
+    page.wait_for_selector("#scale [data-value='6']")
+    page.reload()  # the question is still there
     page.click("#scale [data-value='6']")
 
 

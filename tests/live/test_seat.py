@@ -12,6 +12,9 @@ from hthor.live.seat import STALE_S, LiveSeat
 from hthor.live.wire import Act, FrameHead, Steering, ToPage
 from hthor.types import HUMAN, Action, Drive, Drop, Observation, Pose
 
+BODY = wire.Body(seat=HUMAN, name="person", radius=0.2, height=1.7, eye=1.6, reach=0.8, speed=1.0, turn_rate=2.0)
+AHEAD = wire.TrialAhead(trial=0, trials=1, house="elm", instruction="?", time_limit=9.0, bodies=(BODY,))
+
 
 class Clock:
     def __init__(self) -> None:
@@ -88,10 +91,24 @@ def test_every_act_is_carried_out_once_and_in_order_however_often_it_is_sent(sen
     assert len(person.submitted) == expected
 
 
+def test_nobody_is_ready_for_a_trial_that_is_repeated_because_they_were_for_the_first_attempt() -> None:
+    seat, screen = LiveSeat(HUMAN, Clock()), Screen()
+    seat.join(screen)
+    for value in (3, 6):
+        seat.open(AHEAD)
+        assert not seat.is_ready
+        seat.begin_trial(1)
+        assert not seat.is_ready, "for another trial"
+        seat.begin_trial(0)
+        assert seat.is_ready
+        seat.rate(0, value)
+        seat.rate(0, 1)
+        assert seat.ask_rating() == value
+
+
 def test_a_page_that_joins_later_gets_what_the_screen_shows_and_where_everything_is() -> None:
     seat = LiveSeat(HUMAN, Clock())
-    body = wire.Body(seat=HUMAN, name="person", radius=0.2, height=1.7, eye=1.6, reach=0.8, speed=1.0, turn_rate=2.0)
-    seat.open(wire.TrialAhead(trial=0, trials=1, house="elm", instruction="?", time_limit=9.0, bodies=(body,)))
+    seat.open(AHEAD)
     seat.show(wire.Began(trial=0))
     seat.show_frame(0, 1, Pose(x=1.0, y=2.0), {3: b"a", 4: b"b"})
     seat.show_frame(0, 2, Pose(x=1.5, y=2.0), {4: b"c"})

@@ -109,9 +109,9 @@ class LiveSession:
         loop = RealTimeLoop(
             self.seats,
             self.control,
+            self.desk,
             trials=len(self.session.trials),
             publish=self.server.publish if world is not None else None,
-            desk=self.desk,
             now=lambda: faster * time.perf_counter(),
             sleep=lambda seconds: time.sleep(seconds / faster),
         )

@@ -5,9 +5,20 @@ import { VERSION } from "./wire.js";
 const TICKS_PER_S = 10;
 const COLOURS = ["#0072b2", "#d55e00", "#001f54", "#7a3b8f", "#009e73"];
 const RETRY_MS = 1000;
+/** @type {[string, boolean | null][]} */
+const CORRECTIONS = [["yes", true], ["no", false], ["exclude", null]];
 
 /** @param {string} id */
 const find = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
+
+/** The reason that the experimenter has written. */
+const reason = () => /** @type {HTMLInputElement} */ (find("reason")).value;
+
+/** A text inside a picture. @param {string} text @param {number} x @param {number} y @param {string} colour */
+function words(text, x, y, colour) {
+  const safe = text.replace(/[&<>"]/g, (sign) => `&#${sign.charCodeAt(0)};`);
+  return `<text x="${x}" y="${y}" font-size="0.35" text-anchor="middle" fill="${colour}">${safe}</text>`;
+}
 
 /** An element with text in it. @param {string} tag @param {string} text @param {string} [kind] */
 function make(tag, text, kind = "") {
@@ -22,7 +33,6 @@ class Desk {
     /** @type {any} */ this.plan = null;
     /** Where everybody has been. @type {Map<string, number[][]>} */
     this.trails = new Map();
-    const reason = () => /** @type {HTMLInputElement} */ (find("reason")).value;
     find("pause").onclick = () => this.tell({ type: "pause", reason: reason() });
     find("go-on").onclick = () => this.tell({ type: "go_on" });
     find("void").onclick = () => this.tell({ type: "void", reason: reason() });
@@ -117,10 +127,10 @@ class Desk {
     for (const [seat, adopted] of Object.entries(trial.adopted)) {
       const line = make("div", `${seat}: ${adopted === null ? "–" : adopted ? "yes" : "no"} `);
       if (!trial.voided) {
-        for (const [words, value] of /** @type {[string, boolean | null][]} */ ([["yes", true], ["no", false], ["exclude", null]])) {
+        for (const [words, value] of CORRECTIONS) {
           const button = make("button", words);
-          const reason = () => /** @type {HTMLInputElement} */ (find("reason")).value;
-          button.onclick = () => this.tell({ type: "adoption", trial: trial.key, seat, adopted: value, reason: reason() });
+          const command = { type: "adoption", trial: trial.key, seat, adopted: value };
+          button.onclick = () => this.tell({ ...command, reason: reason() });
           line.append(button, " ");
         }
       }
@@ -137,12 +147,13 @@ class Desk {
     const [x0, y1] = [Math.min(...xs) - 0.3, Math.max(...ys) + 0.3];
     const [wide, high] = [Math.max(...xs) + 0.3 - x0, y1 - Math.min(...ys) + 0.3];
     const at = (/** @type {number[]} */ [x, y]) => `${(x - x0).toFixed(2)},${(y1 - y).toFixed(2)}`;
-    const safe = (/** @type {string} */ text) => text.replace(/[&<>"]/g, (sign) => `&#${sign.charCodeAt(0)};`);
     const parts = this.plan.rooms.flatMap((/** @type {any} */ room) => {
-      const [x, y] = [0, 1].map((k) => room.polygon.reduce((/** @type {number} */ sum, /** @type {number[]} */ p) => sum + p[k], 0) / room.polygon.length);
+      /** @type {number[][]} */
+      const corners = room.polygon;
+      const [x, y] = [0, 1].map((k) => corners.reduce((sum, corner) => sum + corner[k], 0) / corners.length);
       return [
-        `<polygon points="${room.polygon.map(at).join(" ")}" fill="#fff" stroke="#464a52" stroke-width="0.06"/>`,
-        `<text x="${x - x0}" y="${y1 - y}" font-size="0.35" text-anchor="middle" fill="#8a9099">${safe(room.name)}</text>`,
+        `<polygon points="${corners.map(at).join(" ")}" fill="#fff" stroke="#464a52" stroke-width="0.06"/>`,
+        words(room.name, x - x0, y1 - y, "#8a9099"),
       ];
     });
     [...this.trails].forEach(([seat, trail], k) => {
@@ -153,7 +164,7 @@ class Desk {
       const ahead = [one.x + 0.45 * Math.cos(one.yaw), one.y + 0.45 * Math.sin(one.yaw)];
       parts.push(`<polyline points="${at([one.x, one.y])} ${at(ahead)}" stroke="${colour}" stroke-width="0.08"/>`);
       parts.push(`<circle cx="${one.x - x0}" cy="${y1 - one.y}" r="0.2" fill="${colour}"/>`);
-      parts.push(`<text x="${one.x - x0}" y="${y1 - one.y + 0.6}" font-size="0.35" text-anchor="middle" fill="${colour}">${safe(seat)}</text>`);
+      parts.push(words(seat, one.x - x0, y1 - one.y + 0.6, colour));
     });
     find("map").innerHTML = `<svg viewBox="0 0 ${wide} ${high}">${parts.join("")}</svg>`;
   }

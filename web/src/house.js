@@ -18,7 +18,6 @@ in vec4 tint;
 in float layer;
 in float part;
 uniform sampler2D poses;
-uniform bool lit;
 out vec3 mapped;
 out vec4 shade;
 
@@ -76,8 +75,10 @@ export class House {
       this.poses[8 * k + 7] = 1;
     }
     this.texture = new THREE.DataTexture(this.poses, 2, count, THREE.RGBAFormat, THREE.FloatType);
-    /** Where parts are going to. @type {Map<number, {position: number[], turn: number[]}>} */
-    this.goals = new Map();
+    /** Where the server says that each part is. @type {Map<number, {position: number[], turn: number[]}>} */
+    this.places = new Map();
+    /** The parts that are not there yet. @type {Set<number>} */
+    this.moving = new Set();
     const pictures = new Pictures();
     const heaps = [new Heap(), new Heap()];
     file.scene.traverse((/** @type {any} */ node) => {
@@ -100,25 +101,33 @@ export class House {
     });
   }
 
-  /** The part that a thing moves with, -1 for none. @param {string} owner */
-  partOf(owner) {
+  /** The number of the part of a thing, -1 for none. @param {string} owner */
+  numberOf(owner) {
     return this.owners.indexOf(owner);
   }
 
   /** Take where parts are. @param {import("./wire.js").Moved[]} moved */
   move(moved) {
-    for (const { number, position, turn } of moved) this.goals.set(number, { position, turn });
+    for (const { number, position, turn } of moved) {
+      this.places.set(number, { position, turn });
+      this.moving.add(number);
+    }
   }
 
   /**
-   * Move every part towards where it is; those in `held` go there at once.
-   * @param {number} seconds @param {Map<number, {position: number[], turn: number[]}>} held
+   * Move every part towards where it is; what is in the person's hand goes there at once.
+   * @param {number} seconds
+   * @param {{number: number, position: number[], turn: number[]} | null} held the part in hand, and where it is shown
    */
   step(seconds, held) {
     const share = 1 - Math.exp(-FOLLOW_PER_S * seconds);
-    for (const [number, goal] of this.goals) {
-      const own = held.get(number);
-      if (this.#follow(number, own ?? goal, own ? 1 : share) && !own) this.goals.delete(number);
+    for (const number of this.moving) {
+      const place = /** @type {{position: number[], turn: number[]}} */ (this.places.get(number));
+      if (this.#follow(number, place, share)) this.moving.delete(number);
+    }
+    if (held) {
+      this.#follow(held.number, held, 1);
+      this.moving.add(held.number); // once let go, it goes to where the server says
     }
     this.texture.needsUpdate = true;
   }

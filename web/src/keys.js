@@ -116,7 +116,8 @@ export class Keys {
 function load() {
   try {
     const saved = JSON.parse(localStorage.getItem(STORE) ?? "{}");
-    return Object.fromEntries(Object.entries(saved).filter(([name, code]) => name in ACTIONS && typeof code === "string"));
+    const known = Object.entries(saved).filter(([name, code]) => name in ACTIONS && typeof code === "string");
+    return Object.fromEntries(known);
   } catch {
     return {};
   }

@@ -29,8 +29,8 @@ class Page {
     this.house = null;
     /** @type {import("./wire.js").Moved[]} */
     this.early = []; // what moved before the house was there
-    this.seat = "";
-    this.over = false;
+    this.seat = this.problem = "";
+    this.over = this.lost = false;
     this.forget();
     this.worker = new Worker(new URL("socket.js", document.baseURI), { type: "module" });
     this.worker.onmessage = ({ data }) => this.receive(data);
@@ -51,9 +51,69 @@ class Page {
     /** @type {any} */ this.panel = null;
     /** @type {any} */ this.shownMap = null;
     /** @type {any} */ this.head = null;
-    this.begun = this.paused = false;
+    /** How the trial ended. @type {any} */ this.ended = null;
+    /** Why time stands still. */ this.paused = "";
+    this.ready = this.begun = this.rated = this.keysShown = false;
     this.known = { panel: false, map: false };
-    this.wasShown = { panel: false, map: false };
+  }
+
+  /** Whether the person can act. */
+  get plays() {
+    const still = this.paused || this.lost || this.problem;
+    return this.begun && this.house !== null && this.ended === null && !still;
+  }
+
+  /** Show the card that fits, or the house. */
+  show() {
+    this.panels.reveal(this.begun && this.house !== null && this.ended === null);
+    const { title, text, button, done, help, rate } = this.card();
+    if (rate) this.panels.rating(title, done);
+    else this.panels.card(title ? { title, text, button } : null, done);
+    if (help) this.panels.help();
+    if (!title) this.offer();
+  }
+
+  /** The card over the house; without a title there is none. @returns {any} */
+  card() {
+    if (this.problem) return { title: "This page cannot take part", text: this.problem };
+    if (this.over) return { title: "The session is over", text: "Thank you for taking part. You can close this page." };
+    if (this.lost) {
+      return { title: "The connection is gone", text: "The page connects again by itself. Time stands still." };
+    }
+    if (this.trial === null) return { title: "hthor", text: "The session is being prepared …" };
+    const task = this.trial.instruction;
+    if (this.ended !== null) return this.endCard();
+    if (this.house === null) return { title: "The next task", text: "The house is being loaded …" };
+    if (this.begun && this.paused) return { title: "Paused", text: this.paused };
+    if (this.begun && this.keysShown) {
+      const done = () => this.change({ keysShown: false });
+      return { title: "Keys", text: "Press a row to change its key.", button: "Go on", done, help: true };
+    }
+    if (this.begun) return {};
+    if (this.ready) return { title: task, text: "The others are not ready yet …" };
+    const done = () => {
+      this.worker.postMessage({ type: "begin", trial: this.trial.trial });
+      this.change({ ready: true });
+    };
+    return { title: task, text: `You have ${this.trial.time_limit} seconds.`, button: "Begin", done, help: true };
+  }
+
+  endCard() {
+    const { voided, met, rate, trial } = this.ended;
+    const words = voided ? `The trial does not count: ${voided}.` : met ? "Done!" : "The time is over.";
+    if (!rate) return { title: words, text: "Please wait …" };
+    if (this.rated) return { title: "Thank you", text: "Please wait for the next task …" };
+    const done = (/** @type {number} */ value) => {
+      this.worker.postMessage({ type: "rate", trial, value });
+      this.change({ rated: true });
+    };
+    return { title: `${words} ${QUESTION}`, rate: true, done };
+  }
+
+  /** Change the state, and what is shown with it. @param {object} state */
+  change(state) {
+    Object.assign(this, state);
+    this.show();
   }
 
   resize() {
@@ -70,66 +130,41 @@ class Page {
 
   /** @param {any} message */
   on_welcome({ seat }) {
-    this.seat = seat;
-    if (this.trial === null) this.panels.card({ title: "hthor", text: "The session is being prepared …" });
+    this.change({ seat, lost: false });
   }
 
   on_lost() {
-    if (this.over) return;
-    this.panels.card({ title: "The connection is gone", text: "The page connects again by itself. Time stands still." });
+    this.change({ lost: true });
   }
 
   /** @param {any} message */
   on_problem({ words }) {
-    this.panels.card({ title: "This page cannot take part", text: words });
-    this.begun = false;
+    this.change({ problem: words });
   }
 
   /** @param {any} trial */
   async on_trial(trial) {
     this.forget();
     this.trial = trial;
-    this.self = trial.bodies.find((/** @type {any} */ body) => body.seat === this.seat) ?? trial.bodies[0];
+    this.self = trial.bodies.find((/** @type {any} */ body) => body.seat === this.seat);
     this.motion.reset();
     this.early = [];
     this.panels.task(trial);
     this.panels.time(trial.time_limit, "");
     this.panels.message(null);
     this.panels.map(null);
-    this.panels.reveal(false);
     if (this.house) this.scene.remove(this.house.group);
-    this.house = null;
-    this.panels.card({ title: "The next task", text: "The house is being loaded …" });
-    const house = trial.file ? await House.load(trial.file, trial.own) : null;
+    this.change({ house: null });
+    const house = await House.load(trial.file, trial.own);
     if (this.trial !== trial) return;
-    this.house = house;
-    if (house) {
-      this.scene.add(house.group);
-      house.move(this.early);
-      house.step(1, new Map());
-    }
-    if (this.begun) this.start();
-    else this.announce();
-  }
-
-  announce() {
-    const card = { title: this.trial.instruction, text: `You have ${this.trial.time_limit} seconds.`, button: "Begin" };
-    this.panels.card(card, () => {
-      this.worker.postMessage({ type: "begin", trial: this.trial.trial });
-      this.panels.card({ title: this.trial.instruction, text: "The others are not ready yet …" });
-    });
-    this.panels.help();
+    this.scene.add(house.group);
+    house.move(this.early);
+    house.step(1, null);
+    this.change({ house });
   }
 
   on_began() {
-    this.begun = true;
-    if (this.house) this.start();
-  }
-
-  start() {
-    this.panels.card(null);
-    this.panels.reveal(true);
-    this.offer();
+    this.change({ begun: true });
   }
 
   /** @param {any} frame */
@@ -143,10 +178,8 @@ class Page {
 
   /** @param {any} now */
   on_now(now) {
-    const failed = now.outcome && !now.outcome.ok && this.now.outcome !== now.outcome;
-    if (failed && JSON.stringify(now.outcome) !== JSON.stringify(this.now.outcome)) {
-      this.panels.notice(now.outcome.reason);
-    }
+    const fresh = JSON.stringify(now.outcome) !== JSON.stringify(this.now.outcome);
+    if (fresh && now.outcome && !now.outcome.ok) this.panels.notice(now.outcome.reason);
     this.now = now;
     this.panels.holding(now.holding);
     this.offer();
@@ -196,37 +229,24 @@ class Page {
 
   /** @param {any} message */
   on_paused({ reason }) {
-    this.paused = reason !== "";
-    if (this.paused) this.panels.card({ title: "Paused", text: reason });
-    else if (this.begun) this.panels.card(null);
+    this.change({ paused: reason });
   }
 
   /** @param {any} ended */
   on_ended(ended) {
-    this.begun = false;
-    this.panels.reveal(false);
     this.panels.message(null);
     this.panels.map(null);
-    const words = ended.voided ? `The trial does not count: ${ended.voided}.` : ended.met ? "Done!" : "The time is over.";
-    if (!ended.rate) {
-      this.panels.card({ title: words, text: "Please wait …" });
-      return;
-    }
-    this.panels.rating(`${words} ${QUESTION}`, (value) => {
-      this.worker.postMessage({ type: "rate", trial: ended.trial, value });
-      this.panels.card({ title: "Thank you", text: "Please wait for the next task …" });
-    });
+    this.change({ ended });
   }
 
   on_over() {
-    this.over = true;
-    this.panels.card({ title: "The session is over", text: "Thank you for taking part. You can close this page." });
+    this.change({ over: true });
   }
 
   /** @param {string} action */
   press(action) {
-    if (action === "keys" && this.trial) return this.showKeys();
-    if (!this.begun || this.paused) return undefined;
+    if (!this.plays) return;
+    if (action === "keys") this.change({ keysShown: !this.keysShown });
     const act = (/** @type {object} */ what) => this.worker.postMessage({ type: "act", ...what });
     if (action === "hand" && this.choices.hand) act({ motion: this.choices.hand.motion });
     if (action === "door" && this.choices.door) act({ motion: this.choices.door.motion });
@@ -237,13 +257,6 @@ class Page {
     if ((action === "accept" || action === "decline") && this.panel) {
       act({ say: { type: "reply", message: this.panel.message, accept: action === "accept" } });
     }
-    return undefined;
-  }
-
-  showKeys() {
-    if (!this.begun || this.paused) return;
-    this.panels.card({ title: "Keys", text: "Press a row to change its key.", button: "Go on" }, () => this.panels.card(null));
-    this.panels.help();
   }
 
   /** @param {number} now */
@@ -252,10 +265,8 @@ class Page {
     this.last = now;
     this.fps += 0.05 * (1 / Math.max(1e-3, seconds) - this.fps);
     if (this.head) {
-      const still = !this.begun || this.paused;
       const drive = this.keys.drive(seconds, this.self.speed);
-      if (still) drive.forward = drive.left = 0;
-      if (this.now.busy) drive.forward = drive.left = 0;
+      if (!this.plays || this.now.busy) drive.forward = drive.left = 0; // as the world does with busy hands
       const number = this.motion.steer(drive, seconds);
       this.worker.postMessage({ type: "steer", number, drive, frames: Math.round(this.fps) });
       this.time();
@@ -270,23 +281,17 @@ class Page {
     this.panels.time(left, this.now.phase);
   }
 
-  /** Where what is in hand is: it stays in front of the person, without any delay. */
+  /** What is in hand, and where it is shown: in front of the person, without any delay. */
   inHand() {
-    /** @type {Map<number, {position: number[], turn: number[]}>} */
-    const held = new Map();
-    const number = this.house && this.now.holding ? this.house.partOf(this.now.holding) : -1;
-    const goal = number >= 0 && this.house ? this.house.goals.get(number) ?? this.lastHeld?.goal : undefined;
-    if (number < 0 || !goal || !this.head) return held;
-    this.lastHeld = { goal };
-    const dx = goal.position[0] - this.head.x;
-    const dy = goal.position[1] - this.head.y;
+    const number = this.house && this.now.holding ? this.house.numberOf(this.now.holding) : -1;
+    const place = this.house?.places.get(number);
+    if (!place || !this.head) return null;
+    const dx = place.position[0] - this.head.x;
+    const dy = place.position[1] - this.head.y;
     const turn = this.keys.yaw - this.head.yaw;
     const [cos, sin] = [Math.cos(turn), Math.sin(turn)];
-    held.set(number, {
-      position: [this.motion.x + cos * dx - sin * dy, this.motion.y + sin * dx + cos * dy, goal.position[2]],
-      turn: goal.turn,
-    });
-    return held;
+    const [x, y] = [this.motion.x + cos * dx - sin * dy, this.motion.y + sin * dx + cos * dy];
+    return { number, position: [x, y, place.position[2]], turn: place.turn };
   }
 
   aim() {

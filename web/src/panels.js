@@ -87,8 +87,11 @@ export class Panels {
     if (words) this.noticed = setTimeout(() => toggle("notice", false), 4000);
   }
 
-  /** A card in the middle, with a button; null takes it away. @param {{title: string, text: string, button?: string} | null} card
-   * @param {() => void} [done] */
+  /**
+   * A card in the middle, with a button; null takes it away.
+   * @param {{title: string, text: string, button?: string} | null} card
+   * @param {() => void} [done]
+   */
   card(card, done) {
     toggle("card", card !== null);
     if (card === null) return;

@@ -19,11 +19,15 @@ _THIN = 1e-12
 class AssetSource:
     """The looks of things: the pack's if it has any for a thing, else our own.
 
+    Attributes:
+        sha256: hash of the pack, empty without one.
+
     Textures of a pack are called ``pack:NAME`` in the visual model, so that their names may equal those of ours.
     """
 
     def __init__(self, pack: Pack | None = None) -> None:
         self._pack = pack
+        self.sha256 = "" if pack is None else pack.sha256
 
     def look(self, kind: str, size: Vec3, variant: int) -> tuple[Piece, ...]:
         """The pieces of a thing, see `hthor.looks.look`."""
@@ -51,9 +55,6 @@ class Stage(Protocol):
 
     world: Any
 
-    def look(self, kind: str, size: Vec3, variant: int) -> tuple[Piece, ...]:
-        """The pieces of a thing, see `hthor.looks.look`."""
-
     def puppet(self) -> Any:
         """A new body that moves; puppets are counted in the order in which they are made."""
 
@@ -75,7 +76,7 @@ class AssetRegistry:
     """Adds geoms to a `mujoco.MjSpec`; the `Stage` of pictures.
 
     Args:
-        spec: the model that is being built. fabric: the source of looks and textures.
+        spec: the model that is being built. fabric: the source of textures.
 
     Attributes:
         world: the body of everything that never moves.
@@ -107,10 +108,6 @@ class AssetRegistry:
             geom.contype = geom.conaffinity = 0
             geom.group, geom.material, geom.rgba = group, self.material(material), material.rgba
             geom.pos, geom.quat = pos, quat
-
-    def look(self, kind: str, size: Vec3, variant: int) -> tuple[Piece, ...]:
-        """The pieces of a thing."""
-        return self._fabric.look(kind, size, variant)
 
     def puppet(self) -> Any:
         """A new body that pictures place where they like."""

@@ -57,8 +57,7 @@ class BakedLight:
 
     def openness(self, points: Any, normals: Any) -> Any:
         """(N,) How open each point is to its surroundings, from `_DARKEST` in a crease to 1."""
-        found = self._in_chunks(self._open, points, normals)
-        return _DARKEST + (1.0 - _DARKEST) * found
+        return self._in_chunks(self._openness, points, normals)
 
     def light(self, points: Any, normals: Any) -> Any:
         """(N, 3) The light at static points with these normals; 1 shows a surface in its own colour."""
@@ -84,10 +83,7 @@ class BakedLight:
         way, colour = lights.FILL
         aim = -np.array(way) / np.linalg.norm(way)
         around = np.array(lights.AMBIENT) + 0.5 * np.array(lights.HEAD) + np.clip(normals @ aim, 0, 1)[:, None] * colour
-        return lit + around * self._open_share(points, normals)[:, None]
-
-    def _open_share(self, points: Any, normals: Any) -> Any:
-        return _DARKEST + (1.0 - _DARKEST) * self._open(points, normals)
+        return lit + around * self._openness(points, normals)[:, None]
 
     def _lamp(self, place: Vec2, share: float, points: Any, normals: Any) -> Any:
         """(N, 3) What one lamp adds: its own light with shadows, and what the room throws back where it is seen."""
@@ -98,26 +94,30 @@ class BakedLight:
         for dx, dy in steps:
             at = bulb + np.array((dx, dy, 0.0)) * _LAMP_M
             seen += triangle_kernel.unhidden(*self._tree, begin, normals, at) / len(steps)
-        way = bulb - points
-        distance = np.linalg.norm(way, axis=1)
-        slope = np.clip(np.einsum("na,na->n", way, normals) / distance, 0.0, 1.0)
-        fade, cone = lights.attenuation(lights.LAMP_FADE, distance), np.clip(way[:, 2] / distance, 0.0, 1.0)
-        direct = seen * slope * fade * cone**lights.LAMP_EXPONENT
+        slope, way, distance = _slope(bulb, points, normals)
+        cone = np.clip(way[:, 2] / distance, 0.0, 1.0)
+        direct = seen * slope * lights.attenuation(lights.LAMP_FADE, distance) * cone**lights.LAMP_EXPONENT
         low = np.array((*place, self._height - lights.BOUNCE_DROP_M))
-        way = low - points
-        distance = np.linalg.norm(way, axis=1)
-        slope = np.clip(np.einsum("na,na->n", way, normals) / distance, 0.0, 1.0)
+        slope, _, distance = _slope(low, points, normals)
         thrown = share * seen * slope * lights.attenuation(lights.BOUNCE_FADE, distance)
         return direct[:, None] * np.array(lights.LAMP) + thrown[:, None] * np.array(lights.BOUNCE)
 
-    def _open(self, points: Any, normals: Any) -> Any:
+    def _openness(self, points: Any, normals: Any) -> Any:
         begin = points + _OFF_M * normals
-        return triangle_kernel.openness(*self._tree, begin, normals, self._ways, _NEAR_M)
+        found = triangle_kernel.openness(*self._tree, begin, normals, self._ways, _NEAR_M)
+        return _DARKEST + (1.0 - _DARKEST) * found
 
     def _in_chunks(self, work: Callable[[Any, Any], Any], points: Any, normals: Any) -> Any:
         spans = [slice(k, k + _CHUNK) for k in range(0, len(points), _CHUNK)]
         with ThreadPoolExecutor(self._threads) as pool:
             return np.concatenate(list(pool.map(lambda span: work(points[span], normals[span]), spans)))
+
+
+def _slope(light: Any, points: Any, normals: Any) -> tuple[Any, Any, Any]:
+    """How much each point faces a light (N,), the way to it (N, 3) [m], and how far that is (N,) [m]."""
+    way = light - points
+    distance = np.linalg.norm(way, axis=1)
+    return np.clip(np.einsum("na,na->n", way, normals) / distance, 0.0, 1.0), way, distance
 
 
 def _cosine_directions(count: int) -> Any:

@@ -52,7 +52,7 @@ def compile_scene(
     _settings(spec)
     for material, group in ((materials.LAWN, INSIDE), (materials.LAWN_ABOVE, ABOVE)):
         _lawn(spec, registry, material, group)
-    builder = SceneBuilder(house, contents, puppets, registry)
+    builder = SceneBuilder(house, contents, puppets, fabric, registry)
     places = builder.build(seats, lamps)
     model = spec.compile()
     return CompiledScene(model, registry.owners(model), np.array(builder.followers, int), places)
@@ -82,8 +82,11 @@ class SceneBuilder:
         followers: for each of the first puppets, the body of the physics model that it follows.
     """
 
-    def __init__(self, house: HouseSpec, contents: Contents, puppets: PoseSync, stage: Stage) -> None:
-        self._house, self._contents, self._puppets, self._stage = house, contents, puppets, stage
+    def __init__(
+        self, house: HouseSpec, contents: Contents, puppets: PoseSync, fabric: AssetSource, stage: Stage
+    ) -> None:
+        self._house, self._contents, self._puppets = house, contents, puppets
+        self._fabric, self._stage = fabric, stage
         self.followers: list[int] = []
 
     def build(self, seats: Mapping[str, BodySpec], lamps: RoomLights) -> dict[str, tuple[int, int]]:
@@ -111,7 +114,7 @@ class SceneBuilder:
         """Add a static thing: its fixed pieces to the world body, pieces on its joints to puppets."""
         frame = (thing.centre, geoms.quaternion(thing.yaw))
         key = (thing.kind, thing.size, thing.variant)
-        for joint, pieces in _by_joint(self._stage.look(*key)).items():
+        for joint, pieces in _by_joint(self._fabric.look(*key)).items():
             body, at = self._stage.world, frame
             if joint and (thing.id, joint) in self._puppets.hung:
                 body, at = self._follower(self._puppets.hung[thing.id, joint], frame)
@@ -120,7 +123,7 @@ class SceneBuilder:
     def _movable(self, item: MovableSpec) -> None:
         body = self._puppet(self._puppets.free[item.id])
         key = (item.kind, item.size, item.variant)
-        for joint, pieces in _by_joint(self._stage.look(*key)).items():
+        for joint, pieces in _by_joint(self._fabric.look(*key)).items():
             self._pieces(body, item.id, pieces, (key, joint), _STILL)
 
     def _doors(self) -> None:

@@ -6,8 +6,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hthor.looks import Material, Mesh, Piece
+from hthor.looks import Material, Mesh
 from hthor.types import BodySpec, HouseSpec, Vec3
+from hthor.world.model.engine import mujoco
 from hthor.world.model.geoms import Quaternion
 from hthor.world.model.inventory import Contents
 from hthor.world.rendering.camera import PoseSnapshot
@@ -26,7 +27,7 @@ class ScenePart(NamedTuple):
     Attributes:
         puppet: what it moves with, the number of a row of `SceneParts.poses`; `STATIC` for nothing.
         owner: the id of the thing or the seat that it belongs to. group: see `hthor.world.rendering.scene.scene_mesh`.
-        position, turn: [m], quaternion (w, x, y, z): its frame in that of the puppet, or of the house.
+        mesh: in the frame of the puppet, or of the house.
     """
 
     puppet: int
@@ -34,8 +35,6 @@ class ScenePart(NamedTuple):
     mesh: Mesh
     material: Material
     group: int
-    position: Vec3
-    turn: Quaternion
 
 
 class SceneParts:
@@ -43,6 +42,7 @@ class SceneParts:
 
     Attributes:
         parts: the meshes. lamps: the places of each room's lamps.
+        assets: hash of the furniture pack that looks come from, empty for our own.
         moving: for each puppet, the id of what moves with it; a seat has two, its body and its head.
     """
 
@@ -54,10 +54,10 @@ class SceneParts:
         seats: Mapping[str, BodySpec],
         fabric: AssetSource,
     ) -> None:
-        self._puppets, self._fabric = puppets, fabric
+        self._puppets, self._fabric, self.assets = puppets, fabric, fabric.sha256
         self.lamps = RoomLights(house)
-        collector = _Collector(fabric)
-        builder = SceneBuilder(house, contents, puppets, collector)
+        collector = _Collector()
+        builder = SceneBuilder(house, contents, puppets, fabric, collector)
         self.seats = builder.build(seats, self.lamps)
         self.parts = tuple(collector.parts)
         self._followers = np.array(builder.followers, int)
@@ -83,15 +83,10 @@ class SceneParts:
 class _Collector:
     """A `hthor.world.rendering.scene.asset_registry.Stage` that keeps what is put on it."""
 
-    def __init__(self, fabric: AssetSource) -> None:
+    def __init__(self) -> None:
         self.world: Any = STATIC
         self.parts: list[ScenePart] = []
         self.puppets = 0
-        self._fabric = fabric
-
-    def look(self, kind: str, size: Vec3, variant: int) -> tuple[Piece, ...]:
-        """The pieces of a thing."""
-        return self._fabric.look(kind, size, variant)
 
     def puppet(self) -> int:
         """The number of a new puppet."""
@@ -109,5 +104,9 @@ class _Collector:
         pos: Vec3 = (0.0, 0.0, 0.0),
         quat: Quaternion = (1.0, 0.0, 0.0, 0.0),
     ) -> None:
-        """Keep a mesh."""
-        self.parts.append(ScenePart(body, owner, mesh, material, group, pos, quat))
+        """Keep a mesh, in the frame of its body."""
+        turn = np.empty(9)
+        mujoco.mju_quat2Mat(turn, np.array(quat))
+        back = turn.reshape(3, 3).T
+        moved = mesh._replace(vertices=mesh.vertices @ back + pos, normals=mesh.normals @ back)
+        self.parts.append(ScenePart(body, owner, moved, material, group))
