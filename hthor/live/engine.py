@@ -2,42 +2,31 @@
 
 from __future__ import annotations
 
-import functools
 import queue
 import threading
-from collections.abc import Collection, Generator, Mapping, Sequence
+from collections.abc import Generator, Sequence
 
-import msgspec
-
-from hthor.eval.records import trial_record
 from hthor.eval.records.trial_log import BEAT_S
-from hthor.eval.runner import session_runner
 from hthor.eval.runner.engines import SessionFailed
-from hthor.eval.runner.messages import Failed, News, RunnerFactory, SessionRunner
+from hthor.eval.runner.messages import Failed, News, RunnerFactory, TrialDone
 from hthor.eval.runner.worker import SessionPlayer
-from hthor.humans.models import live
 from hthor.live.control import SessionControl
-from hthor.live.loop import RealTimeLoop
-from hthor.live.seat import LiveSeat
-from hthor.trials import Participants, Sources
 from hthor.trials.sessions import Session
 
 
 class LiveEngine:
-    """An engine of `hthor.eval.runner.engines` for people.
+    """An engine of `hthor.eval.runner.engines` for people; ``control`` is what the experimenter may do."""
 
-    Args:
-        control: what the experimenter may do. done: the keys of trials that are over, which are not played again.
-    """
-
-    def __init__(self, control: SessionControl, done: Collection[str] = ()) -> None:
-        self._control, self._done = control, frozenset(done)
+    def __init__(self, control: SessionControl) -> None:
+        self._control = control
 
     def run_sessions(self, sessions: Sequence[Session], make: RunnerFactory) -> Generator[News | None, None, None]:
-        """Run what is left of the sessions, and report what happens; closing the generator ends the session."""
-        news: queue.SimpleQueue[News | None] = queue.SimpleQueue()
-        left = [rest for session in sessions if (rest := self._rest(session)).trials]
-        thread = threading.Thread(target=self._play, args=(left, make, news), name="trials", daemon=True)
+        """Run what is left of the sessions, and report what happens; closing the generator ends the session.
+
+        A trial that was reported is in the log before the next begins.
+        """
+        news: queue.Queue[News | None] = queue.Queue()
+        thread = threading.Thread(target=self._play, args=(sessions, make, news), name="trials", daemon=True)
         thread.start()
         try:
             while True:
@@ -50,7 +39,10 @@ class LiveEngine:
                     return
                 if isinstance(message, Failed):
                     raise SessionFailed(message)
-                yield message
+                try:
+                    yield message
+                finally:
+                    news.task_done()
         finally:
             self._control.stop()
             thread.join()
@@ -59,30 +51,15 @@ class LiveEngine:
         """Start no more trials; the one that is going on is finished."""
         self._control.draining = True
 
-    def _rest(self, session: Session) -> Session:
-        trials = tuple(trial for trial in session.trials if trial_record.key(trial) not in self._done)
-        return msgspec.structs.replace(session, trials=trials)
-
-    def _play(self, sessions: Sequence[Session], make: RunnerFactory, news: queue.SimpleQueue[News | None]) -> None:
+    def _play(self, sessions: Sequence[Session], make: RunnerFactory, news: queue.Queue[News | None]) -> None:
         player = SessionPlayer(make)
         try:
             for session in sessions:
                 for message in player.run(session):
                     news.put(message)
+                    if isinstance(message, TrialDone):
+                        news.join()
                     if self._control.draining or self._control.stopped:
                         return
         finally:
             news.put(None)
-
-
-def make_runner(sources: Sources, seats: Mapping[str, LiveSeat], loop: RealTimeLoop) -> SessionRunner:
-    """The session runner of a live session, whose people sit at these pages."""
-    return session_runner.make_runner(sources, loop, functools.partial(welcome, seats=seats))
-
-
-def welcome(participants: Participants, seats: Mapping[str, LiveSeat]) -> None:
-    """Connect the people of a session with the pages in their seats."""
-    for name, seat in seats.items():
-        human = participants.humans[name]
-        assert isinstance(human, live.Model)
-        human.port = seat

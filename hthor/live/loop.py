@@ -10,6 +10,7 @@ from weakref import WeakKeyDictionary
 import msgspec
 
 from hthor.episode import Concurrent, Episode, EpisodeLog, Frames, TrialWorld, begin, take_answers
+from hthor.episode.clocks import make_clock
 from hthor.episode.play import ask, finish, record_beliefs
 from hthor.humans.model import HumanModel
 from hthor.live import wire
@@ -17,6 +18,7 @@ from hthor.live.control import Pacer, SessionControl, SessionStopped
 from hthor.live.desk import Desk
 from hthor.live.scenery import Scenery
 from hthor.live.seat import AWAY_S, LiveSeat
+from hthor.live.unfinished import UnfinishedTrial
 from hthor.types import SUBTICKS, BodySpec, Mind, TrialSpec
 
 if TYPE_CHECKING:
@@ -25,6 +27,8 @@ if TYPE_CHECKING:
 
 ABSENT_S = 2.0
 """[s] When somebody's page has been gone for so long, the trial is paused. Our choice."""
+_KEPT_EVERY_TICKS = 10
+"""How often the trial is kept for the case that the session is killed. Our choice."""
 _TURN_S = 0.05
 """[s] How often a trial that waits looks whether it may go on. Our choice."""
 
@@ -36,6 +40,7 @@ class RealTimeLoop:
         seats: the people at pages, by seat. desk: shows the trials to the experimenter.
         trials: how many trials the session has.
         publish: makes the file of a house known to the pages, and returns its address; without it pages draw nothing.
+        unfinished: keeps the trial that is going on, once a second.
         now, sleep: the time [s] and how to wait.
     """
 
@@ -47,11 +52,13 @@ class RealTimeLoop:
         *,
         trials: int = 1,
         publish: Callable[[HouseFile], str] | None = None,
+        unfinished: UnfinishedTrial | None = None,
         now: Callable[[], float] = time.perf_counter,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
         self._seats, self._control, self.trials = dict(seats), control, trials
         self._now, self._sleep, self._publish, self._desk = now, sleep, publish, desk
+        self._unfinished = unfinished
         self._sceneries: WeakKeyDictionary[TrialWorld, Scenery] = WeakKeyDictionary()
 
     def __call__(
@@ -59,7 +66,7 @@ class RealTimeLoop:
     ) -> EpisodeLog:
         """Run one trial from its announcement to the ratings."""
         episode = Episode(trial, world, (*humans, *robots))
-        clock = Concurrent(pace=lambda _: None)
+        clock = Concurrent(pace=lambda _: None) if trial.clock == "concurrent" else make_clock(trial)
         episode.reset()
         frames = Frames(episode, humans)
         try:
@@ -70,6 +77,8 @@ class RealTimeLoop:
             self._show_bodies(episode, scenery)
             pacer = Pacer(self._now, self._sleep)
             while not episode.done:
+                if self._unfinished is not None and episode.tick % _KEPT_EVERY_TICKS == 0:
+                    self._unfinished.keep(episode, humans)
                 if self._hold(episode):
                     pacer.restart()
                     self._desk.watch(episode, pacer)

@@ -8,26 +8,29 @@ from collections.abc import Callable
 
 import msgspec
 
+from hthor import rules
 from hthor.errors import HthorError
 from hthor.eval.config.options import EvalOptions
 from hthor.eval.planning.resolve import resolve
+from hthor.eval.records.run_folder import RunFolder
+from hthor.eval.replay.recorded_session import LIVE
 from hthor.eval.runner import experiment
 from hthor.eval.runner.experiment import FinishedRun
 from hthor.eval.runner.progress import Watcher
-from hthor.eval.runner.run_job import ScheduledRun
-from hthor.live import engine, wire
+from hthor.live import wire
 from hthor.live.control import SessionControl
 from hthor.live.desk import Desk
 from hthor.live.engine import LiveEngine
 from hthor.live.loop import RealTimeLoop
 from hthor.live.run_book import RunBook
 from hthor.live.seat import LiveSeat
-from hthor.live.server import LiveServer
+from hthor.live.server import DESK, LiveServer
+from hthor.live.sessions import LiveSessions
+from hthor.live.tokens import SessionTokens
+from hthor.live.unfinished import UnfinishedTrial
 
 _FAREWELL_S = 1.0
 """[s] For the pages to hear that the session is over. Our choice."""
-LIVE = "live"
-"""The word of --humans for somebody at a page."""
 
 
 class LiveRun:
@@ -71,8 +74,10 @@ class LiveRun:
         self.seats = {seat: LiveSeat(seat) for seat in live}
         self.control = SessionControl()
         self.desk = Desk(self.control, self.seats, RunBook(self.scheduled.folder))
-        self.server = LiveServer(self.seats, self.desk, host=host, port=port)
-        self._resolved, self._now, self._sleep, self._page = resolved, now, sleep, page
+        self._tokens = SessionTokens(self.scheduled.folder.path)
+        tokens = self._tokens.of((*self.seats, DESK))
+        self.server = LiveServer(self.seats, self.desk, host=host, port=port, tokens=tokens)
+        self._resolved, self._now, self._sleep, self._page, self._tell = resolved, now, sleep, page, tell
 
     def __enter__(self) -> LiveRun:
         self.server.start(page=self._page)
@@ -86,28 +91,36 @@ class LiveRun:
         """Play what is left of the run, and score it; errors as in `hthor.eval.runner.run.run_evaluation`."""
         run = self.scheduled
         most = max(len(one.trials) for one in run.sessions)
+        unfinished = UnfinishedTrial(run.folder.path)
         loop = RealTimeLoop(
             self.seats,
             self.control,
             self.desk,
             trials=most,
             publish=self.server.publish,
+            unfinished=unfinished,
             now=self._now,
             sleep=self._sleep,
         )
         live = msgspec.structs.replace(
             run,
-            engine=LiveEngine(self.control, self._done(run)),
-            runner=functools.partial(engine.make_runner, run.sources, self.seats, loop),
+            engine=LiveEngine(self.control),
+            runner=functools.partial(LiveSessions, run.sources, self.seats, loop, run.folder, unfinished),
         )
+        self._void_unfinished(run.folder, unfinished)
         (done,) = experiment.run_experiment(msgspec.structs.replace(self._resolved, runs=(live,)), make_watcher)
         for seat in self.seats.values():
             seat.show(wire.Over(trials=sum(len(one.trials) for one in run.sessions)))
         time.sleep(_FAREWELL_S)
+        self._tokens.forget()
         return done
 
-    def _done(self, run: ScheduledRun) -> frozenset[str]:
-        """The keys of the trials that are over."""
-        if not run.folder.holds_run:
-            return frozenset()
-        return frozenset(record.key for record in run.folder.played())
+    def _void_unfinished(self, folder: RunFolder, unfinished: UnfinishedTrial) -> None:
+        """Add the trial in which the last command was killed to the log, as an attempt that does not count."""
+        if not folder.holds_run:
+            return
+        with folder.open_log() as log:
+            record = unfinished.add_to(log)
+        if record is not None:
+            seconds = record.ticks * rules.TICK_S
+            self._tell(f"trial {record.spec.index + 1} was interrupted after {seconds:.0f} s, and is repeated")

@@ -7,6 +7,7 @@ says what there is to see.
 
 from __future__ import annotations
 
+import secrets
 import threading
 import time
 from collections import deque
@@ -52,6 +53,7 @@ class LiveSeat:
 
     def __init__(self, seat: str, now: Callable[[], float] = time.monotonic) -> None:
         self.seat, self._now = seat, now
+        self._server = secrets.token_hex(8)
         self._lock = threading.Lock()
         self._changed = threading.Condition(self._lock)
         self._page: Page | None = None
@@ -79,7 +81,7 @@ class LiveSeat:
         """Take a page, and show it how things are; the page that was there before, if there was one."""
         with self._lock:
             before, self._page = self._page, page
-            page.send(wire.Welcome(seat=self.seat, acts=self._acted))
+            page.send(wire.Welcome(seat=self.seat, acts=self._acted, server=self._server))
             for message in self._screen.values():
                 page.send(message)
             if self._picture is not None:

@@ -31,11 +31,15 @@ if TYPE_CHECKING:
 FOLDER = Path(__file__).resolve().parent / "page"
 """The built page; its sources are in the folder web of the repository."""
 PAGE, DESK_PAGE = "index.html", "experimenter.html"
+DESK = "desk"
+"""What the token of the experimenter's page belongs to."""
 _LOG = logging.getLogger("hthor.live")
 LOCAL_HOSTS = ("localhost", "127.0.0.1", "[::1]")
 """The names by which a browser on this machine reaches a server on it."""
 _JOIN_S = 10.0
 """[s] A connection that has not joined a seat by then is closed. Our choice."""
+_TOO_LARGE = 1009
+"""The code of a connection that was closed because of a message over `wire.LARGEST` (RFC 6455)."""
 _WAITING = 512
 """[count] Messages that may wait for a slow page before its connection is given up. Our choice."""
 _POLICY = (
@@ -109,6 +113,7 @@ class LiveServer:
         desk: of the experimenter, whose page is served too.
         host, port: where to listen; port 0 takes any that is free.
         hosts: names by which browsers may reach the server, besides those of this machine itself.
+        tokens: of each seat, and of `DESK`; made here by default.
 
     Attributes:
         tokens: the token of each seat.
@@ -122,11 +127,13 @@ class LiveServer:
         host: str = "127.0.0.1",
         port: int = 0,
         hosts: Collection[str] = (),
+        tokens: Mapping[str, str] | None = None,
     ) -> None:
         self._seats, self._desk = dict(seats), desk
-        self._desk_token = secrets.token_urlsafe(16)
         self._host, self._port, self._hosts = host, port, (*LOCAL_HOSTS, *hosts)
-        self.tokens = {seat: secrets.token_urlsafe(16) for seat in self._seats}
+        given = tokens or {name: secrets.token_urlsafe(16) for name in (*seats, DESK)}
+        self.tokens = {seat: given[seat] for seat in seats}
+        self._desk_token = given[DESK]
         self._page_files = {path.name: path for path in sorted(FOLDER.glob("*.*"))}
         self._houses: dict[str, bytes] = {}
         self._server: Any = None
@@ -279,6 +286,8 @@ class LiveServer:
         while not page.overrun:
             received = await socket.receive()
             if received["type"] != "websocket.receive":
+                if received.get("code") == _TOO_LARGE:
+                    _LOG.warning("%s: a message of more than %d bytes; its connection is closed", whose, wire.LARGEST)
                 return
             try:
                 text, data = received.get("text") or "", received.get("bytes")

@@ -1,13 +1,13 @@
 """The people of a trial: for each seat, the population that its people are drawn from."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from msgspec import Struct
 
 from hthor import jsonio
 from hthor.errors import HthorError
-from hthor.humans.model import HumanModel
+from hthor.humans.model import HumanModel, State
 from hthor.humans.population import resolve
 from hthor.humans.population.resolve import ParticipantSource
 from hthor.types import HUMAN, HumanSeat
@@ -55,10 +55,17 @@ class HumanTeam(Struct, frozen=True, kw_only=True, eq=False):
             for place, member in enumerate(self.members)
         )
 
-    def make_models(self, seed: int, seats: Sequence[HumanSeat]) -> dict[str, HumanModel]:
-        """The human model of each of these people of the study with this seed, by seat, before their first trial."""
+    def make_models(
+        self, seed: int, seats: Sequence[HumanSeat], states: Mapping[str, State] | None = None
+    ) -> dict[str, HumanModel]:
+        """The human model of each of these people of the study with this seed, by seat.
+
+        Args:
+            states: what they remember of earlier trials, by seat; without it, they are before their first.
+        """
+        known = states or {}
         pairs = zip(seats, self.members, strict=True)
-        return {seat.seat: member.make_model(seed, seat.participant) for seat, member in pairs}
+        return {seat.seat: member.make_model(seed, seat.participant, known.get(seat.seat)) for seat, member in pairs}
 
 
 def split_word(word: str) -> tuple[str, ...]:

@@ -25,7 +25,7 @@ CODE_ROOT = "trial"
 if TYPE_CHECKING:
     from hthor.episode import EpisodeLog, TrialWorld
     from hthor.guest import GuestPool
-    from hthor.humans.model import HumanModel
+    from hthor.humans.model import HumanModel, State
     from hthor.trials.human_team import HumanTeam
     from hthor.trials.sessions import Session
     from hthor.world import World
@@ -81,8 +81,11 @@ class TrialRunner:
         """New people and new agents for a session."""
         first = session.trials[0]
         make_agent = functools.partial(self._make_agent, step_limit_s=first.step_limit_s or None)
-        humans = self._people_of(first).make_models(first.seed, first.humans)
-        return Participants(humans, first.robots, make_agent)
+        return Participants(self.make_people(first), first.robots, make_agent)
+
+    def make_people(self, trial: TrialSpec, states: Mapping[str, State] | None = None) -> dict[str, HumanModel]:
+        """The people of a trial, by seat, with what they remember of earlier trials of its session."""
+        return self._people_of(trial).make_models(trial.seed, trial.humans, states)
 
     def world(self, trial: TrialSpec) -> World:
         """The world of a trial: an earlier trial's world if house, robots and sensors are the same."""

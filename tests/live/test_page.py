@@ -8,10 +8,12 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlsplit
 
 import msgspec
 import pytest
 from live_session import LiveSession
+from relay import Relay
 from world_house import COUNTER, TABLE, house, on, task
 
 from hthor.live import server
@@ -32,7 +34,7 @@ APPLE = (2.95, 2.8)
 _WALK = """([x, y]) => new Promise((done) => {
   let last = Infinity;
   const step = () => {
-    const left = Math.hypot(page.head.x - x, page.head.y - y);
+    const left = Math.hypot(page.motion.x - x, page.motion.y - y);
     if (left < 0.12 || (left < 0.5 && left > last + 1e-3)) {
       page.keys.held.clear();
       return done();
@@ -116,20 +118,34 @@ class Person:
 
 
 def test_a_person_plays_a_delivery_and_a_search_in_the_browser(live: LiveSession) -> None:
+    play(live, live.server.address)
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("round_trip_ms", [100, 200, 300])
+def test_delays_and_jitter_spoil_neither(round_trip_ms: int, live: LiveSession) -> None:
+    with Relay(urlsplit(live.server.address).port, round_trip_ms / 1000) as slow:  # type: ignore[arg-type]
+        largest = play(live, slow.address)
+    assert round_trip_ms > 200 or largest < 0.5
+
+
+def play(live: LiveSession, address: str) -> float:
+    """Play a session at this address, and check what became of it; the largest correction [m] of the own motion."""
     complaints: list[str] = []
     with browsers.sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=list(_GRAPHICS))
         page = browser.new_page(viewport={"width": 480, "height": 300})
         page.on("console", lambda message: complaints.append(message.text))
         page.on("pageerror", lambda error: complaints.append(str(error)))
-        page.on("request", lambda request: note_foreign(request.url, live.server.address, complaints))
-        page.goto(live.server.url(HUMAN).replace("/#", "/?plain#"))
+        page.on("request", lambda request: note_foreign(request.url, address, complaints))
+        page.goto(f"{address}/?plain#{live.server.tokens[HUMAN]}")
         page.set_default_timeout(_PATIENCE_MS)
         person = Person(page)
         deliver(person)
         search(person)
         page.wait_for_selector("#title:text('Thank you')")
         live.thread.join(60.0)
+        largest: float = page.evaluate("page.motion.largest")
         browser.close()
     assert complaints == []
     delivery, found = live.logs
@@ -140,6 +156,10 @@ def test_a_person_plays_a_delivery_and_a_search_in_the_browser(live: LiveSession
     assert any(isinstance(event, Declined) for event in found.events)
     shown = [(event.what, event.on) for event in delivery.events if isinstance(event, Displayed)]
     assert shown[-2:] == [("map", False), ("map", True)]
+    for log in live.logs:
+        answers = [event.message for event in log.events if isinstance(event, Accepted | Declined)]
+        assert len(answers) == len(set(answers)), "each answer counts once"
+    return largest
 
 
 def note_foreign(url: str, address: str, complaints: list[str]) -> None:

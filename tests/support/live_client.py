@@ -17,7 +17,10 @@ from hthor.types import Drive
 
 
 class ScriptedPerson:
-    """Joins a seat and keeps what it is shown; `drive`, `act`, `begin` and `rate` are what a page does."""
+    """Joins a seat and keeps what it is shown; `drive` and `act` are what a page does.
+
+    What is sent to a server that is gone is lost; ``connected`` says whether it is.
+    """
 
     def __init__(
         self, address: str, token: str, *, version: str = wire.VERSION, origin: str = "", steers: bool = True
@@ -27,6 +30,7 @@ class ScriptedPerson:
         self.places: dict[int, tuple[int, ...]] = {}
         self.pictures: dict[int, bytes] = {}
         self.steered = self.acts = 0
+        self.connected = True
         self.changed = threading.Condition()
         self._token, self._open = token, ExitStack()
         self._connection = connect(
@@ -38,8 +42,7 @@ class ScriptedPerson:
 
     def __enter__(self) -> ScriptedPerson:
         self.socket: ClientConnection = self._open.enter_context(self._connection)
-        with suppress(ConnectionClosed):  # of another version
-            self.send({"type": "join", "token": self._token})
+        self.send({"type": "join", "token": self._token})
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
         threading.Thread(target=self._push, daemon=True).start()
@@ -55,7 +58,8 @@ class ScriptedPerson:
         self._reader.join()
 
     def send(self, message: dict[str, Any]) -> None:
-        self.socket.send(json.dumps(message))
+        with suppress(ConnectionClosed):
+            self.socket.send(json.dumps(message))
 
     def drive(self, **drive: float) -> None:
         self._drive = Drive(**drive)
@@ -91,6 +95,9 @@ class ScriptedPerson:
         with self.changed:
             assert self.changed.wait_for(done, seconds)
 
+    def see(self, frame: wire.FrameHead) -> None:
+        """Called with each frame; does nothing here."""
+
     def _push(self) -> None:
         try:
             while not self._gone:
@@ -114,6 +121,10 @@ class ScriptedPerson:
                         head, moved = wire.decode_frame(data)
                         self.frames.append(head)
                         self.places.update(moved)
+                        self.see(head)
                     self.changed.notify_all()
         except ConnectionClosed:
-            return
+            pass
+        with self.changed:
+            self.connected = False
+            self.changed.notify_all()

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import msgspec
+import relay
 from live_client import ScriptedPerson
 
 from hthor.episode import EpisodeLog
@@ -18,10 +19,10 @@ from hthor.guest import GuestPool
 from hthor.live.control import SessionControl, SessionStopped
 from hthor.live.desk import Desk
 from hthor.live.desk_wire import PlayedTrial
-from hthor.live.engine import welcome
 from hthor.live.loop import RealTimeLoop
 from hthor.live.seat import LiveSeat
 from hthor.live.server import LiveServer
+from hthor.live.sessions import welcome
 from hthor.trials import TrialRunner, form_team, make_sessions, make_sources
 from hthor.trials.robot_team import RobotTeam
 from hthor.trials.sessions import Session
@@ -103,7 +104,7 @@ class LiveSession:
         self.seats = {HUMAN: self.seat}
         self.book = Book()
         self.desk = Desk(self.control, self.seats, self.book)
-        self.server = LiveServer(self.seats, self.desk)
+        self.server = LiveServer(self.seats, self.desk, hosts=(relay.HOST,))
         self.server.start(page=world is not None)
         self.logs: list[EpisodeLog] = []
         loop = RealTimeLoop(

@@ -8,6 +8,8 @@ const PING_MS = 1000;
 /** @type {WebSocket | null} */
 let socket = null;
 let token = "";
+/** Which start of the server the acts were sent to. */
+let server = "";
 let failures = 0;
 let steered = 0;
 let acted = 0;
@@ -38,6 +40,7 @@ function connect() {
 function onWords(message) {
   if (message.type === "welcome") {
     failures = 0;
+    if (message.server !== server) [server, acted, pending] = [message.server, 0, []];
     acted = Math.max(acted, message.acts);
     pending = pending.filter((act) => act.number > message.acts);
     pending.forEach(tell);

@@ -121,11 +121,13 @@ class Collector:
             self._watcher.note(f"session {message.session} is given up: {message.cause}")
 
     def _keep(self, trial: TrialDone) -> None:
+        counted = self._log.counted
         if not self._log.append(trial.key, trial.line):
             self._collected.different += not self._log.agrees(trial.key, trial.line)
             return
         self._collected.new += 1
-        self._watcher.played(trial.met, trial.faulty)
+        if self._log.counted > counted:  # else it was voided, and is repeated
+            self._watcher.played(trial.met, trial.faulty)
         if trial.fault_report is not None:
             self._faults.keep(trial.fault_report)
 

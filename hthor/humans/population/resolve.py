@@ -13,7 +13,7 @@ from msgspec import Struct
 
 from hthor import documents, jsonio, plugins
 from hthor.errors import PopulationError, UnknownName
-from hthor.humans.model import HumanModel
+from hthor.humans.model import HumanModel, State
 from hthor.humans.population import kinds, population_file
 from hthor.humans.population.kinds import PopulationKind
 from hthor.humans.population.participant import Participant
@@ -57,10 +57,11 @@ class ParticipantSource(Struct, frozen=True, kw_only=True, eq=False):
         change = self.kind.change if self.kind is not None else None
         return Participant(seed=seed, number=participant, traits=self.population.draw_traits(seed, participant, change))
 
-    def make_model(self, seed: int, participant: int) -> HumanModel:
-        """The human model of that participant, before the first trial."""
+    def make_model(self, seed: int, participant: int, state: State | None = None) -> HumanModel:
+        """The human model of that participant, before the first trial or with what they remember of earlier ones."""
         model, person = plugins.load(_SORT, self.model), self.participant(seed, participant)
-        made: HumanModel = model(person, source=self.source) if self.source else model(person)
+        given: dict[str, Any] = {"state": state} if state else {}
+        made: HumanModel = model(person, **given, source=self.source) if self.source else model(person, **given)
         return made
 
 

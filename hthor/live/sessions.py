@@ -1,0 +1,102 @@
+"""Plays sessions with people at pages: every trial until an attempt counts, after those that the log has already."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from hthor.eval.records import attempts, trial_record
+from hthor.eval.records.run_folder import RunFolder
+from hthor.eval.records.trial_record import TrialRecord
+from hthor.eval.replay.recorded_session import LIVE, RecordedSeat
+from hthor.eval.runner.messages import TrialOutcome
+from hthor.eval.runner.session_runner import run_trial
+from hthor.guest import GuestPool
+from hthor.humans.model import State
+from hthor.humans.models import live
+from hthor.live.loop import RealTimeLoop
+from hthor.live.seat import LiveSeat
+from hthor.live.unfinished import UnfinishedTrial
+from hthor.trials import Participants, Sources, TrialRunner
+from hthor.trials.sessions import Session
+from hthor.types import TrialSpec
+
+States = Mapping[str, State]
+"""What people remember of earlier trials, by seat."""
+
+
+class LiveSessions:
+    """A session runner, see `hthor.eval.runner.messages.SessionRunner`, for people at pages.
+
+    A trial that is voided is repeated at once, as its next attempt; simulated people remember nothing of it. Trials
+    that are in the log are not repeated: when simulated people take part, those trials are run again from everybody's
+    inputs, as in a replay, for them to remember.
+
+    Args:
+        folder: of the run. unfinished: keeps the trial that is going on.
+    """
+
+    def __init__(
+        self,
+        sources: Sources,
+        seats: Mapping[str, LiveSeat],
+        loop: RealTimeLoop,
+        folder: RunFolder,
+        unfinished: UnfinishedTrial,
+    ) -> None:
+        self._runner = TrialRunner(sources, GuestPool(), loop=loop)
+        self._past = TrialRunner(sources, worlds=self._runner.worlds)
+        self._seats, self._folder, self._unfinished = seats, folder, unfinished
+
+    def __call__(self, session: Session) -> Iterator[TrialOutcome]:
+        """Play what is left of a session."""
+        logged = {record.key: record for record in RunFolder(self._folder.path).played()}
+        past: list[TrialRecord] = []
+        states: States = {}
+        with self._runner.enter(session) as participants:
+            for trial in session.trials:
+                if (record := logged.get(trial_record.key(trial))) is not None:
+                    past.append(record)
+                    continue
+                states, past = remember(self._past, past, states), []
+                yield from self._play(participants, trial, states)
+                states = {seat: human.state() for seat, human in participants.humans.items()}
+
+    def _play(self, participants: Participants, trial: TrialSpec, states: States) -> Iterator[TrialOutcome]:
+        """Play a trial until an attempt counts."""
+        number = trial.attempt or 0
+        while True:
+            participants.humans = self._runner.make_people(trial, states)
+            welcome(participants, self._seats)
+            outcome = run_trial(self._runner, participants, attempts.numbered(trial, number))
+            yield outcome
+            self._unfinished.forget()  # now that the record is in the log
+            if not outcome.record.log.voided:
+                return
+            number += 1
+
+
+def remember(runner: TrialRunner, past: Sequence[TrialRecord], states: States) -> States:
+    """What people remember after trials of the log.
+
+    Args:
+        runner: plays them once more, from everybody's inputs.
+        past: trials of one session, which followed on those that the people remember already, as ``states`` says.
+    """
+    if not past or all(human.model == LIVE for human in past[0].spec.humans):
+        return states
+    first = past[0].spec
+    people = runner.make_people(first, states)
+    people |= {one.seat: RecordedSeat(one.seat, past) for one in first.humans if one.model == LIVE}
+    robots = {robot.seat: RecordedSeat(robot.seat, past) for robot in first.robots}
+    with Participants(people, first.robots, lambda robot: robots[robot.seat]) as participants:
+        for record in past:
+            runner.run(participants, record.spec)
+    return {seat: human.state() for seat, human in people.items()}
+
+
+def welcome(participants: Participants, seats: Mapping[str, LiveSeat]) -> None:
+    """Connect the people of a session with the pages in their seats."""
+    for name, seat in seats.items():
+        human = participants.humans[name]
+        assert isinstance(human, live.Model)
+        human.port = seat
