@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import queue
 import threading
-from collections.abc import Collection, Generator, Mapping, Sequence
+from collections.abc import Callable, Collection, Generator, Iterator, Mapping, Sequence
 
 import msgspec
 
@@ -21,6 +21,10 @@ from hthor.live.loop import RealTimeLoop
 from hthor.live.seat import LiveSeat
 from hthor.trials import Participants, Sources
 from hthor.trials.sessions import Session
+from hthor.types import TrialSpec
+
+_TURN_S = 0.05
+"""[s] How often the trials' thread looks whether the log has what it sent. Our choice."""
 
 
 class LiveEngine:
@@ -28,10 +32,17 @@ class LiveEngine:
 
     Args:
         control: what the experimenter may do. done: the keys of trials that are over, which are not played again.
+        due: the attempts that the log lacks of a session's trials, as they were voided; by the session's number.
     """
 
-    def __init__(self, control: SessionControl, done: Collection[str] = ()) -> None:
-        self._control, self._done = control, frozenset(done)
+    def __init__(
+        self,
+        control: SessionControl,
+        done: Collection[str] = (),
+        due: Callable[[int], Sequence[TrialSpec]] = lambda _: (),
+    ) -> None:
+        self._control, self._done, self._due = control, frozenset(done), due
+        self._sent = self._kept = 0  # messages, and how many of them have reached the log
 
     def run_sessions(self, sessions: Sequence[Session], make: RunnerFactory) -> Generator[News | None, None, None]:
         """Run what is left of the sessions, and report what happens; closing the generator ends the session."""
@@ -51,6 +62,7 @@ class LiveEngine:
                 if isinstance(message, Failed):
                     raise SessionFailed(message)
                 yield message
+                self._kept += 1
         finally:
             self._control.stop()
             thread.join()
@@ -58,6 +70,16 @@ class LiveEngine:
     def drain(self) -> None:
         """Start no more trials; the one that is going on is finished."""
         self._control.draining = True
+
+    def repetitions(self, session: Session) -> Iterator[TrialSpec]:
+        """The session's trials that were voided, each as its next attempt, until every trial has one that counts."""
+        while True:
+            while self._kept < self._sent:
+                self._control.wait(_TURN_S)
+            due = self._due(session.number)
+            if not due:
+                return
+            yield due[0]
 
     def _rest(self, session: Session) -> Session:
         trials = tuple(trial for trial in session.trials if trial_record.key(trial) not in self._done)
@@ -68,6 +90,7 @@ class LiveEngine:
         try:
             for session in sessions:
                 for message in player.run(session):
+                    self._sent += 1
                     news.put(message)
                     if self._control.draining or self._control.stopped:
                         return
@@ -75,9 +98,14 @@ class LiveEngine:
             news.put(None)
 
 
-def make_runner(sources: Sources, seats: Mapping[str, LiveSeat], loop: RealTimeLoop) -> SessionRunner:
-    """The session runner of a live session, whose people sit at these pages."""
-    return session_runner.make_runner(sources, loop, functools.partial(welcome, seats=seats))
+def make_runner(
+    sources: Sources,
+    seats: Mapping[str, LiveSeat],
+    loop: RealTimeLoop,
+    repetitions: Callable[[Session], Iterator[TrialSpec]],
+) -> SessionRunner:
+    """The session runner of a live session, whose people sit at these pages; see `LiveEngine.repetitions`."""
+    return session_runner.make_runner(sources, loop, functools.partial(welcome, seats=seats), repetitions)
 
 
 def welcome(participants: Participants, seats: Mapping[str, LiveSeat]) -> None:

@@ -15,7 +15,8 @@ from hthor.eval.runner import experiment
 from hthor.eval.runner.experiment import FinishedRun
 from hthor.eval.runner.progress import Watcher
 from hthor.eval.runner.run_job import ScheduledRun
-from hthor.live import engine, wire
+from hthor.live import engine, local_network, wire
+from hthor.live.certificate import Certificate, certificate
 from hthor.live.control import SessionControl
 from hthor.live.desk import Desk
 from hthor.live.engine import LiveEngine
@@ -35,10 +36,15 @@ class LiveRun:
 
     Args:
         options: those of `hthor eval`, with people called "live" among ``humans``.
-        host, port, page: where to serve, and whether to browsers. now, sleep: as of `hthor.live.loop.RealTimeLoop`.
+        port, page: where to serve, and whether to browsers.
+        lan: whether other machines on the local network may connect, with encryption; else only this one.
+        experimenter_starts: whether each trial waits for the experimenter.
+        now, sleep: as of `hthor.live.loop.RealTimeLoop`.
 
     Attributes:
         scheduled: the run. seats: the people at pages, by seat. server: what they connect to.
+        hosts: this machine's addresses on the local network, if other machines may connect.
+        certificate: what the server shows to other machines.
 
     Raises:
         HthorError: for any invalid option.
@@ -48,9 +54,10 @@ class LiveRun:
         self,
         options: EvalOptions,
         *,
-        host: str = "127.0.0.1",
         port: int = 0,
         page: bool = True,
+        lan: bool = False,
+        experimenter_starts: bool = False,
         tell: Callable[[str], None] = lambda _: None,
         now: Callable[[], float] = time.perf_counter,
         sleep: Callable[[float], None] = time.sleep,
@@ -69,9 +76,12 @@ class LiveRun:
                 "simulated people alone are evaluated with 'hthor eval'."
             )
         self.seats = {seat: LiveSeat(seat) for seat in live}
-        self.control = SessionControl()
-        self.desk = Desk(self.control, self.seats, RunBook(self.scheduled.folder))
-        self.server = LiveServer(self.seats, self.desk, host=host, port=port)
+        self.control = SessionControl(experimenter_starts=experimenter_starts)
+        self._book = RunBook(self.scheduled.folder)
+        self.desk = Desk(self.control, self.seats, self._book)
+        self.hosts: tuple[str, ...] = ()
+        self.certificate: Certificate | None = None
+        self.server = self._lan_server(port) if lan else LiveServer(self.seats, self.desk, port=port)
         self._resolved, self._now, self._sleep, self._page = resolved, now, sleep, page
 
     def __enter__(self) -> LiveRun:
@@ -95,16 +105,27 @@ class LiveRun:
             now=self._now,
             sleep=self._sleep,
         )
-        live = msgspec.structs.replace(
-            run,
-            engine=LiveEngine(self.control, self._done(run)),
-            runner=functools.partial(engine.make_runner, run.sources, self.seats, loop),
-        )
+        live_engine = LiveEngine(self.control, self._done(run), self._book.due)
+        make_runner = functools.partial(engine.make_runner, run.sources, self.seats, loop, live_engine.repetitions)
+        live = msgspec.structs.replace(run, engine=live_engine, runner=make_runner)
         (done,) = experiment.run_experiment(msgspec.structs.replace(self._resolved, runs=(live,)), make_watcher)
         for seat in self.seats.values():
             seat.show(wire.Over(trials=sum(len(one.trials) for one in run.sessions)))
         time.sleep(_FAREWELL_S)
         return done
+
+    def _lan_server(self, port: int) -> LiveServer:
+        """A server for other machines too."""
+        self.hosts = local_network.addresses()
+        if not self.hosts:
+            raise HthorError(
+                "--lan: this machine has no address that other machines could open. Connect it to the network, or "
+                "leave out --lan."
+            )
+        hosts = (*self.hosts, local_network.host_name())
+        self.certificate = certificate((*hosts, "localhost", "127.0.0.1"))
+        where = local_network.EVERYWHERE
+        return LiveServer(self.seats, self.desk, host=where, port=port, hosts=hosts, certificate=self.certificate)
 
     def _done(self, run: ScheduledRun) -> frozenset[str]:
         """The keys of the trials that are over."""

@@ -6,6 +6,7 @@ import math
 import shutil
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +29,16 @@ CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 _GRAPHICS = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist")
 _PATIENCE_MS = 60_000
 APPLE = (2.95, 2.8)
+
+_COLOURS = """(seat) => {
+  const canvas = document.querySelector(`#views canvas[data-seat=${seat}]`);
+  if (!canvas) return 0;
+  const pen = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d", { willReadFrequently: true });
+  pen.drawImage(canvas, 0, 0);
+  const { data } = pen.getImageData(0, 0, canvas.width, canvas.height);
+  return new Set(new Uint32Array(data.buffer)).size;
+}"""
+"""How many colours the picture of what a seat sees has, on the experimenter's page."""
 
 _WALK = """([x, y]) => new Promise((done) => {
   let last = Infinity;
@@ -68,13 +79,22 @@ def tasks() -> tuple[TaskSpec, ...]:
 
 
 @pytest.fixture
-def live(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[LiveSession]:
+def live(tmp_path: Path) -> Iterator[LiveSession]:
+    with session(tmp_path) as made:
+        yield made
+
+
+@contextmanager
+def session(folder: Path, **options: Any) -> Iterator[LiveSession]:
+    """Both tasks in one room, in real time."""
     plan = house()
     rooms = msgspec.structs.replace(plan, things=tuple(one for one in plan.things if one.id != "chair|1"))
     world = World(rooms, robots=["scout"], objects=(("apple", "apple"), ("mug", "mug")))
-    made = LiveSession(tmp_path, tasks(), world, faster=1.0)
-    yield made
-    made.close()
+    made = LiveSession(folder, tasks(), world, faster=1.0, **options)
+    try:
+        yield made
+    finally:
+        made.close()
 
 
 class Person:
@@ -116,22 +136,12 @@ class Person:
 
 
 def test_a_person_plays_a_delivery_and_a_search_in_the_browser(live: LiveSession) -> None:
-    complaints: list[str] = []
-    with browsers.sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=list(_GRAPHICS))
-        page = browser.new_page(viewport={"width": 480, "height": 300})
-        page.on("console", lambda message: complaints.append(message.text))
-        page.on("pageerror", lambda error: complaints.append(str(error)))
-        page.on("request", lambda request: note_foreign(request.url, live.server.address, complaints))
-        page.goto(live.server.url(HUMAN).replace("/#", "/?plain#"))
-        page.set_default_timeout(_PATIENCE_MS)
+    with opened(live, plain(live.server.url(HUMAN))) as page:
         person = Person(page)
         deliver(person)
         search(person)
         page.wait_for_selector("#title:text('Thank you')")
         live.thread.join(60.0)
-        browser.close()
-    assert complaints == []
     delivery, found = live.logs
     assert delivery.met
     assert found.met
@@ -140,6 +150,47 @@ def test_a_person_plays_a_delivery_and_a_search_in_the_browser(live: LiveSession
     assert any(isinstance(event, Declined) for event in found.events)
     shown = [(event.what, event.on) for event in delivery.events if isinstance(event, Displayed)]
     assert shown[-2:] == [("map", False), ("map", True)]
+
+
+def test_the_experimenter_starts_a_trial_and_sees_what_everybody_sees(tmp_path: Path) -> None:
+    with session(tmp_path, experimenter_starts=True) as live, opened(live, plain(live.server.desk_url)) as page:
+        page.wait_for_selector("#state:text('waiting for human')")
+        assert page.is_disabled("#start")
+        with live.person() as person:
+            person.wait_for("trial")
+            person.send({"type": "begin", "trial": 0})
+            page.click("#start:not([disabled])")
+            person.wait_for("began")
+            page.click("#look")
+            for seat in (HUMAN, "robot"):
+                Person(page).until(f"({_COLOURS})('{seat}') > 100")
+            page.wait_for_selector("#events :text('robot sent')")
+            page.wait_for_selector("#people :text('pictures/s')")
+            assert page.is_hidden("#start")
+            page.click("#look")
+            assert page.query_selector("#views canvas") is None
+
+
+def plain(url: str) -> str:
+    """The address of a page that spares machines without graphics."""
+    return url.replace("#", "?plain#")
+
+
+@contextmanager
+def opened(live: LiveSession, url: str) -> Iterator[Any]:
+    """A page in a browser, which must not complain, nor ask any other site for anything."""
+    complaints: list[str] = []
+    with browsers.sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=list(_GRAPHICS))
+        page = browser.new_page(viewport={"width": 480, "height": 300})
+        page.on("console", lambda message: complaints.append(message.text))
+        page.on("pageerror", lambda error: complaints.append(str(error)))
+        page.on("request", lambda request: note_foreign(request.url, live.server.address, complaints))
+        page.goto(url)
+        page.set_default_timeout(_PATIENCE_MS)
+        yield page
+        browser.close()
+    assert complaints == []
 
 
 def note_foreign(url: str, address: str, complaints: list[str]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from itertools import chain
 from typing import TYPE_CHECKING
 
 import msgspec
@@ -22,12 +23,13 @@ def make_runner(
     sources: Sources | None = None,
     loop: TrialLoop | None = None,
     welcome: Callable[[Participants], None] | None = None,
+    repetitions: Callable[[Session], Iterator[TrialSpec]] | None = None,
 ) -> Callable[[Session], Iterator[TrialOutcome]]:
     """A function that runs a session's trials in order. Called in the worker, as it imports large libraries.
 
     Args:
         loop: drives each trial; by default `hthor.episode.play`. welcome: called with a session's participants before
-            its first trial.
+            its first trial. repetitions: asked after a session's last trial for attempts to play then, one by one.
     """
     from hthor.guest import GuestPool
 
@@ -37,7 +39,7 @@ def make_runner(
         with runner.enter(session) as participants:
             if welcome is not None:
                 welcome(participants)
-            for trial in session.trials:
+            for trial in chain(session.trials, repetitions(session) if repetitions is not None else ()):
                 yield run_trial(runner, participants, trial)
 
     return run_session
