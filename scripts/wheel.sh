@@ -41,6 +41,10 @@ contents "$wheel" >"$work/wheel.txt"
 cut -d' ' -f2 "$work/wheel.txt" | grep -v '^hthor-' | sort >"$work/packed"
 diff "$work/tracked" "$work/packed" || { echo "the wheel differs from the source tree: see [tool.setuptools] in pyproject.toml" >&2; exit 1; }
 
+echo "-- no private key is among the files that are packed"
+keys=$(grep -rlE -e '-----BEGIN [A-Z ]*PRIVATE KEY' "$work/tree" || true)
+[ -z "$keys" ] || { echo "a private key is in the source tree: $keys" >&2; exit 1; }
+
 echo "-- the sdist builds the same wheel"
 mkdir "$work/unpacked" "$work/again"
 tar -xzf "$sdist" -C "$work/unpacked" --strip-components=1

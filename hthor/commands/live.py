@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import msgspec
 import typer
@@ -14,6 +14,9 @@ from hthor.commands.options import Json, takes_options
 from hthor.console import output
 from hthor.eval.config.option import Option, make_record
 from hthor.eval.config.options import EvalOptions
+
+if TYPE_CHECKING:
+    from hthor.live.run import LiveRun
 
 _AS_IN_EVAL = (
     *("agent", "agent_args", "readable", "humans", "suite", "kind", "robot", "robots", "detector", "camera"),
@@ -47,6 +50,18 @@ LiveOptions = msgspec.defstruct(
 @takes_options(LiveOptions)
 def live(
     port: Annotated[int, typer.Option(min=0, max=65535, help="The port of the pages; 0 for any that is free.")] = 8765,
+    lan: Annotated[
+        bool,
+        typer.Option(
+            "--lan",
+            help="Let other machines on the local network open the pages too, encrypted. Without it, only this machine "
+            "can.",
+        ),
+    ] = False,
+    experimenter_starts: Annotated[
+        bool,
+        typer.Option("--experimenter-starts", help="Each trial waits until the experimenter starts it on their page."),
+    ] = False,
     json: Json = False,
     **given: object,
 ) -> None:
@@ -62,11 +77,30 @@ def live(
     talk = output.console(talk=True)
     chosen = make_record(LiveOptions, given)
     options = EvalOptions(**{name: getattr(chosen, name) for name in _AS_IN_EVAL})
-    with LiveRun(options, port=port, tell=lambda words: output.say(words, talk)) as run:
-        for seat in run.seats:
-            output.say(f"open {run.server.url(seat)}" + (f" as {seat}" if len(run.seats) > 1 else ""), talk)
-        output.say(f"the experimenter's page: {run.server.desk_url}", talk)
+    tell = partial(output.say, to=talk)
+    with LiveRun(options, port=port, lan=lan, experimenter_starts=experimenter_starts, tell=tell) as run:
+        for line in _welcome(run):
+            tell(line)
         done = run.play(partial(progress.make_watcher, talk, quiet=False, live=output.live()))
     results.show_run(talk if json else output.console(), done)
     if json:
         output.put_json(population_matrix.make_evaluation([(str(done.folder), done.result)]))
+
+
+def _welcome(run: LiveRun) -> list[str]:
+    """What to open, a line for each address."""
+    from hthor.live.server import LOCAL_HOSTS
+
+    hosts, server = run.hosts or LOCAL_HOSTS[1:2], run.server
+    lines = [
+        f"open {server.url(seat, host)}" + (f" as {seat}" if len(run.seats) > 1 else "")
+        for seat in run.seats
+        for host in hosts
+    ]
+    lines += [f"the experimenter's page: {server.desk_url_at(host)}" for host in hosts]
+    if run.certificate is not None:
+        lines.append(
+            "Browsers warn of this server, because its certificate was made on this machine: go on if the certificate "
+            f"that they show has the SHA-256 fingerprint {run.certificate.fingerprint}."
+        )
+    return lines

@@ -33,9 +33,13 @@ class SessionControl:
         paused: why the trial is paused; empty while it goes on.
         void: why the trial that is going on is to be voided; empty if it is not.
         draining: whether the session ends with the trial that is going on, which then waits for nobody.
+        experimenter_starts: whether each trial waits for the experimenter. started: whether they have started the
+            trial that is announced.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, *, experimenter_starts: bool = False) -> None:
+        self.experimenter_starts = experimenter_starts
+        self.started = False
         self.paused = self.void = ""
         self.draining = False
         self._stopped = threading.Event()

@@ -9,17 +9,33 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Protocol
 
 from hthor.errors import HthorError
 from hthor.live import desk_wire
-from hthor.live.desk_wire import FromDesk, Person, PlayedTrial, ToDesk, Watch
+from hthor.live.desk_wire import (
+    Eye,
+    FromDesk,
+    Gathering,
+    Happened,
+    Line,
+    Person,
+    Plan,
+    PlayedTrial,
+    ToDesk,
+    Watch,
+    Ways,
+)
+from hthor.live.wire import FrameHead
+from hthor.types import SUBTICKS
 from hthor.types.events import Progress, Thought
 
 if TYPE_CHECKING:
     from hthor.episode import Episode
     from hthor.live.control import Pacer, SessionControl
     from hthor.live.seat import LiveSeat
+    from hthor.types import BodySpec, Vec2
     from hthor.types.events import Event
 
 _EVERY_TICKS = 2
@@ -34,6 +50,9 @@ class Book(Protocol):
     def played(self) -> tuple[PlayedTrial, ...]:
         """The trials that are over, with their corrections."""
 
+    def repeat(self, trial: str, reason: str) -> None:
+        """Void a trial that is over, and have it repeated; HthorError when that cannot be."""
+
     def correct(self, trial: str, seat: str, adopted: bool | None, reason: str) -> None:
         """Correct whether the person in a seat adopted a suggestion; HthorError when that cannot be."""
 
@@ -44,6 +63,33 @@ class DeskPage(Protocol):
     def send(self, message: ToDesk) -> None:
         """Send a message; returns at once, from any thread."""
 
+    def show(self, head: FrameHead, moved: Mapping[int, bytes]) -> None:
+        """Send a frame; returns at once, from any thread. A newer one replaces one that waits, and keeps what moved."""
+
+
+@dataclass
+class _Shown:
+    """What the desk shows of one trial.
+
+    Attributes:
+        places: where everything that moves is, by its number. moved: what of it the pages that look have not got yet.
+    """
+
+    plan: Plan | None = None
+    gathering: Gathering | None = None
+    events: list[Line] = field(default_factory=list)
+    ways: dict[str, list[Vec2]] = field(default_factory=dict)
+    watch: Watch | None = None
+    places: dict[int, bytes] = field(default_factory=dict)
+    moved: dict[int, bytes] = field(default_factory=dict)
+
+    def messages(self) -> list[ToDesk]:
+        """What a page that joins has missed."""
+        if self.plan is None:
+            return []
+        so_far = (self.plan, self.gathering, Happened(events=tuple(self.events)), Ways(ways=self.ways), self.watch)
+        return [message for message in so_far if message is not None]
+
 
 class Desk:
     """The desk of one session; any number of pages may show it."""
@@ -52,9 +98,8 @@ class Desk:
         self._control, self._seats, self._book = control, dict(seats), book
         self._lock = threading.Lock()
         self._pages: list[DeskPage] = []
-        self._plan: desk_wire.Plan | None = None
-        self._events: list[desk_wire.Happened] = []
-        self._watch: Watch | None = None
+        self._lookers: list[DeskPage] = []  # pages that draw what seats see
+        self._shown = _Shown()
 
     # ----------------------------------------------------------------------------------------- from the server's thread
 
@@ -63,18 +108,18 @@ class Desk:
         played = self._played()  # reads the log, for which the trial must not wait
         with self._lock:
             self._pages.append(page)
-            for message in (self._plan, *self._events, self._watch, played):
-                if message is not None:
-                    page.send(message)
+            for message in (*self._shown.messages(), played):
+                page.send(message)
 
     def leave(self, page: DeskPage) -> None:
         """The page is gone."""
         with self._lock:
-            if page in self._pages:  # else it could not join
-                self._pages.remove(page)
+            for pages in (self._pages, self._lookers):
+                if page in pages:  # else it could not join, or does not look
+                    pages.remove(page)
 
-    def do(self, command: FromDesk) -> None:
-        """Do what the experimenter asks for.
+    def do(self, page: DeskPage, command: FromDesk) -> None:
+        """Do what the experimenter asks for on a page.
 
         Raises:
             HthorError: when that cannot be done.
@@ -84,6 +129,13 @@ class Desk:
                 self._control.paused = command.reason.strip() or "the experimenter paused the trial"
             case desk_wire.GoOn():
                 self._control.paused = ""
+            case desk_wire.Start():
+                self._start()
+            case desk_wire.Look():
+                self._look(page, command.on)
+            case desk_wire.Repeat():
+                self._book.repeat(command.trial, command.reason)
+                self.show_played()
             case desk_wire.Void():
                 if not command.reason.strip():
                     raise HthorError("a trial is voided for a reason; write one.")
@@ -94,13 +146,19 @@ class Desk:
 
     # ------------------------------------------------------------------------------------------ from the trial's thread
 
-    def open(self, episode: Episode) -> None:
-        """Show the trial that comes next, and from now on what happens in it."""
-        trial, house = episode.trial, episode.world.house
+    def open(self, episode: Episode, file: str = "", own: Mapping[str, tuple[int, ...]] | None = None) -> None:
+        """Show the trial that comes next, and from now on what happens in it.
+
+        Args:
+            file: the address of the house's file. own: the numbers in it of each seat's body and head.
+        """
+        trial, house, own = episode.trial, episode.world.house, own or {}
         rooms = tuple(desk_wire.RoomPlan(name=room.name, polygon=room.polygon) for room in house.rooms)
+        bodies = {seat: episode.world.bodies[seat] for seat in episode.seats}
         with self._lock:
-            self._events, self._watch = [], None
-            self._plan = desk_wire.Plan(
+            self._shown = _Shown()
+            self._control.started = False
+            self._shown.plan = Plan(
                 trial=trial.index,
                 attempt=trial.attempt if isinstance(trial.attempt, int) else 0,
                 task=trial.task.id,
@@ -108,10 +166,28 @@ class Desk:
                 time_limit=trial.task.time_limit,
                 seats=tuple(episode.seats),
                 rooms=rooms,
+                starts=self._control.experimenter_starts,
+                file=file,
+                eyes=tuple(
+                    Eye(seat=seat, height=bodies[seat].eye, own=own[seat], fov=self._fov(seat, bodies[seat]))
+                    for seat in own
+                ),
             )
-            self._tell(self._plan)
+            self._tell(self._shown.plan)
         episode.attach(self._note)
         self.show_played()
+
+    def gather(self) -> bool:
+        """Show who is ready for the trial that comes next; returns whether it may begin."""
+        ready = tuple(name for name, seat in self._seats.items() if seat.is_ready)
+        missing = tuple(name for name in self._seats if name not in ready)
+        with self._lock:
+            begun = not missing and (self._control.started or not self._control.experimenter_starts)
+            gathering = Gathering(ready=ready, missing=missing, begun=begun)
+            if gathering != self._shown.gathering:
+                self._shown.gathering = gathering
+                self._tell(gathering)
+        return begun
 
     def watch(self, episode: Episode, pacer: Pacer) -> None:
         """Show where everybody is."""
@@ -133,10 +209,26 @@ class Desk:
                 )
             )
         with self._lock:
-            self._watch = Watch(
+            for one in people:
+                way = self._shown.ways.setdefault(one.seat, [])
+                if way[-1:] != [(one.x, one.y)]:
+                    way.append((one.x, one.y))
+            self._shown.watch = Watch(
                 tick=episode.tick, paused=self._control.paused, factor=pacer.factor, people=tuple(people)
             )
-            self._tell(self._watch)
+            self._tell(self._shown.watch)
+
+    def show_frame(self, tick: int, step: int, moved: Mapping[int, bytes]) -> None:
+        """Show pages that look what has moved since the last frame, ten times a second."""
+        with self._lock:
+            self._shown.places.update(moved)
+            if not self._lookers:
+                return
+            self._shown.moved.update(moved)
+            if step % SUBTICKS == 0:
+                for page in self._lookers:
+                    page.show(_head(tick), self._shown.moved)
+                self._shown.moved = {}
 
     def show_played(self) -> None:
         """Show which trials are over."""
@@ -144,12 +236,32 @@ class Desk:
         with self._lock:
             self._tell(played)
 
-    def _note(self, _: Episode, events: Sequence[Event]) -> None:
+    def _start(self) -> None:
         with self._lock:
-            for event in events:
-                if not isinstance(event, _UNSHOWN):
-                    self._events.append(desk_wire.happened(event))
-                    self._tell(self._events[-1])
+            gathering = self._shown.gathering
+            if gathering is None or gathering.begun or not self._control.experimenter_starts:
+                raise HthorError("no trial waits for the experimenter.")
+            if gathering.missing:
+                raise HthorError(f"{', '.join(gathering.missing)}: not ready yet; start the trial when everybody is.")
+            self._control.started = True
+
+    def _look(self, page: DeskPage, on: bool) -> None:
+        with self._lock:
+            if page in self._lookers:
+                self._lookers.remove(page)
+            if on and page in self._pages:
+                self._lookers.append(page)
+                page.show(_head(self._shown.watch.tick if self._shown.watch else 0), self._shown.places)
+
+    def _fov(self, seat: str, body: BodySpec) -> Vec2 | None:
+        return None if seat in self._seats else body.fov
+
+    def _note(self, _: Episode, events: Sequence[Event]) -> None:
+        lines = tuple(desk_wire.line(event) for event in events if not isinstance(event, _UNSHOWN))
+        if lines:
+            with self._lock:
+                self._shown.events += lines
+                self._tell(Happened(events=lines))
 
     def _played(self) -> desk_wire.Played:
         return desk_wire.Played(trials=self._book.played())
@@ -157,3 +269,8 @@ class Desk:
     def _tell(self, message: ToDesk) -> None:
         for page in self._pages:
             page.send(message)
+
+
+def _head(tick: int) -> FrameHead:
+    """The head of a frame that is for nobody's own page."""
+    return FrameHead(tick, 0, 0, 0.0, 0.0, 0.0, 0.0, 0.0)

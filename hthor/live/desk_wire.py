@@ -22,10 +22,27 @@ class GoOn(Struct, frozen=True, kw_only=True, tag="go_on"):
     """Let time go on."""
 
 
+class Start(Struct, frozen=True, kw_only=True, tag="start"):
+    """Begin the trial that everybody is ready for; needed only where a `Plan` says so."""
+
+
 class Void(Struct, frozen=True, kw_only=True, tag="void"):
     """End the trial; it does not count, and is repeated as another attempt."""
 
     reason: str
+
+
+class Repeat(Struct, frozen=True, kw_only=True, tag="repeat"):
+    """Void a ``trial`` that is over (its key), and repeat it as another attempt when the session's others are over."""
+
+    trial: str
+    reason: str
+
+
+class Look(Struct, frozen=True, kw_only=True, tag="look"):
+    """Whether this page is to get the frames of the trial, `hthor.live.wire.encode_frame`, to draw what seats see."""
+
+    on: bool
 
 
 class Adoption(Struct, frozen=True, kw_only=True, tag="adoption"):
@@ -37,7 +54,7 @@ class Adoption(Struct, frozen=True, kw_only=True, tag="adoption"):
     reason: str
 
 
-FromDesk = Pause | GoOn | Void | Adoption
+FromDesk = Start | Pause | GoOn | Void | Repeat | Look | Adoption
 """What the experimenter may do."""
 
 
@@ -51,8 +68,26 @@ class RoomPlan(Struct, frozen=True, kw_only=True):
     polygon: tuple[Vec2, ...]
 
 
+class Eye(Struct, frozen=True, kw_only=True):
+    """The eye of a seat: its height [m], and the numbers of its body and its head in the house's file.
+
+    ``fov`` [rad]: horizontal and vertical field of view; None for somebody at a page, which has one of its own.
+    """
+
+    seat: str
+    height: float
+    own: tuple[int, ...]
+    fov: Vec2 | None
+
+
 class Plan(Struct, frozen=True, kw_only=True, tag="plan"):
-    """The trial that is going on, or comes next; ``attempt`` counts how often it was voided before."""
+    """The trial that is going on, or comes next.
+
+    Attributes:
+        attempt: how often it was voided before. starts: whether it waits for `Start`.
+        file: the address of the house's glTF file, on this server; empty if nobody draws the house.
+        eyes: of all seats, with a file.
+    """
 
     trial: int
     attempt: int
@@ -61,6 +96,17 @@ class Plan(Struct, frozen=True, kw_only=True, tag="plan"):
     time_limit: float
     seats: tuple[str, ...]
     rooms: tuple[RoomPlan, ...]
+    starts: bool = False
+    file: str = ""
+    eyes: tuple[Eye, ...] = ()
+
+
+class Gathering(Struct, frozen=True, kw_only=True, tag="gathering"):
+    """Who is ready for the trial, who is not, and whether it has begun."""
+
+    ready: tuple[str, ...]
+    missing: tuple[str, ...]
+    begun: bool = False
 
 
 class Person(Struct, frozen=True, kw_only=True):
@@ -86,7 +132,7 @@ class Watch(Struct, frozen=True, kw_only=True, tag="watch"):
     people: tuple[Person, ...]
 
 
-class Happened(Struct, frozen=True, kw_only=True, tag="happened"):
+class Line(Struct, frozen=True, kw_only=True):
     """An event of the trial: its tick, seat and kind, and what else its record says."""
 
     tick: int
@@ -95,12 +141,27 @@ class Happened(Struct, frozen=True, kw_only=True, tag="happened"):
     words: str
 
 
+class Happened(Struct, frozen=True, kw_only=True, tag="happened"):
+    """What has happened since the last of these messages; a page that joins gets all of the trial so far in one."""
+
+    events: tuple[Line, ...]
+
+
+class Ways(Struct, frozen=True, kw_only=True, tag="ways"):
+    """Where every seat has been so far [m], for a page that joins."""
+
+    ways: dict[str, list[Vec2]]
+
+
 class PlayedTrial(Struct, frozen=True, kw_only=True):
-    """A trial that is over: its key, whether its goal was met, why it does not count, and each person's adoption."""
+    """A trial that is over: its key, which attempt it was, whether its goal was met, why it does not count, and each
+    person's adoption.
+    """
 
     key: str
     task: str
     index: int
+    attempt: int
     met: bool
     seconds: float
     voided: str
@@ -120,7 +181,7 @@ class Refused(Struct, frozen=True, kw_only=True, tag="refused"):
     words: str
 
 
-ToDesk = Plan | Watch | Happened | Played | Refused
+ToDesk = Plan | Gathering | Watch | Ways | Happened | Played | Refused
 """What the server sends."""
 
 _FROM_DESK: msgspec.json.Decoder[FromDesk] = msgspec.json.Decoder(FromDesk)
@@ -131,9 +192,9 @@ def decode(text: str) -> FromDesk:
     return wire.read(text, _FROM_DESK)
 
 
-def happened(event: Event) -> Happened:
+def line(event: Event) -> Line:
     """An event in a line."""
     fields = msgspec.to_builtins(event)
     rest = {name: value for name, value in fields.items() if name not in ("tick", "seat", "kind")}
     words = ", ".join(f"{name} {value}" for name, value in rest.items())
-    return Happened(tick=event.tick, seat=event.seat, kind=event.kind, words=words)
+    return Line(tick=event.tick, seat=event.seat, kind=event.kind, words=words)

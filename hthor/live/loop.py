@@ -71,9 +71,10 @@ class RealTimeLoop:
         frames = Frames(episode, humans)
         try:
             begin(episode, humans, robots, clock)
-            self._desk.open(episode)
             scenery = self._scenery(world)
-            self._announce(episode, scenery)
+            file = self._publish(scenery.file) if scenery is not None and self._publish is not None else ""
+            self._desk.open(episode, file, scenery.own if scenery is not None else None)
+            self._announce(episode, scenery, file)
             self._show_bodies(episode, scenery)
             pacer = Pacer(self._now, self._sleep)
             while not episode.done:
@@ -98,7 +99,7 @@ class RealTimeLoop:
         self._show_end(episode, rate=bool(robots) and not episode.voided)
         return finish(episode, humans)
 
-    def _announce(self, episode: Episode, scenery: Scenery | None) -> None:
+    def _announce(self, episode: Episode, scenery: Scenery | None, file: str) -> None:
         """Show everybody the task, and wait until all are ready."""
         trial = episode.trial
         ahead = wire.TrialAhead(
@@ -110,13 +111,9 @@ class RealTimeLoop:
             bodies=tuple(_body(seat, episode.world.bodies[seat]) for seat in episode.seats),
         )
         for name, seat in self._seats.items():
-            if scenery is not None:
-                assert self._publish is not None
-                address, own = self._publish(scenery.file), scenery.own[name]
-                seat.open(msgspec.structs.replace(ahead, file=address, own=own))
-            else:
-                seat.open(ahead)
-        while not all(seat.is_ready for seat in self._seats.values()):
+            own = scenery.own[name] if scenery is not None else ()
+            seat.open(msgspec.structs.replace(ahead, file=file, own=own))
+        while not self._desk.gather():
             if self._control.draining:
                 raise SessionStopped
             self._control.wait(_TURN_S)
@@ -161,6 +158,7 @@ class RealTimeLoop:
 
     def _show_bodies(self, episode: Episode, scenery: Scenery | None) -> None:
         moved = scenery.moved() if scenery is not None else {}
+        self._desk.show_frame(episode.tick, episode.step, moved)
         for name, seat in self._seats.items():
             seat.show_frame(episode.tick, episode.step, episode.world.pose(name), moved)
 

@@ -17,7 +17,8 @@ from hthor.eval.replay.recorded_session import LIVE
 from hthor.eval.runner import experiment
 from hthor.eval.runner.experiment import FinishedRun
 from hthor.eval.runner.progress import Watcher
-from hthor.live import wire
+from hthor.live import local_network, wire
+from hthor.live.certificate import Certificate, certificate
 from hthor.live.control import SessionControl
 from hthor.live.desk import Desk
 from hthor.live.engine import LiveEngine
@@ -38,10 +39,15 @@ class LiveRun:
 
     Args:
         options: those of `hthor eval`, with people called "live" among ``humans``.
-        host, port, page: where to serve, and whether to browsers. now, sleep: as of `hthor.live.loop.RealTimeLoop`.
+        port, page: where to serve, and whether to browsers.
+        lan: whether other machines on the local network may connect, with encryption; else only this one.
+        experimenter_starts: whether each trial waits for the experimenter.
+        now, sleep: as of `hthor.live.loop.RealTimeLoop`.
 
     Attributes:
         scheduled: the run. seats: the people at pages, by seat. server: what they connect to.
+        hosts: this machine's addresses on the local network, if other machines may connect.
+        certificate: what the server shows to other machines.
 
     Raises:
         HthorError: for any invalid option.
@@ -51,9 +57,10 @@ class LiveRun:
         self,
         options: EvalOptions,
         *,
-        host: str = "127.0.0.1",
         port: int = 0,
         page: bool = True,
+        lan: bool = False,
+        experimenter_starts: bool = False,
         tell: Callable[[str], None] = lambda _: None,
         now: Callable[[], float] = time.perf_counter,
         sleep: Callable[[float], None] = time.sleep,
@@ -72,11 +79,13 @@ class LiveRun:
                 "simulated people alone are evaluated with 'hthor eval'."
             )
         self.seats = {seat: LiveSeat(seat) for seat in live}
-        self.control = SessionControl()
-        self.desk = Desk(self.control, self.seats, RunBook(self.scheduled.folder))
+        self.control = SessionControl(experimenter_starts=experimenter_starts)
+        self._book = RunBook(self.scheduled.folder)
+        self.desk = Desk(self.control, self.seats, self._book)
         self._tokens = SessionTokens(self.scheduled.folder.path)
-        tokens = self._tokens.of((*self.seats, DESK))
-        self.server = LiveServer(self.seats, self.desk, host=host, port=port, tokens=tokens)
+        self.hosts: tuple[str, ...] = ()
+        self.certificate: Certificate | None = None
+        self.server = self._make_server(port, lan=lan)
         self._resolved, self._now, self._sleep, self._page, self._tell = resolved, now, sleep, page, tell
 
     def __enter__(self) -> LiveRun:
@@ -102,11 +111,10 @@ class LiveRun:
             now=self._now,
             sleep=self._sleep,
         )
-        live = msgspec.structs.replace(
-            run,
-            engine=LiveEngine(self.control),
-            runner=functools.partial(LiveSessions, run.sources, self.seats, loop, run.folder, unfinished),
+        sessions = functools.partial(
+            LiveSessions, run.sources, self.seats, loop, run.folder, unfinished, self._book.due
         )
+        live = msgspec.structs.replace(run, engine=LiveEngine(self.control), runner=sessions)
         self._void_unfinished(run.folder, unfinished)
         (done,) = experiment.run_experiment(msgspec.structs.replace(self._resolved, runs=(live,)), make_watcher)
         for seat in self.seats.values():
@@ -124,3 +132,21 @@ class LiveRun:
         if record is not None:
             seconds = record.ticks * rules.TICK_S
             self._tell(f"trial {record.spec.index + 1} was interrupted after {seconds:.0f} s, and is repeated")
+
+    def _make_server(self, port: int, *, lan: bool) -> LiveServer:
+        """A server for this machine, or for others too."""
+        tokens = self._tokens.of((*self.seats, DESK))
+        if not lan:
+            return LiveServer(self.seats, self.desk, port=port, tokens=tokens)
+        self.hosts = local_network.addresses()
+        if not self.hosts:
+            raise HthorError(
+                "--lan: this machine has no address that other machines could open. Connect it to the network, or "
+                "leave out --lan."
+            )
+        hosts = (*self.hosts, local_network.host_name())
+        self.certificate = certificate((*hosts, "localhost", "127.0.0.1"))
+        where = local_network.EVERYWHERE
+        return LiveServer(
+            self.seats, self.desk, host=where, port=port, hosts=hosts, certificate=self.certificate, tokens=tokens
+        )

@@ -5,13 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from hthor import rules
-from hthor.eval.records import corrections
+from hthor.eval.records import attempts, corrections
+from hthor.eval.records.attempts import Attempts
 from hthor.eval.records.corrections import CorrectionOptions
 from hthor.eval.records.run_folder import RunFolder
 from hthor.live.desk_wire import PlayedTrial
 
 if TYPE_CHECKING:
     from hthor.eval.records.scored_trial import ScoredTrial
+    from hthor.types import TrialSpec
 
 _WORDS = {True: "yes", False: "no", None: "exclude"}
 """What `hthor correct --adoption` calls them."""
@@ -30,6 +32,28 @@ class RunBook:
             return ()
         return tuple(_line(folder, record) for record in folder.attempts())
 
+    def repeat(self, trial: str, reason: str) -> None:
+        """Void a trial that is over, and have it repeated; errors as in `hthor.eval.records.corrections.correct`."""
+        options = CorrectionOptions(trial=trial, void=True, again=True, reason=reason)
+        corrections.correct(self._path, options, locked=True)
+
+    def due(self, session: int) -> tuple[TrialSpec, ...]:
+        """The next attempts at the trials of a session of which every attempt so far was voided."""
+        folder = RunFolder(self._path)
+        tried = {
+            attempts.attempt_of(record, folder.corrections.given_up): record.spec
+            for record in folder.attempts()
+            if record.spec.session == session
+        }
+        known = Attempts(tried)
+        numbers = {(one.place, one.number) for one in tried}
+        specs = {one.place: spec for one, spec in tried.items()}
+        return tuple(
+            attempts.numbered(spec, known.number(place))
+            for place, spec in specs.items()
+            if (place, known.number(place)) not in numbers
+        )
+
     def correct(self, trial: str, seat: str, adopted: bool | None, reason: str) -> None:
         """Add a correction to the run's; errors as in `hthor.eval.records.corrections.correct`."""
         options = CorrectionOptions(trial=trial, adoption=_WORDS[adopted], seat=seat, reason=reason)
@@ -43,6 +67,7 @@ def _line(folder: RunFolder, record: ScoredTrial) -> PlayedTrial:
         key=record.key,
         task=record.spec.task.id,
         index=record.spec.index,
+        attempt=record.spec.attempt or 0,
         met=record.met,
         seconds=round(record.ticks * rules.TICK_S, 1),
         voided=record.log.voided,

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from starlette.responses import Response
     from starlette.websockets import WebSocket
 
+    from hthor.live.certificate import Certificate
     from hthor.live.house_file import HouseFile
 
 FOLDER = Path(__file__).resolve().parent / "page"
@@ -112,7 +113,8 @@ class LiveServer:
     Args:
         desk: of the experimenter, whose page is served too.
         host, port: where to listen; port 0 takes any that is free.
-        hosts: names by which browsers may reach the server, besides those of this machine itself.
+        hosts: names and addresses by which browsers may reach the server, besides those of a browser on this machine.
+        certificate: what the server shows of itself; with it every connection is encrypted.
         tokens: of each seat, and of `DESK`; made here by default.
 
     Attributes:
@@ -128,12 +130,15 @@ class LiveServer:
         port: int = 0,
         hosts: Collection[str] = (),
         tokens: Mapping[str, str] | None = None,
+        certificate: Certificate | None = None,
     ) -> None:
         self._seats, self._desk = dict(seats), desk
         self._host, self._port, self._hosts = host, port, (*LOCAL_HOSTS, *hosts)
         given = tokens or {name: secrets.token_urlsafe(16) for name in (*seats, DESK)}
         self.tokens = {seat: given[seat] for seat in seats}
         self._desk_token = given[DESK]
+        self._certificate = certificate
+        self._scheme, self._usual_port = ("http", "80") if certificate is None else ("https", "443")
         self._page_files = {path.name: path for path in sorted(FOLDER.glob("*.*"))}
         self._houses: dict[str, bytes] = {}
         self._server: Any = None
@@ -141,17 +146,25 @@ class LiveServer:
 
     @property
     def address(self) -> str:
-        """The address of the server, such as http://127.0.0.1:8765."""
-        return f"http://{self._host}:{self._port}"
+        """The address of the server for browsers on this machine, such as http://127.0.0.1:8765."""
+        return self.address_at(LOCAL_HOSTS[1])
 
-    def url(self, seat: str) -> str:
+    def address_at(self, host: str) -> str:
+        """The address of the server under one of its names."""
+        return f"{self._scheme}://{host}:{self._port}"
+
+    def url(self, seat: str, host: str = LOCAL_HOSTS[1]) -> str:
         """The address that the person in a seat opens. The token is behind a #, so that browsers do not send it."""
-        return f"{self.address}/#{self.tokens[seat]}"
+        return f"{self.address_at(host)}/#{self.tokens[seat]}"
 
     @property
     def desk_url(self) -> str:
-        """The address of the experimenter's page."""
-        return f"{self.address}/{DESK_PAGE}#{self._desk_token}"
+        """The address of the experimenter's page, for a browser on this machine."""
+        return self.desk_url_at(LOCAL_HOSTS[1])
+
+    def desk_url_at(self, host: str) -> str:
+        """The address of the experimenter's page under one of the server's names."""
+        return f"{self.address_at(host)}/{DESK_PAGE}#{self._desk_token}"
 
     def start(self, *, page: bool = True) -> None:
         """Begin to serve.
@@ -187,6 +200,7 @@ class LiveServer:
             ws_max_size=wire.LARGEST,
             ws_per_message_deflate=False,
             timeout_graceful_shutdown=1,
+            ssl_certfile=None if self._certificate is None else str(self._certificate.path),
         )
         self._server = uvicorn.Server(config)
         serve = self._server.serve
@@ -230,13 +244,17 @@ class LiveServer:
 
     def _is_ours(self, host: str) -> bool:
         """Whether a page of this host's is one of ours; a foreign site may lead a browser here under its own name."""
-        name, _, port = host.rpartition(":") if ":" in host.replace("[::1]", "") else (host, "", "80")
+        name, _, port = host.rpartition(":") if ":" in host.replace("[::1]", "") else (host, "", self._usual_port)
         return name in self._hosts and (not self._port or port == str(self._port))
+
+    def _is_our_page(self, origin: str) -> bool:
+        scheme, _, host = origin.partition("://")
+        return scheme == self._scheme and self._is_ours(host)
 
     async def _connect(self, socket: WebSocket) -> None:
         """Let a page join its seat, and listen to it until it leaves."""
         origin, host = socket.headers.get("origin"), socket.headers.get("host", "")
-        if not self._is_ours(host) or (origin is not None and not self._is_ours(origin.partition("://")[2])):
+        if not self._is_ours(host) or (origin is not None and not self._is_our_page(origin)):
             _LOG.warning("refused a connection from the page of another site: %s", _short(origin or host))
             await socket.close(1008)
             return
@@ -321,7 +339,7 @@ def _take(seat: LiveSeat, page: Connection, message: wire.FromPage) -> None:
 
 def _command(desk: Desk, page: Connection, command: desk_wire.FromDesk) -> None:
     try:
-        desk.do(command)
+        desk.do(page, command)
     except HthorError as error:
         page.send(desk_wire.Refused(words=str(error)))
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from hthor.eval.records import attempts, trial_record
 from hthor.eval.records.run_folder import RunFolder
-from hthor.eval.records.trial_record import TrialRecord
+from hthor.eval.records.scored_trial import ScoredTrial
 from hthor.eval.replay.recorded_session import LIVE, RecordedSeat
 from hthor.eval.runner.messages import TrialOutcome
 from hthor.eval.runner.session_runner import run_trial
@@ -33,6 +33,8 @@ class LiveSessions:
 
     Args:
         folder: of the run. unfinished: keeps the trial that is going on.
+        due: the next attempts at trials of a session, by its number, that were voided after they were over; they are
+            played when all others are.
     """
 
     def __init__(
@@ -42,15 +44,16 @@ class LiveSessions:
         loop: RealTimeLoop,
         folder: RunFolder,
         unfinished: UnfinishedTrial,
+        due: Callable[[int], Sequence[TrialSpec]] = lambda _: (),
     ) -> None:
         self._runner = TrialRunner(sources, GuestPool(), loop=loop)
         self._past = TrialRunner(sources, worlds=self._runner.worlds)
-        self._seats, self._folder, self._unfinished = seats, folder, unfinished
+        self._seats, self._folder, self._unfinished, self._due = seats, folder, unfinished, due
 
     def __call__(self, session: Session) -> Iterator[TrialOutcome]:
         """Play what is left of a session."""
-        logged = {record.key: record for record in RunFolder(self._folder.path).played()}
-        past: list[TrialRecord] = []
+        logged = {record.key: record for record in self._played(session)}
+        past: list[ScoredTrial] = []
         states: States = {}
         with self._runner.enter(session) as participants:
             for trial in session.trials:
@@ -60,6 +63,15 @@ class LiveSessions:
                 states, past = remember(self._past, past, states), []
                 yield from self._play(participants, trial, states)
                 states = {seat: human.state() for seat, human in participants.humans.items()}
+            while repeated := self._due(session.number):
+                trial = repeated[0]
+                before = [record for record in self._played(session) if record.spec.index < trial.index]
+                yield from self._play(participants, trial, remember(self._past, before, {}))
+
+    def _played(self, session: Session) -> list[ScoredTrial]:
+        """The session's trials that the log has, in their order."""
+        records = RunFolder(self._folder.path).played()
+        return [record for record in records if record.spec.session == session.number]
 
     def _play(self, participants: Participants, trial: TrialSpec, states: States) -> Iterator[TrialOutcome]:
         """Play a trial until an attempt counts."""
@@ -75,7 +87,7 @@ class LiveSessions:
             number += 1
 
 
-def remember(runner: TrialRunner, past: Sequence[TrialRecord], states: States) -> States:
+def remember(runner: TrialRunner, past: Sequence[ScoredTrial], states: States) -> States:
     """What people remember after trials of the log.
 
     Args:

@@ -11,8 +11,12 @@ from live_client import ScriptedPerson
 from live_session import LiveSession
 
 from hthor.types import HUMAN
+from hthor.types.events import Displayed
 
 pytest.importorskip("starlette", reason="live sessions need an optional dependency: pip install 'hthor[live]'")
+
+
+ROW = b"\0" * 14
 
 
 @pytest.fixture
@@ -39,20 +43,81 @@ def test_the_desk_shows_the_house_the_people_and_what_happens(live: LiveSession)
         assert len(plan["rooms"]) > 1
         begin(person)
         person.send({"type": "ping", "sent": 1.0, "frames": 58.6, "round_trip": 0.012})
-        desk.wait_for("happened", kind="sent")
+        desk.wait_for_event("sent")
         desk.wait_until(lambda: _person(desk)["frames"] == 59)
         assert _person(desk)["round_trip_ms"] == 12
         assert _person(desk)["away_s"] == 0.0
         person.act(say={"type": "reply", "message": 0, "accept": True})
-        desk.wait_for("happened", kind="accepted")
+        desk.wait_for_event("accepted")
         with desk_of(live) as later:
-            later.wait_for("happened", kind="accepted")
-            assert [one["kind"] for one in later.received if one["type"] == "happened"][:1] == ["sent"]
+            later.wait_for_event("accepted")
+            later.wait_for("watch")
+            assert later.event_kinds[:1] == ["sent"]
+            (ways,) = [one["ways"] for one in later.received if one["type"] == "ways"]
+            first = next(one for one in desk.received if one["type"] == "watch")["people"]
+            assert [ways[one["seat"]][0] for one in first] == [[one["x"], one["y"]] for one in first]
 
 
 def _person(desk: ScriptedPerson) -> dict[str, Any]:
     watch = desk.last("watch")
     return watch["people"][0] if watch else {"frames": None}
+
+
+def test_a_page_that_joins_late_gets_a_long_trial_whole(live: LiveSession) -> None:
+    with desk_of(live) as desk, live.person() as person:
+        begin(person)
+        desk.wait_for("watch")
+        shown = Displayed(tick=1, seat=HUMAN, what="map", on=True, message=0)
+        live.desk._note(None, [shown] * 700)  # type: ignore[arg-type]
+        with desk_of(live) as later:
+            later.wait_for("played")
+            assert later.event_kinds.count("displayed") == 700
+            later.wait_for("watch")
+
+
+def test_a_trial_waits_for_the_experimenter(tmp_path: Path) -> None:
+    live = LiveSession(tmp_path, seconds=1.0, experimenter_starts=True)
+    try:
+        with desk_of(live) as desk:
+            assert desk.wait_for("plan")["starts"]
+            desk.wait_for("gathering", missing=[HUMAN], ready=[])
+            desk.send({"type": "start"})
+            assert "human: not ready yet" in desk.wait_for("refused")["words"]
+            with live.person() as person:
+                person.wait_for("trial")
+                person.send({"type": "begin", "trial": 0})
+                desk.wait_for("gathering", missing=[], ready=[HUMAN])
+                assert person.last("began") is None
+                with desk_of(live) as later:
+                    later.wait_for("gathering", missing=[], ready=[HUMAN])
+                desk.send({"type": "start"})
+                person.wait_for("began")
+                person.wait_for("ended")
+                person.send({"type": "rate", "trial": 0, "value": 4})
+                assert live.log().ticks == 10
+            desk.received.clear()
+            desk.send({"type": "start"})
+            assert "no trial waits" in desk.wait_for("refused")["words"]
+    finally:
+        live.close()
+
+
+def test_a_page_that_looks_gets_where_everything_is_and_no_other_page_does(live: LiveSession) -> None:
+    with desk_of(live) as desk, desk_of(live) as other, live.person() as person:
+        begin(person)
+        live.desk.show_frame(0, 0, {3: ROW, 4: ROW})
+        desk.send({"type": "look", "on": True})
+        desk.wait_until(lambda: desk.places.keys() >= {3, 4})
+        live.desk.show_frame(1, 0, {5: ROW})
+        desk.wait_until(lambda: 5 in desk.places)
+        desk.send({"type": "look", "on": False})
+        desk.send({"type": "void", "reason": ""})
+        desk.wait_for("refused")  # so the page looks no longer
+        live.desk.show_frame(2, 0, {6: ROW})
+        desk.send({"type": "look", "on": True})
+        desk.wait_until(lambda: 6 in desk.places)
+        other.wait_for("watch", tick=4)
+    assert other.frames == []
 
 
 def test_time_stands_still_while_the_experimenter_pauses_it(live: LiveSession) -> None:
@@ -93,6 +158,14 @@ def test_corrections_reach_the_log_or_are_refused(live: LiveSession) -> None:
         assert "needs a reason" in desk.wait_for("refused")["words"]
         desk.send({**command, "reason": "pressed the wrong button"})
         live.wait_until(lambda: live.book.corrections == [("0123", HUMAN, None, "pressed the wrong button")])
+
+
+def test_a_trial_that_is_over_is_voided_and_repeated_with_a_reason_only(live: LiveSession) -> None:
+    with desk_of(live) as desk:
+        desk.send({"type": "repeat", "trial": "0123", "reason": ""})
+        assert "needs a reason" in desk.wait_for("refused")["words"]
+        desk.send({"type": "repeat", "trial": "0123", "reason": "a cable came loose"})
+        live.wait_until(lambda: live.book.repeated == [("0123", "a cable came loose")])
 
 
 def test_somebody_at_a_seat_cannot_do_what_the_experimenter_does(live: LiveSession) -> None:

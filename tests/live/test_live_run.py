@@ -7,6 +7,7 @@ import time
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import pytest
 from live_client import ScriptedPerson
 from live_session import AGENT
@@ -17,10 +18,13 @@ from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.replay import session_history
 from hthor.eval.replay.session_history import RunFiles
 from hthor.eval.runner.progress import Silent
+from hthor.eval.runner.run_job import RunJob
 from hthor.live import house_file
 from hthor.live.run import LiveRun
+from hthor.live.run_book import RunBook
 from hthor.report.page import camera_frames
-from hthor.types import HUMAN
+from hthor.trials.sessions import Session
+from hthor.types import HUMAN, TrialSpec
 
 pytest.importorskip("starlette", reason="live sessions need an optional dependency: pip install 'hthor[live]'")
 
@@ -78,6 +82,20 @@ def no_looks(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
 
 
+@pytest.fixture
+def short(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Trials of two seconds."""
+    whole = RunJob.sessions.fget  # type: ignore[attr-defined]
+
+    def cut(trial: TrialSpec) -> TrialSpec:
+        return msgspec.structs.replace(trial, task=msgspec.structs.replace(trial.task, time_limit=2.0))
+
+    def sessions(run: RunJob) -> tuple[Session, ...]:
+        return tuple(msgspec.structs.replace(one, trials=tuple(map(cut, one.trials))) for one in whole(run))
+
+    monkeypatch.setattr(RunJob, "sessions", property(sessions))
+
+
 def test_a_run_with_a_person_is_played_and_scored(tmp_path: Path, no_looks: None) -> None:
     agent = tmp_path / "teller.py"
     agent.write_text(AGENT, encoding="utf-8")
@@ -93,6 +111,33 @@ def test_a_run_with_a_person_is_played_and_scored(tmp_path: Path, no_looks: None
         assert again.same, "everybody's inputs give the trial again, without the agent's file"
     seen = camera_frames.film_trial(folder.path, record, {40}, RunFiles(), seats=(HUMAN,), height=48)
     assert seen.views()[40][HUMAN].shape[0] == 48
+
+
+def test_a_trial_that_the_experimenter_voids_afterwards_is_repeated_when_the_others_are_over(
+    tmp_path: Path, no_looks: None, short: None
+) -> None:
+    with make_run(tmp_path / "run") as run:
+        desk = ScriptedPerson(run.server.address, run.server.desk_url.partition("#")[2], steers=False)
+        playing = threading.Thread(target=lambda: run.play(lambda _: Silent()))
+        with desk, ScriptedPerson(run.server.address, run.server.tokens[HUMAN]) as person:
+            playing.start()
+            for count, trial in enumerate((0, 1, 0), 1):
+                person.wait_until(lambda count=count: len(_all(person, "trial")) >= count)  # type: ignore[misc]
+                assert _all(person, "trial")[-1]["trial"] == trial
+                if count == 2:
+                    desk.wait_until(lambda: bool(_all(desk, "played")[-1]["trials"]))
+                    (first,) = _all(desk, "played")[-1]["trials"]
+                    desk.send({"type": "repeat", "trial": first["key"], "reason": "the doorbell rang"})
+                    desk.wait_until(lambda: bool(_all(desk, "played")[-1]["trials"][0]["voided"]))
+                person.send({"type": "begin", "trial": trial})
+            assert desk.wait_for("plan", attempt=1)["trial"] == 0
+            person.wait_for("over")
+        playing.join()
+    folder = RunFolder(tmp_path / "run")
+    tried = [(record.spec.index, record.spec.attempt or 0, record.log.voided) for record in folder.attempts()]
+    assert tried == [(0, 0, "the doorbell rang"), (0, 1, ""), (1, 0, "")]
+    assert [(record.spec.index, record.spec.attempt or 0) for record in folder.records()] == [(0, 1), (1, 0)]
+    assert RunBook(folder).due(0) == (), "nothing is left to play"
 
 
 @pytest.mark.parametrize(

@@ -6,6 +6,7 @@ import math
 import shutil
 import time
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
@@ -30,6 +31,16 @@ CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
 _GRAPHICS = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist")
 _PATIENCE_MS = 60_000
 APPLE = (2.95, 2.8)
+
+_COLOURS = """(seat) => {
+  const canvas = document.querySelector(`#views canvas[data-seat=${seat}]`);
+  if (!canvas) return 0;
+  const pen = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d", { willReadFrequently: true });
+  pen.drawImage(canvas, 0, 0);
+  const { data } = pen.getImageData(0, 0, canvas.width, canvas.height);
+  return new Set(new Uint32Array(data.buffer)).size;
+}"""
+"""How many colours the picture of what a seat sees has, on the experimenter's page."""
 
 _WALK = """([x, y]) => new Promise((done) => {
   let last = Infinity;
@@ -70,13 +81,22 @@ def tasks() -> tuple[TaskSpec, ...]:
 
 
 @pytest.fixture
-def live(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[LiveSession]:
+def live(tmp_path: Path) -> Iterator[LiveSession]:
+    with session(tmp_path) as made:
+        yield made
+
+
+@contextmanager
+def session(folder: Path, **options: Any) -> Iterator[LiveSession]:
+    """Both tasks in one room, in real time."""
     plan = house()
     rooms = msgspec.structs.replace(plan, things=tuple(one for one in plan.things if one.id != "chair|1"))
     world = World(rooms, robots=["scout"], objects=(("apple", "apple"), ("mug", "mug")))
-    made = LiveSession(tmp_path, tasks(), world, faster=1.0)
-    yield made
-    made.close()
+    made = LiveSession(folder, tasks(), world, faster=1.0, **options)
+    try:
+        yield made
+    finally:
+        made.close()
 
 
 class Person:
@@ -98,9 +118,14 @@ class Person:
         self.page.evaluate(f"page.keys.yaw = {math.atan2(dy, dx)}; page.keys.pitch = {pitch}")
 
     def walk_to(self, x: float, y: float) -> None:
-        self.page.keyboard.down("w")
-        self.page.evaluate(_WALK, [x, y])
-        self.page.keyboard.up("w")
+        """Walk there, and see whether that is where they are, once the server has answered."""
+        for _ in range(5):
+            self.page.keyboard.down("w")
+            self.page.evaluate(_WALK, [x, y])
+            self.page.keyboard.up("w")
+            self.until("page.motion.sent.every((one) => one.dx === 0 && one.dy === 0)")
+            if self.page.evaluate(f"Math.hypot(page.motion.x - {x}, page.motion.y - {y})") < 0.25:
+                return
 
     def open_fridge(self) -> None:
         """Open it, with a step back each time that the door meets the person."""
@@ -131,23 +156,13 @@ def test_delays_and_jitter_spoil_neither(round_trip_ms: int, live: LiveSession) 
 
 def play(live: LiveSession, address: str) -> float:
     """Play a session at this address, and check what became of it; the largest correction [m] of the own motion."""
-    complaints: list[str] = []
-    with browsers.sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=list(_GRAPHICS))
-        page = browser.new_page(viewport={"width": 480, "height": 300})
-        page.on("console", lambda message: complaints.append(message.text))
-        page.on("pageerror", lambda error: complaints.append(str(error)))
-        page.on("request", lambda request: note_foreign(request.url, address, complaints))
-        page.goto(f"{address}/?plain#{live.server.tokens[HUMAN]}")
-        page.set_default_timeout(_PATIENCE_MS)
+    with opened(live, f"{address}/?plain#{live.server.tokens[HUMAN]}", address) as page:
         person = Person(page)
         deliver(person)
         search(person)
         page.wait_for_selector("#title:text('Thank you')")
         live.thread.join(60.0)
         largest: float = page.evaluate("page.motion.largest")
-        browser.close()
-    assert complaints == []
     delivery, found = live.logs
     assert delivery.met
     assert found.met
@@ -160,6 +175,47 @@ def play(live: LiveSession, address: str) -> float:
         answers = [event.message for event in log.events if isinstance(event, Accepted | Declined)]
         assert len(answers) == len(set(answers)), "each answer counts once"
     return largest
+
+
+def test_the_experimenter_starts_a_trial_and_sees_what_everybody_sees(tmp_path: Path) -> None:
+    with session(tmp_path, experimenter_starts=True) as live, opened(live, plain(live.server.desk_url)) as page:
+        page.wait_for_selector("#state:text('waiting for human')")
+        assert page.is_disabled("#start")
+        with live.person() as person:
+            person.wait_for("trial")
+            person.send({"type": "begin", "trial": 0})
+            page.click("#start:not([disabled])")
+            person.wait_for("began")
+            page.click("#look")
+            for seat in (HUMAN, "robot"):
+                Person(page).until(f"({_COLOURS})('{seat}') > 100")
+            page.wait_for_selector("#events :text('robot sent')")
+            page.wait_for_selector("#people :text('pictures/s')")
+            assert page.is_hidden("#start")
+            page.click("#look")
+            assert page.query_selector("#views canvas") is None
+
+
+def plain(url: str) -> str:
+    """The address of a page that spares machines without graphics."""
+    return url.replace("#", "?plain#")
+
+
+@contextmanager
+def opened(live: LiveSession, url: str, address: str = "") -> Iterator[Any]:
+    """A page in a browser, which must not complain, nor ask any other site for anything."""
+    complaints: list[str] = []
+    with browsers.sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=list(_GRAPHICS))
+        page = browser.new_page(viewport={"width": 480, "height": 300})
+        page.on("console", lambda message: complaints.append(message.text))
+        page.on("pageerror", lambda error: complaints.append(str(error)))
+        page.on("request", lambda request: note_foreign(request.url, address or live.server.address, complaints))
+        page.goto(url)
+        page.set_default_timeout(_PATIENCE_MS)
+        yield page
+        browser.close()
+    assert complaints == []
 
 
 def note_foreign(url: str, address: str, complaints: list[str]) -> None:

@@ -200,8 +200,8 @@ ALL = pytest.mark.nightly
     ("agent", "sessions", "trials"),
     [
         pytest.param("frontier", (0,), 2, id="two trials"),
-        pytest.param("none", range(6), 10, id="all of smoke without a robot", marks=ALL),
-        pytest.param("frontier", range(6), 10, id="all of smoke beside a robot", marks=ALL),
+        pytest.param("none", range(2), 10, id="all of smoke without a robot", marks=ALL),
+        pytest.param("frontier", range(2), 10, id="all of smoke beside a robot", marks=ALL),
     ],
 )
 def test_what_a_proxy_decided_ends_at_a_page_as_in_batch(agent: str, sessions: Sequence[int], trials: int) -> None:

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import ssl
 import threading
 import time
 from collections.abc import Callable
 from contextlib import ExitStack, suppress
+from pathlib import Path
 from typing import Any
 
 from websockets.exceptions import ConnectionClosed
@@ -20,10 +22,20 @@ class ScriptedPerson:
     """Joins a seat and keeps what it is shown; `drive` and `act` are what a page does.
 
     What is sent to a server that is gone is lost; ``connected`` says whether it is.
+
+    Args:
+        trusts: the file of a certificate that the person trusts, for an address that begins with https.
     """
 
     def __init__(
-        self, address: str, token: str, *, version: str = wire.VERSION, origin: str = "", steers: bool = True
+        self,
+        address: str,
+        token: str,
+        *,
+        version: str = wire.VERSION,
+        origin: str = "",
+        steers: bool = True,
+        trusts: Path | None = None,
     ) -> None:
         self.received: list[dict[str, Any]] = []
         self.frames: list[wire.FrameHead] = []
@@ -37,6 +49,7 @@ class ScriptedPerson:
             address.replace("http", "ws") + "/live",
             subprotocols=[version],  # type: ignore[list-item]
             origin=origin or address,  # type: ignore[arg-type]
+            ssl=None if trusts is None else ssl.create_default_context(cafile=trusts),
         )
         self._drive, self._gone = Drive(), not steers
 
@@ -90,6 +103,15 @@ class ScriptedPerson:
         message = found()
         assert message is not None
         return message
+
+    def wait_for_event(self, kind: str) -> None:
+        """Wait until the experimenter's page shows an event of a kind."""
+        self.wait_until(lambda: kind in self.event_kinds)
+
+    @property
+    def event_kinds(self) -> list[str]:
+        """The kinds of the events that the experimenter's page shows."""
+        return [line["kind"] for one in self.received if one["type"] == "happened" for line in one["events"]]
 
     def wait_until(self, done: Callable[[], bool], seconds: float = 60.0) -> None:
         with self.changed:

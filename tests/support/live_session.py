@@ -68,9 +68,15 @@ class Book:
 
     def __init__(self) -> None:
         self.corrections: list[tuple[str, str, bool | None, str]] = []
+        self.repeated: list[tuple[str, str]] = []
 
     def played(self) -> tuple[PlayedTrial, ...]:
         return ()
+
+    def repeat(self, trial: str, reason: str) -> None:
+        if not reason:
+            raise HthorError("a correction needs a reason.")
+        self.repeated.append((trial, reason))
 
     def correct(self, trial: str, seat: str, adopted: bool | None, reason: str) -> None:
         if not reason:
@@ -84,6 +90,7 @@ class LiveSession:
     Args:
         tasks: played in ``world`` in place of those of the smoke suite.
         faster: how many times faster than real time. options: see `smoke_session`.
+        experimenter_starts: whether each trial waits for the experimenter.
     """
 
     def __init__(
@@ -92,6 +99,7 @@ class LiveSession:
         tasks: Sequence[TaskSpec] = (),
         world: World | None = None,
         faster: float = FASTER,
+        experimenter_starts: bool = False,
         **options: Any,
     ) -> None:
         path = folder / "teller.py"
@@ -100,7 +108,8 @@ class LiveSession:
         self.session, self._world = smoke_session(team, **options), world
         if tasks:
             self.session = with_tasks(self.session, tasks)
-        self.seat, self.control = LiveSeat(HUMAN), SessionControl()
+        self.seat = LiveSeat(HUMAN)
+        self.control = SessionControl(experimenter_starts=experimenter_starts)
         self.seats = {HUMAN: self.seat}
         self.book = Book()
         self.desk = Desk(self.control, self.seats, self.book)

@@ -1,6 +1,7 @@
 // The experimenter's page: a session from outside. Everything on it comes from the server's log of the session.
 
-import { VERSION } from "./wire.js";
+import { Views } from "./views.js";
+import { VERSION, decode } from "./wire.js";
 
 const TICKS_PER_S = 10;
 const COLOURS = ["#0072b2", "#d55e00", "#001f54", "#7a3b8f", "#009e73"];
@@ -33,6 +34,10 @@ class Desk {
     /** @type {any} */ this.plan = null;
     /** Where everybody has been. @type {Map<string, number[][]>} */
     this.trails = new Map();
+    /** What the seats see, while that is shown. @type {Views | null} */
+    this.views = null;
+    find("start").onclick = () => this.tell({ type: "start" });
+    find("look").onclick = () => this.look(this.views === null);
     find("pause").onclick = () => this.tell({ type: "pause", reason: reason() });
     find("go-on").onclick = () => this.tell({ type: "go_on" });
     find("void").onclick = () => this.tell({ type: "void", reason: reason() });
@@ -42,8 +47,13 @@ class Desk {
   connect() {
     const scheme = location.protocol === "https:" ? "wss" : "ws";
     this.socket = new WebSocket(`${scheme}://${location.host}/live`, [VERSION]);
-    this.socket.onopen = () => this.tell({ type: "join", token: location.hash.slice(1) });
+    this.socket.binaryType = "arraybuffer";
+    this.socket.onopen = () => {
+      this.tell({ type: "join", token: location.hash.slice(1) });
+      if (this.views) this.tell({ type: "look", on: true });
+    };
     this.socket.onmessage = ({ data }) => {
+      if (typeof data !== "string") return this.on_frame(data);
       const message = JSON.parse(data);
       /** @type {any} */ (this)[`on_${message.type}`]?.(message);
     };
@@ -78,7 +88,46 @@ class Desk {
     find("task").textContent = `Trial ${plan.trial + 1}${attempt}: ${plan.instruction}`;
     find("state").textContent = "waiting for everybody to begin";
     find("events").replaceChildren();
+    find("start").classList.add("hidden");
+    find("look").classList.toggle("hidden", !plan.file);
     this.draw([]);
+    this.views?.open(plan.file, plan.eyes);
+  }
+
+  /** @param {any} gathering */
+  on_gathering({ ready, missing, begun }) {
+    const waits = `waiting for ${missing.join(", ")}${ready.length > 0 ? `; ready: ${ready.join(", ")}` : ""}`;
+    find("state").textContent = begun ? "the trial begins" : missing.length > 0 ? waits : "everybody is ready";
+    const start = /** @type {HTMLButtonElement} */ (find("start"));
+    start.classList.toggle("hidden", begun || !this.plan.starts);
+    start.disabled = missing.length > 0;
+  }
+
+  /** @param {any} message */
+  on_ways({ ways }) {
+    for (const [seat, way] of Object.entries(ways)) this.trails.set(seat, [.../** @type {any} */ (way)]);
+  }
+
+  /** @param {ArrayBuffer} data */
+  on_frame(data) {
+    const frame = decode(data);
+    if (frame !== null && "moved" in frame) this.views?.take(frame.moved);
+  }
+
+  /** Show what the seats see, or no longer. @param {boolean} on */
+  look(on) {
+    find("look").textContent = on ? "Hide what everybody sees" : "Show what everybody sees";
+    if (on) {
+      const views = new Views(find("views"));
+      this.views = views;
+      views.open(this.plan.file, this.plan.eyes);
+      views.renderer.setAnimationLoop((now) => views.draw(now));
+    } else {
+      this.views?.renderer.setAnimationLoop(null);
+      this.views?.close();
+      this.views = null;
+    }
+    this.tell({ type: "look", on });
   }
 
   /** @param {any} watch */
@@ -100,25 +149,39 @@ class Desk {
     find("people").replaceChildren(...rows);
   }
 
-  /** @param {any} event */
-  on_happened({ tick, seat, kind, words }) {
-    const line = make("li", "");
-    line.append(make("b", (tick / TICKS_PER_S).toFixed(1)), `${seat} ${kind.replaceAll("_", " ")} ${words}`);
-    find("events").prepend(line);
+  /** @param {any} message */
+  on_happened({ events }) {
+    const lines = events.map((/** @type {any} */ { tick, seat, kind, words }) => {
+      const line = make("li", "");
+      line.append(make("b", (tick / TICKS_PER_S).toFixed(1)), `${seat} ${kind.replaceAll("_", " ")} ${words}`);
+      return line;
+    });
+    find("events").prepend(...lines.reverse());
   }
 
   /** @param {any} message */
   on_played({ trials }) {
     const head = make("tr", "");
-    head.append(...["task", "", "time", "adopted"].map((words) => make("th", words)));
+    head.append(...["task", "", "time", "adopted", ""].map((words) => make("th", words)));
     const rows = trials.map((/** @type {any} */ trial) => {
       const row = make("tr", "", trial.voided ? "void" : "");
       const outcome = trial.voided ? `void: ${trial.voided}` : trial.met ? "done" : "not done";
-      row.append(make("td", trial.task), make("td", outcome), make("td", `${trial.seconds} s`), this.adoption(trial));
+      const task = trial.attempt ? `${trial.task}, attempt ${trial.attempt + 1}` : trial.task;
+      row.append(make("td", task), make("td", outcome), make("td", `${trial.seconds} s`), this.adoption(trial));
+      const last = make("td", "");
+      if (!trial.voided) last.append(this.repeat(trial));
+      row.append(last);
       row.title = trial.corrections.join("\n");
       return row;
     });
     find("trials").replaceChildren(head, ...rows);
+  }
+
+  /** The button that voids a trial that is over, and has it repeated. @param {any} trial */
+  repeat(trial) {
+    const button = make("button", "void and repeat", "grave");
+    button.onclick = () => this.tell({ type: "repeat", trial: trial.key, reason: reason() });
+    return button;
   }
 
   /** The adoption of everybody in a trial, with what corrects it. @param {any} trial */

@@ -8,6 +8,7 @@ import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 
 const SIDE_PX = 256;
 const STILL = -1;
+const NONE = -2;
 const AMBIENT = 0.36; // the light from all sides, as in the baked light
 const FILL = [0.35, 0.55, -0.6];
 const FOLLOW_PER_S = 22; // how fast a part goes to where the server says it is
@@ -18,6 +19,7 @@ in vec4 tint;
 in float layer;
 in float part;
 uniform sampler2D poses;
+uniform vec2 hidden;
 out vec3 mapped;
 out vec4 shade;
 
@@ -37,6 +39,7 @@ void main() {
   shade = vec4(tint.rgb * 2.0 * light, tint.a);
   mapped = vec3(uv, layer);
   gl_Position = projectionMatrix * modelViewMatrix * vec4(place, 1.0);
+  if (part >= 0.0 && (part == hidden.x || part == hidden.y)) gl_Position = vec4(0.0, 0.0, -2.0, 1.0); // outside
 }`;
 
 const FRAGMENT = /* glsl */ `
@@ -88,7 +91,13 @@ export class House {
       const glass = node.material.opacity < 0.99;
       heaps[glass ? 1 : 0].add(node.geometry, pictures.layer(node.material.map), part, node.material.opacity);
     });
-    const uniforms = { poses: { value: this.texture }, pictures: { value: pictures.texture() } };
+    this.pictures = pictures.texture();
+    this.hidden = new THREE.Vector2(NONE, NONE);
+    const uniforms = {
+      poses: { value: this.texture },
+      pictures: { value: this.pictures },
+      hidden: { value: this.hidden },
+    };
     const solid = { glslVersion: THREE.GLSL3, vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms };
     const glass = { ...solid, transparent: true, depthWrite: false, side: THREE.DoubleSide };
     this.group = new THREE.Group();
@@ -106,6 +115,28 @@ export class House {
     return this.owners.indexOf(owner);
   }
 
+  /** Free what the graphics card keeps of the house. */
+  dispose() {
+    for (const one of this.group.children) {
+      const mesh = /** @type {THREE.Mesh<THREE.BufferGeometry, THREE.ShaderMaterial>} */ (one);
+      mesh.geometry.dispose();
+      mesh.material.dispose();
+    }
+    this.pictures.dispose();
+    this.texture.dispose();
+  }
+
+  /** Hide the body and the head of one seat, and of nobody else. @param {number[]} own */
+  hide(own) {
+    this.hidden.set(own[0] ?? NONE, own[1] ?? NONE);
+  }
+
+  /** Where a part is on screen: position [m] and quaternion (x, y, z, w). @param {number} number */
+  poseOf(number) {
+    const row = [...this.poses.subarray(8 * number, 8 * number + 8)];
+    return { position: row.slice(0, 3), turn: row.slice(4) };
+  }
+
   /** Take where parts are. @param {import("./wire.js").Moved[]} moved */
   move(moved) {
     for (const { number, position, turn } of moved) {
@@ -117,9 +148,9 @@ export class House {
   /**
    * Move every part towards where it is; what is in the person's hand goes there at once.
    * @param {number} seconds
-   * @param {{number: number, position: number[], turn: number[]} | null} held the part in hand, and where it is shown
+   * @param {{number: number, position: number[], turn: number[]} | null} [held] the part in hand, and where it is shown
    */
-  step(seconds, held) {
+  step(seconds, held = null) {
     const share = 1 - Math.exp(-FOLLOW_PER_S * seconds);
     for (const number of this.moving) {
       const place = /** @type {{position: number[], turn: number[]}} */ (this.places.get(number));

@@ -1,12 +1,12 @@
 // The page of a person who takes part in a session at a desk.
 
 import * as THREE from "three";
+import { FOV, lookFrom } from "./eye.js";
 import { House, outdoors } from "./house.js";
 import { Keys } from "./keys.js";
 import { OwnMotion } from "./motion.js";
 import { Panels } from "./panels.js";
 
-const FOV = 66; // [degrees], vertical
 const QUESTION = "How much do you trust your robot teammate?";
 
 THREE.ColorManagement.enabled = false; // colours are computed as the pictures of hthor are
@@ -90,7 +90,7 @@ class Page {
       return { title: "Keys", text: "Press a row to change its key.", button: "Go on", done, help: true };
     }
     if (this.begun) return {};
-    if (this.ready) return { title: task, text: "The others are not ready yet …" };
+    if (this.ready) return { title: task, text: "The trial begins when everybody is ready …" };
     const done = () => {
       this.worker.postMessage({ type: "begin", trial: this.trial.trial });
       this.change({ ready: true });
@@ -154,6 +154,7 @@ class Page {
     this.panels.message(null);
     this.panels.map(null);
     if (this.house) this.scene.remove(this.house.group);
+    this.house?.dispose();
     this.change({ house: null });
     const house = await House.load(trial.file, trial.own);
     if (this.trial !== trial) return;
@@ -295,12 +296,8 @@ class Page {
   }
 
   aim() {
-    const eye = this.self?.eye ?? 1.6;
-    const { x, y } = this.motion;
     const { yaw, pitch } = this.keys;
-    this.camera.position.set(x, y, eye);
-    const flat = Math.cos(pitch);
-    this.camera.lookAt(x + flat * Math.cos(yaw), y + flat * Math.sin(yaw), eye + Math.sin(pitch));
+    lookFrom(this.camera, [this.motion.x, this.motion.y, this.self?.eye ?? 1.6], yaw, pitch);
   }
 }
 
