@@ -8,7 +8,9 @@ from collections.abc import Callable
 
 import msgspec
 
+from hthor import guest
 from hthor.errors import HthorError
+from hthor.eval.config import human_populations
 from hthor.eval.config.options import EvalOptions
 from hthor.eval.planning.resolve import resolve
 from hthor.eval.runner import experiment
@@ -16,13 +18,15 @@ from hthor.eval.runner.experiment import FinishedRun
 from hthor.eval.runner.progress import Watcher
 from hthor.eval.runner.run_job import ScheduledRun
 from hthor.live import engine, wire
-from hthor.live.control import SessionControl
+from hthor.live.control import SessionControl, SessionStopped
 from hthor.live.desk import Desk
 from hthor.live.engine import LiveEngine
 from hthor.live.loop import RealTimeLoop
+from hthor.live.robot_programs import RobotPrograms
 from hthor.live.run_book import RunBook
 from hthor.live.seat import LiveSeat
 from hthor.live.server import LiveServer
+from hthor.trials import robot_team
 
 _FAREWELL_S = 1.0
 """[s] For the pages to hear that the session is over. Our choice."""
@@ -36,13 +40,18 @@ class LiveRun:
     Args:
         options: those of `hthor eval`, with people called "live" among ``humans``.
         host, port, page: where to serve, and whether to browsers. now, sleep: as of `hthor.live.loop.RealTimeLoop`.
+        tell: called with a sentence before something that takes a while, and with the addresses of robots' programs.
 
     Attributes:
-        scheduled: the run. seats: the people at pages, by seat. server: what they connect to.
+        seats: the people at pages, by seat. server: what they connect to.
+        scheduled: the run, from the moment that it is entered. It depends on what the robots' programs say about
+            themselves, so the server comes first, and entering waits for them.
 
     Raises:
-        HthorError: for any invalid option.
+        HthorError: for any invalid option, also when it is entered.
     """
+
+    scheduled: ScheduledRun
 
     def __init__(
         self,
@@ -56,11 +65,10 @@ class LiveRun:
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
         options = msgspec.structs.replace(options, clock="concurrent", control=False, jobs=1)
-        resolved = resolve(options, tell)
-        if len(resolved.runs) != 1:
+        peoples = human_populations.find_people(options.humans)
+        if len(peoples) != 1 or len(options.agent) > 1:
             raise HthorError("a person meets one robot team in a session: name one --agent and one word of --humans.")
-        (self.scheduled,) = resolved.runs
-        people = self.scheduled.people
+        (people,) = peoples
         first = people.seats(0)
         live = [human.seat for human, word in zip(first, people.models, strict=True) if word == LIVE]
         if not live:
@@ -70,12 +78,25 @@ class LiveRun:
             )
         self.seats = {seat: LiveSeat(seat) for seat in live}
         self.control = SessionControl()
-        self.desk = Desk(self.control, self.seats, RunBook(self.scheduled.folder))
-        self.server = LiveServer(self.seats, self.desk, host=host, port=port)
-        self._resolved, self._now, self._sleep, self._page = resolved, now, sleep, page
+        self.robots = RobotPrograms(_named_programs(options), tell=tell, wait=self._wait)
+        self._book = RunBook()
+        self.desk = Desk(self.control, self.seats, self._book)
+        self.server = LiveServer(self.seats, self.desk, host=host, port=port, robots=self.robots)
+        self._options, self._tell = options, tell
+        self._now, self._sleep, self._page = now, sleep, page
 
     def __enter__(self) -> LiveRun:
         self.server.start(page=self._page)
+        try:
+            for agent in self.robots.tokens:
+                self._tell(f"{agent}: {self.server.robot_url(agent)}")
+            self._resolved = resolve(self._options, self._tell, self.robots)
+            (self.scheduled,) = self._resolved.runs
+            self.robots.check_team(self.scheduled.team)
+            self._book.open(self.scheduled.folder)
+        except BaseException:
+            self.server.close()
+            raise
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -106,8 +127,20 @@ class LiveRun:
         time.sleep(_FAREWELL_S)
         return done
 
+    def _wait(self, seconds: float) -> None:
+        """Wait for a robot's program, unless the session is to end."""
+        if self.control.draining:
+            raise SessionStopped
+        self.control.wait(seconds)
+
     def _done(self, run: ScheduledRun) -> frozenset[str]:
         """The keys of the trials that are over."""
         if not run.folder.holds_run:
             return frozenset()
         return frozenset(record.key for record in run.folder.played())
+
+
+def _named_programs(options: EvalOptions) -> list[str]:
+    """The words among these options for programs that connect."""
+    named = [agent for _, agent in robot_team.split_robots(options.robots)] if options.robots else []
+    return [word for word in dict.fromkeys([*named, *options.agent]) if guest.is_socket(word)]

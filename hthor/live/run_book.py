@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hthor import rules
+from hthor.errors import HthorError
 from hthor.eval.records import corrections
 from hthor.eval.records.corrections import CorrectionOptions
 from hthor.eval.records.run_folder import RunFolder
@@ -18,13 +20,19 @@ _WORDS = {True: "yes", False: "no", None: "exclude"}
 
 
 class RunBook:
-    """The `hthor.live.desk.Book` of a run in a folder, which this process has locked."""
+    """The `hthor.live.desk.Book` of a run in a folder, which this process has locked; empty before `open`."""
 
-    def __init__(self, folder: RunFolder) -> None:
+    def __init__(self) -> None:
+        self._path: Path | None = None
+
+    def open(self, folder: RunFolder) -> None:
+        """Show the run of this folder from now on."""
         self._path = folder.path
 
     def played(self) -> tuple[PlayedTrial, ...]:
         """The trials that are over, in the order of the session; an attempt that was voided comes before the next."""
+        if self._path is None:
+            return ()
         folder = RunFolder(self._path)
         if not folder.holds_run or not folder.log_file.exists():
             return ()
@@ -33,6 +41,8 @@ class RunBook:
     def correct(self, trial: str, seat: str, adopted: bool | None, reason: str) -> None:
         """Add a correction to the run's; errors as in `hthor.eval.records.corrections.correct`."""
         options = CorrectionOptions(trial=trial, adoption=_WORDS[adopted], seat=seat, reason=reason)
+        if self._path is None:
+            raise HthorError("no trial of this session has begun.")
         corrections.correct(self._path, options, locked=True)
 
 

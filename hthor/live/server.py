@@ -15,9 +15,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hthor.errors import HthorError, MissingExtra
+from hthor.guest.protocol.wire import MOST_BYTES
 from hthor.live import desk_wire, wire
 from hthor.live.desk import Desk
 from hthor.live.desk_wire import ToDesk
+from hthor.live.robot_programs import RobotPrograms
 from hthor.live.seat import LiveSeat
 from hthor.live.wire import Malformed, ToPage
 
@@ -109,6 +111,7 @@ class LiveServer:
         desk: of the experimenter, whose page is served too.
         host, port: where to listen; port 0 takes any that is free.
         hosts: names by which browsers may reach the server, besides those of this machine itself.
+        robots: the robots whose programs connect.
 
     Attributes:
         tokens: the token of each seat.
@@ -122,8 +125,9 @@ class LiveServer:
         host: str = "127.0.0.1",
         port: int = 0,
         hosts: Collection[str] = (),
+        robots: RobotPrograms | None = None,
     ) -> None:
-        self._seats, self._desk = dict(seats), desk
+        self._seats, self._desk, self._robots = dict(seats), desk, robots or RobotPrograms()
         self._desk_token = secrets.token_urlsafe(16)
         self._host, self._port, self._hosts = host, port, (*LOCAL_HOSTS, *hosts)
         self.tokens = {seat: secrets.token_urlsafe(16) for seat in self._seats}
@@ -145,6 +149,10 @@ class LiveServer:
     def desk_url(self) -> str:
         """The address of the experimenter's page."""
         return f"{self.address}/{DESK_PAGE}#{self._desk_token}"
+
+    def robot_url(self, agent: str) -> str:
+        """What the program of a robot is given; it connects to what is before the #, with what is behind it."""
+        return f"{self.address.replace('http', 'ws', 1)}/robot#{self._robots.tokens[agent]}"
 
     def start(self, *, page: bool = True) -> None:
         """Begin to serve.
@@ -177,7 +185,7 @@ class LiveServer:
             access_log=False,
             lifespan="off",
             ws="websockets-sansio",
-            ws_max_size=wire.LARGEST,
+            ws_max_size=max(wire.LARGEST, MOST_BYTES),
             ws_per_message_deflate=False,
             timeout_graceful_shutdown=1,
         )
@@ -191,6 +199,7 @@ class LiveServer:
     def close(self) -> None:
         """Stop serving."""
         if self._server is not None and self._thread is not None:
+            self._robots.close()
             self._server.should_exit = True
             self._thread.join()
 
@@ -214,7 +223,8 @@ class LiveServer:
             return Response(data, media_type="model/gltf-binary", headers=kept)
 
         pages = [Route("/", page_file), Route("/{name}", page_file), Route("/house/{key}.glb", house)]
-        return Starlette(routes=[*pages, WebSocketRoute("/live", self._connect)])
+        sockets = [WebSocketRoute("/live", self._connect), WebSocketRoute("/robot", self._connect_robot)]
+        return Starlette(routes=[*pages, *sockets])
 
     def publish(self, file: HouseFile) -> str:
         """Serve the file of a house; its address on this server."""
@@ -226,12 +236,23 @@ class LiveServer:
         name, _, port = host.rpartition(":") if ":" in host.replace("[::1]", "") else (host, "", "80")
         return name in self._hosts and (not self._port or port == str(self._port))
 
+    async def _refuses(self, socket: WebSocket) -> bool:
+        """Refuse a browser that the page of another site has led here; whether it was refused."""
+        origin, host = socket.headers.get("origin"), socket.headers.get("host", "")
+        if self._is_ours(host) and (origin is None or self._is_ours(origin.partition("://")[2])):
+            return False
+        _LOG.warning("refused a connection from the page of another site: %s", _short(origin or host))
+        await socket.close(1008)
+        return True
+
+    async def _connect_robot(self, socket: WebSocket) -> None:
+        """Let the program of a robot connect."""
+        if not await self._refuses(socket):
+            await self._robots.connect(socket)
+
     async def _connect(self, socket: WebSocket) -> None:
         """Let a page join its seat, and listen to it until it leaves."""
-        origin, host = socket.headers.get("origin"), socket.headers.get("host", "")
-        if not self._is_ours(host) or (origin is not None and not self._is_ours(origin.partition("://")[2])):
-            _LOG.warning("refused a connection from the page of another site: %s", _short(origin or host))
-            await socket.close(1008)
+        if await self._refuses(socket):
             return
         versions = socket.scope.get("subprotocols", [])
         if wire.VERSION not in versions:
@@ -265,10 +286,11 @@ class LiveServer:
         except (Malformed, TimeoutError):
             joined = None
         if isinstance(joined, wire.Join):
+            given = joined.token.encode()  # compare_digest takes no text beyond ASCII
             for name, token in self.tokens.items():
-                if secrets.compare_digest(token, joined.token):
+                if secrets.compare_digest(token.encode(), given):
                     return self._seats[name]
-            if secrets.compare_digest(self._desk_token, joined.token):
+            if secrets.compare_digest(self._desk_token.encode(), given):
                 return self._desk
         _LOG.warning("refused a connection without the token of a seat")
         await _refuse(socket, "this address belongs to no seat of the session. Open the address that hthor printed.")
@@ -282,6 +304,8 @@ class LiveServer:
                 return
             try:
                 text, data = received.get("text") or "", received.get("bytes")
+                if len(text) > wire.LARGEST:
+                    raise Malformed(f"{len(text)} characters, at most {wire.LARGEST} are taken")
                 if isinstance(place, Desk):
                     await asyncio.to_thread(_command, place, page, desk_wire.decode(text))
                 elif data is not None:
