@@ -35,6 +35,16 @@ _FIELDS["humans"] = (
     ],
     ("live",),
 )
+_FIELDS["agent"] = (
+    Annotated[
+        tuple[str, ...],
+        Option(
+            help="The robot's agent, in the words of 'hthor eval', or 'socket': a program of yours that connects to "
+            "this session and controls the robot. 'socket:NAME' tells several apart, in --robots.",
+        ),
+    ],
+    (),
+)
 _FIELDS["participants"] = (
     Annotated[
         int | None,

@@ -17,7 +17,7 @@ forks. Below them are `protocol` (messages and pipes, docs/wire.md), `agent` (an
 
 from hthor.guest.agent.inputs import AgentInputs
 from hthor.guest.agent.manifest import File, Manifest
-from hthor.guest.agent.reference import AgentReference, is_served
+from hthor.guest.agent.reference import AgentReference, is_served, is_socket
 from hthor.guest.confinement import SERVED, Isolation, IsolationError, suffices
 from hthor.guest.host.channel import GuestFault, TrialStopped
 from hthor.guest.host.guest import Guest, in_force, load_info
@@ -44,6 +44,7 @@ __all__ = [
     "Unreachable",
     "in_force",
     "is_served",
+    "is_socket",
     "load_info",
     "suffices",
 ]

@@ -101,6 +101,12 @@ class Desk:
         self._lookers: list[DeskPage] = []  # pages that draw what seats see
         self._shown = _Shown()
 
+    @property
+    def events(self) -> tuple[Line, ...]:
+        """What has happened in the trial so far, as pages show it."""
+        with self._lock:
+            return tuple(self._shown.events)
+
     # ----------------------------------------------------------------------------------------- from the server's thread
 
     def join(self, page: DeskPage) -> None:

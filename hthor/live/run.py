@@ -8,8 +8,9 @@ from collections.abc import Callable
 
 import msgspec
 
-from hthor import rules
+from hthor import guest, rules
 from hthor.errors import HthorError
+from hthor.eval.config import human_populations
 from hthor.eval.config.options import EvalOptions
 from hthor.eval.planning.resolve import resolve
 from hthor.eval.records.run_folder import RunFolder
@@ -17,18 +18,21 @@ from hthor.eval.replay.recorded_session import LIVE
 from hthor.eval.runner import experiment
 from hthor.eval.runner.experiment import FinishedRun
 from hthor.eval.runner.progress import Watcher
+from hthor.eval.runner.run_job import ScheduledRun
 from hthor.live import local_network, wire
 from hthor.live.certificate import Certificate, certificate
-from hthor.live.control import SessionControl
+from hthor.live.control import SessionControl, SessionStopped
 from hthor.live.desk import Desk
 from hthor.live.engine import LiveEngine
 from hthor.live.loop import RealTimeLoop
+from hthor.live.robot_programs import RobotPrograms
 from hthor.live.run_book import RunBook
 from hthor.live.seat import LiveSeat
 from hthor.live.server import DESK, LiveServer
 from hthor.live.sessions import LiveSessions
 from hthor.live.tokens import SessionTokens
 from hthor.live.unfinished import UnfinishedTrial
+from hthor.trials import robot_team
 
 _FAREWELL_S = 1.0
 """[s] For the pages to hear that the session is over. Our choice."""
@@ -42,16 +46,21 @@ class LiveRun:
         port, page: where to serve, and whether to browsers.
         lan: whether other machines on the local network may connect, with encryption; else only this one.
         experimenter_starts: whether each trial waits for the experimenter.
+        tell: called with a sentence before something that takes a while, and with the addresses of robots' programs.
         now, sleep: as of `hthor.live.loop.RealTimeLoop`.
 
     Attributes:
-        scheduled: the run. seats: the people at pages, by seat. server: what they connect to.
+        seats: the people at pages, by seat. server: what they connect to.
+        scheduled: the run, from the moment that it is entered. It depends on what the robots' programs say about
+            themselves, so the server comes first, and entering waits for them.
         hosts: this machine's addresses on the local network, if other machines may connect.
         certificate: what the server shows to other machines.
 
     Raises:
-        HthorError: for any invalid option.
+        HthorError: for any invalid option, also when it is entered.
     """
+
+    scheduled: ScheduledRun
 
     def __init__(
         self,
@@ -66,30 +75,32 @@ class LiveRun:
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
         options = msgspec.structs.replace(options, clock="concurrent", control=False, jobs=1)
-        resolved = resolve(options, tell)
-        if len(resolved.runs) != 1:
-            raise HthorError("a person meets one robot team in a session: name one --agent and one word of --humans.")
-        (self.scheduled,) = resolved.runs
-        people = self.scheduled.people
-        first = people.seats(0)
-        live = [human.seat for human, word in zip(first, people.models, strict=True) if word == LIVE]
-        if not live:
-            raise HthorError(
-                f"--humans {people.word}: nobody in it takes part at a page. Write live, live,live or live,proxy; "
-                "simulated people alone are evaluated with 'hthor eval'."
-            )
-        self.seats = {seat: LiveSeat(seat) for seat in live}
+        self.seats = {seat: LiveSeat(seat) for seat in _live_seats(options)}
         self.control = SessionControl(experimenter_starts=experimenter_starts)
-        self._book = RunBook(self.scheduled.folder)
+        programs = _named_programs(options)
+        self._session_tokens = SessionTokens(options)
+        tokens = self._session_tokens.of((*self.seats, DESK, *programs))
+        self.robots = RobotPrograms({word: tokens[word] for word in programs}, tell=tell, wait=self._wait)
+        self._book = RunBook()
         self.desk = Desk(self.control, self.seats, self._book)
-        self._tokens = SessionTokens(self.scheduled.folder.path)
         self.hosts: tuple[str, ...] = ()
         self.certificate: Certificate | None = None
-        self.server = self._make_server(port, lan=lan)
-        self._resolved, self._now, self._sleep, self._page, self._tell = resolved, now, sleep, page, tell
+        self.server = self._make_server(port, tokens, lan=lan)
+        self._options, self._tell = options, tell
+        self._now, self._sleep, self._page = now, sleep, page
 
     def __enter__(self) -> LiveRun:
         self.server.start(page=self._page)
+        try:
+            for agent in self.robots.tokens:
+                self._tell(f"{agent}: {self.server.robot_url(agent)}")
+            self._resolved = resolve(self._options, self._tell, self.robots)
+            (self.scheduled,) = self._resolved.runs
+            self.robots.check_team(self.scheduled.team)
+            self._book.open(self.scheduled.folder)
+        except BaseException:
+            self.server.close()
+            raise
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -98,14 +109,12 @@ class LiveRun:
 
     def play(self, make_watcher: Callable[[str], Watcher]) -> FinishedRun:
         """Play what is left of the run, and score it; errors as in `hthor.eval.runner.run.run_evaluation`."""
-        run = self.scheduled
-        most = max(len(one.trials) for one in run.sessions)
-        unfinished = UnfinishedTrial(run.folder.path)
+        run, unfinished = self.scheduled, UnfinishedTrial(self.scheduled.folder.path)
         loop = RealTimeLoop(
             self.seats,
             self.control,
             self.desk,
-            trials=most,
+            trials=max(len(one.trials) for one in run.sessions),
             publish=self.server.publish,
             unfinished=unfinished,
             now=self._now,
@@ -120,7 +129,7 @@ class LiveRun:
         for seat in self.seats.values():
             seat.show(wire.Over(trials=sum(len(one.trials) for one in run.sessions)))
         time.sleep(_FAREWELL_S)
-        self._tokens.forget()
+        self._session_tokens.forget()
         return done
 
     def _void_unfinished(self, folder: RunFolder, unfinished: UnfinishedTrial) -> None:
@@ -133,11 +142,11 @@ class LiveRun:
             seconds = record.ticks * rules.TICK_S
             self._tell(f"trial {record.spec.index + 1} was interrupted after {seconds:.0f} s, and is repeated")
 
-    def _make_server(self, port: int, *, lan: bool) -> LiveServer:
+    def _make_server(self, port: int, tokens: dict[str, str], *, lan: bool) -> LiveServer:
         """A server for this machine, or for others too."""
-        tokens = self._tokens.of((*self.seats, DESK))
+        make = functools.partial(LiveServer, self.seats, self.desk, port=port, tokens=tokens, robots=self.robots)
         if not lan:
-            return LiveServer(self.seats, self.desk, port=port, tokens=tokens)
+            return make()
         self.hosts = local_network.addresses()
         if not self.hosts:
             raise HthorError(
@@ -146,7 +155,31 @@ class LiveRun:
             )
         hosts = (*self.hosts, local_network.host_name())
         self.certificate = certificate((*hosts, "localhost", "127.0.0.1"))
-        where = local_network.EVERYWHERE
-        return LiveServer(
-            self.seats, self.desk, host=where, port=port, hosts=hosts, certificate=self.certificate, tokens=tokens
+        return make(host=local_network.EVERYWHERE, hosts=hosts, certificate=self.certificate)
+
+    def _wait(self, seconds: float) -> None:
+        """Wait for a robot's program, unless the session is to end."""
+        if self.control.draining:
+            raise SessionStopped
+        self.control.wait(seconds)
+
+
+def _live_seats(options: EvalOptions) -> list[str]:
+    """The seats of the people who take part at pages; raises HthorError when there is none."""
+    peoples = human_populations.find_people(options.humans)
+    if len(peoples) != 1 or len(options.agent) > 1:
+        raise HthorError("a person meets one robot team in a session: name one --agent and one word of --humans.")
+    (people,) = peoples
+    live = [human.seat for human, word in zip(people.seats(0), people.models, strict=True) if word == LIVE]
+    if not live:
+        raise HthorError(
+            f"--humans {people.word}: nobody in it takes part at a page. Write live, live,live or live,proxy; "
+            "simulated people alone are evaluated with 'hthor eval'."
         )
+    return live
+
+
+def _named_programs(options: EvalOptions) -> list[str]:
+    """The words among these options for programs that connect."""
+    named = [agent for _, agent in robot_team.split_robots(options.robots)] if options.robots else []
+    return [word for word in dict.fromkeys([*named, *options.agent]) if guest.is_socket(word)]

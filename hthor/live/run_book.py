@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hthor import rules
+from hthor.errors import HthorError
 from hthor.eval.records import attempts, corrections
 from hthor.eval.records.attempts import Attempts
 from hthor.eval.records.corrections import CorrectionOptions
@@ -20,13 +22,19 @@ _WORDS = {True: "yes", False: "no", None: "exclude"}
 
 
 class RunBook:
-    """The `hthor.live.desk.Book` of a run in a folder, which this process has locked."""
+    """The `hthor.live.desk.Book` of a run in a folder, which this process has locked; empty before `open`."""
 
-    def __init__(self, folder: RunFolder) -> None:
+    def __init__(self) -> None:
+        self._path: Path | None = None
+
+    def open(self, folder: RunFolder) -> None:
+        """Show the run of this folder from now on."""
         self._path = folder.path
 
     def played(self) -> tuple[PlayedTrial, ...]:
         """The trials that are over, in the order of the session; an attempt that was voided comes before the next."""
+        if self._path is None:
+            return ()
         folder = RunFolder(self._path)
         if not folder.holds_run or not folder.log_file.exists():
             return ()
@@ -34,11 +42,11 @@ class RunBook:
 
     def repeat(self, trial: str, reason: str) -> None:
         """Void a trial that is over, and have it repeated; errors as in `hthor.eval.records.corrections.correct`."""
-        options = CorrectionOptions(trial=trial, void=True, again=True, reason=reason)
-        corrections.correct(self._path, options, locked=True)
+        self._correct(CorrectionOptions(trial=trial, void=True, again=True, reason=reason))
 
     def due(self, session: int) -> tuple[TrialSpec, ...]:
         """The next attempts at the trials of a session of which every attempt so far was voided."""
+        assert self._path is not None
         folder = RunFolder(self._path)
         tried = {
             attempts.attempt_of(record, folder.corrections.given_up): record.spec
@@ -56,7 +64,11 @@ class RunBook:
 
     def correct(self, trial: str, seat: str, adopted: bool | None, reason: str) -> None:
         """Add a correction to the run's; errors as in `hthor.eval.records.corrections.correct`."""
-        options = CorrectionOptions(trial=trial, adoption=_WORDS[adopted], seat=seat, reason=reason)
+        self._correct(CorrectionOptions(trial=trial, adoption=_WORDS[adopted], seat=seat, reason=reason))
+
+    def _correct(self, options: CorrectionOptions) -> None:
+        if self._path is None:
+            raise HthorError("no trial of this session has begun.")
         corrections.correct(self._path, options, locked=True)
 
 

@@ -15,9 +15,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from hthor.errors import HthorError, MissingExtra
+from hthor.guest.protocol.wire import MOST_BYTES
 from hthor.live import desk_wire, wire
 from hthor.live.desk import Desk
 from hthor.live.desk_wire import ToDesk
+from hthor.live.robot_programs import RobotPrograms
 from hthor.live.seat import LiveSeat
 from hthor.live.wire import Malformed, ToPage
 
@@ -40,7 +42,7 @@ LOCAL_HOSTS = ("localhost", "127.0.0.1", "[::1]")
 _JOIN_S = 10.0
 """[s] A connection that has not joined a seat by then is closed. Our choice."""
 _TOO_LARGE = 1009
-"""The code of a connection that was closed because of a message over `wire.LARGEST` (RFC 6455)."""
+"""The code of a connection that was closed because of a message of more than `MOST_BYTES`, by RFC 6455."""
 _WAITING = 512
 """[count] Messages that may wait for a slow page before its connection is given up. Our choice."""
 _POLICY = (
@@ -116,6 +118,7 @@ class LiveServer:
         hosts: names and addresses by which browsers may reach the server, besides those of a browser on this machine.
         certificate: what the server shows of itself; with it every connection is encrypted.
         tokens: of each seat, and of `DESK`; made here by default.
+        robots: the robots whose programs connect.
 
     Attributes:
         tokens: the token of each seat.
@@ -131,8 +134,9 @@ class LiveServer:
         hosts: Collection[str] = (),
         tokens: Mapping[str, str] | None = None,
         certificate: Certificate | None = None,
+        robots: RobotPrograms | None = None,
     ) -> None:
-        self._seats, self._desk = dict(seats), desk
+        self._seats, self._desk, self._robots = dict(seats), desk, robots or RobotPrograms()
         self._host, self._port, self._hosts = host, port, (*LOCAL_HOSTS, *hosts)
         given = tokens or {name: secrets.token_urlsafe(16) for name in (*seats, DESK)}
         self.tokens = {seat: given[seat] for seat in seats}
@@ -166,6 +170,10 @@ class LiveServer:
         """The address of the experimenter's page under one of the server's names."""
         return f"{self.address_at(host)}/{DESK_PAGE}#{self._desk_token}"
 
+    def robot_url(self, agent: str) -> str:
+        """What the program of a robot is given; it connects to what is before the #, with what is behind it."""
+        return f"{self.address.replace('http', 'ws', 1)}/robot#{self._robots.tokens[agent]}"
+
     def start(self, *, page: bool = True) -> None:
         """Begin to serve.
 
@@ -197,7 +205,7 @@ class LiveServer:
             access_log=False,
             lifespan="off",
             ws="websockets-sansio",
-            ws_max_size=wire.LARGEST,
+            ws_max_size=max(wire.LARGEST, MOST_BYTES),
             ws_per_message_deflate=False,
             timeout_graceful_shutdown=1,
             ssl_certfile=None if self._certificate is None else str(self._certificate.path),
@@ -212,6 +220,7 @@ class LiveServer:
     def close(self) -> None:
         """Stop serving."""
         if self._server is not None and self._thread is not None:
+            self._robots.close()
             self._server.should_exit = True
             self._thread.join()
 
@@ -235,7 +244,8 @@ class LiveServer:
             return Response(data, media_type="model/gltf-binary", headers=kept)
 
         pages = [Route("/", page_file), Route("/{name}", page_file), Route("/house/{key}.glb", house)]
-        return Starlette(routes=[*pages, WebSocketRoute("/live", self._connect)])
+        sockets = [WebSocketRoute("/live", self._connect), WebSocketRoute("/robot", self._connect_robot)]
+        return Starlette(routes=[*pages, *sockets])
 
     def publish(self, file: HouseFile) -> str:
         """Serve the file of a house; its address on this server."""
@@ -251,12 +261,23 @@ class LiveServer:
         scheme, _, host = origin.partition("://")
         return scheme == self._scheme and self._is_ours(host)
 
+    async def _refuses(self, socket: WebSocket) -> bool:
+        """Refuse a browser that the page of another site has led here; whether it was refused."""
+        origin, host = socket.headers.get("origin"), socket.headers.get("host", "")
+        if self._is_ours(host) and (origin is None or self._is_our_page(origin)):
+            return False
+        _LOG.warning("refused a connection from the page of another site: %s", _short(origin or host))
+        await socket.close(1008)
+        return True
+
+    async def _connect_robot(self, socket: WebSocket) -> None:
+        """Let the program of a robot connect."""
+        if not await self._refuses(socket):
+            await self._robots.connect(socket)
+
     async def _connect(self, socket: WebSocket) -> None:
         """Let a page join its seat, and listen to it until it leaves."""
-        origin, host = socket.headers.get("origin"), socket.headers.get("host", "")
-        if not self._is_ours(host) or (origin is not None and not self._is_our_page(origin)):
-            _LOG.warning("refused a connection from the page of another site: %s", _short(origin or host))
-            await socket.close(1008)
+        if await self._refuses(socket):
             return
         versions = socket.scope.get("subprotocols", [])
         if wire.VERSION not in versions:
@@ -290,10 +311,11 @@ class LiveServer:
         except (Malformed, TimeoutError):
             joined = None
         if isinstance(joined, wire.Join):
+            given = joined.token.encode()  # compare_digest takes no text beyond ASCII
             for name, token in self.tokens.items():
-                if secrets.compare_digest(token, joined.token):
+                if secrets.compare_digest(token.encode(), given):
                     return self._seats[name]
-            if secrets.compare_digest(self._desk_token, joined.token):
+            if secrets.compare_digest(self._desk_token.encode(), given):
                 return self._desk
         _LOG.warning("refused a connection without the token of a seat")
         await _refuse(socket, "this address belongs to no seat of the session. Open the address that hthor printed.")
@@ -305,10 +327,12 @@ class LiveServer:
             received = await socket.receive()
             if received["type"] != "websocket.receive":
                 if received.get("code") == _TOO_LARGE:
-                    _LOG.warning("%s: a message of more than %d bytes; its connection is closed", whose, wire.LARGEST)
+                    _LOG.warning("%s: a message of more than %d bytes; its connection is closed", whose, MOST_BYTES)
                 return
             try:
                 text, data = received.get("text") or "", received.get("bytes")
+                if len(text) > wire.LARGEST:
+                    raise Malformed(f"{len(text)} characters, at most {wire.LARGEST} are taken")
                 if isinstance(place, Desk):
                     await asyncio.to_thread(_command, place, page, desk_wire.decode(text))
                 elif data is not None:

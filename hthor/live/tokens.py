@@ -12,13 +12,14 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from hthor import documents, installation, jsonio
+from hthor.eval.config.options import EvalOptions
 
 
 class SessionTokens:
-    """The tokens of the run in a folder."""
+    """The tokens of the session that a command with these options plays in this folder."""
 
-    def __init__(self, run: Path) -> None:
-        name = jsonio.sha256(str(run.resolve()))[:16]
+    def __init__(self, options: EvalOptions) -> None:
+        name = jsonio.sha256([repr(options), str(Path.cwd())])[:16]
         self._file = installation.cache() / "live" / "tokens" / f"{name}.json"
 
     def of(self, names: Iterable[str]) -> dict[str, str]:

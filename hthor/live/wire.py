@@ -106,7 +106,7 @@ class Welcome(Struct, frozen=True, kw_only=True, tag="welcome"):
 
     Attributes:
         seat: the person's. acts: the number of the last act that was carried out; the page counts on from it.
-        server: differs when the server was started once more, which knows nothing of acts that were sent to the last.
+        server: differs when the server was started once more; acts that were sent to the last one are lost.
     """
 
     seat: str

@@ -176,8 +176,7 @@ def parse_teams(
     Raises:
         HthorError: when ``robots`` cannot be parsed, or a name in it is unknown.
     """
-    words = [word.replace("\\,", ",").strip() for word in re.split(r"(?<!\\),", robots)]
-    pairs = [_robot_and_agent(word, robots) for word in words]
+    pairs = split_robots(robots)
     without = [robot for robot, agent in pairs if not agent]
     if without and not agents:
         raise HthorError(
@@ -194,6 +193,16 @@ def parse_teams(
         form_team(robot_infos, [agent_infos[own or agent] for _, own in pairs], detector, camera)
         for agent in agents or [""]
     ]
+
+
+def split_robots(robots: str) -> list[tuple[str, str]]:
+    """The robots and agents that ``--robots`` names; the agent is empty where it has none.
+
+    Raises:
+        HthorError: when ``robots`` cannot be parsed.
+    """
+    words = [word.replace("\\,", ",").strip() for word in re.split(r"(?<!\\),", robots)]
+    return [_robot_and_agent(word, robots) for word in words]
 
 
 def _robot_and_agent(word: str, robots: str) -> tuple[str, str]:

@@ -11,6 +11,7 @@ import pytest
 from live_session import LiveSession
 from websockets.exceptions import InvalidStatus
 
+from hthor.guest.protocol.wire import MOST_BYTES
 from hthor.live import desk_wire, wire
 from hthor.types import HUMAN
 from hthor.types.events import Acted
@@ -76,7 +77,8 @@ def test_five_hundred_of_them(live: LiveSession, caplog: pytest.LogCaptureFixtur
         person.wait_for("trial")
         person.send({"type": "begin", "trial": 0})
         person.wait_for("began")
-        for one in (*words(draw, 240, wire.decode), *frames(draw, 100)):
+        large = ["x" * (wire.LARGEST + 1)] * 5
+        for one in (*words(draw, 235, wire.decode), *large, *frames(draw, 100)):
             person.socket.send(one)
         person.wait_until(lambda: bool(person.frames))
         with live.person(token=live.server.desk_url.rpartition("#")[2], steers=False) as desk:
@@ -91,7 +93,7 @@ def test_five_hundred_of_them(live: LiveSession, caplog: pytest.LogCaptureFixtur
                 live.person(origin=origin)
         for number in range(20):
             with live.person() as again:
-                again.socket.send("x" * (wire.LARGEST + 1) if number % 2 else b"\x01" * (wire.LARGEST + 1))
+                again.socket.send("x" * (MOST_BYTES + 1) if number % 2 else b"\x01" * (MOST_BYTES + 1))
                 again.wait_until(lambda again=again: not again.connected)  # type: ignore[misc]
         live.wait_until(lambda: _lines(caplog) == 500)
         _stay_to_the_end(live)

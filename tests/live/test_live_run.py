@@ -137,7 +137,9 @@ def test_a_trial_that_the_experimenter_voids_afterwards_is_repeated_when_the_oth
     tried = [(record.spec.index, record.spec.attempt or 0, record.log.voided) for record in folder.attempts()]
     assert tried == [(0, 0, "the doorbell rang"), (0, 1, ""), (1, 0, "")]
     assert [(record.spec.index, record.spec.attempt or 0) for record in folder.records()] == [(0, 1), (1, 0)]
-    assert RunBook(folder).due(0) == (), "nothing is left to play"
+    book = RunBook()
+    book.open(folder)
+    assert book.due(0) == (), "nothing is left to play"
 
 
 @pytest.mark.parametrize(

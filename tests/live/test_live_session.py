@@ -138,6 +138,7 @@ def test_what_is_no_message_has_no_effect(live: LiveSession, caplog: pytest.LogC
     ("changes", "words"),
     [
         ({"token": "guess"}, "belongs to no seat"),
+        ({"token": "Schlüssel"}, "belongs to no seat"),
         ({"version": "hthor.live.0"}, "this server speaks hthor.live.1, the page hthor.live.0"),
     ],
 )

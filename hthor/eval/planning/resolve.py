@@ -19,17 +19,21 @@ from hthor.eval.runner.engines import Engine
 from hthor.eval.runner.run_job import RUNS, ResolvedRuns
 from hthor.guest import GuestConfig
 from hthor.guest.agent import inputs
+from hthor.guest.host.connected_programs import ConnectedPrograms
 from hthor.tasks.suites import library
 from hthor.trials.robot_team import RobotTeam
 from hthor.trials.sources import load_pack
 from hthor.types import TaskSpec
 
 
-def resolve(options: EvalOptions, tell: Callable[[str], None] = lambda _: None) -> ResolvedRuns:
+def resolve(
+    options: EvalOptions, tell: Callable[[str], None] = lambda _: None, programs: ConnectedPrograms | None = None
+) -> ResolvedRuns:
     """Find out which runs the options stand for. Nothing is written but tasks in the cache, for houses of the user's.
 
     Args:
         tell: called with a sentence before something that takes a while.
+        programs: where the programs connect that are agents of the runs; None where none can.
 
     Raises:
         HthorError: for any invalid option, also where a run's folder holds something else.
@@ -42,7 +46,7 @@ def resolve(options: EvalOptions, tell: Callable[[str], None] = lambda _: None) 
     if custom_houses.files(options):
         suite = custom_houses.make_suite(options, tell)
         options = msgspec.structs.replace(options, suite=str(suite), house=(), difficulty=None, kind="")
-    guests = _guest_config(options)
+    guests = _guest_config(options, programs)
     code_identity.keep_compiled()
     peoples = human_populations.find_people(options.humans)
     pack = load_pack(options.assets)
@@ -87,10 +91,11 @@ def resolve(options: EvalOptions, tell: Callable[[str], None] = lambda _: None) 
     )
 
 
-def _guest_config(options: EvalOptions) -> GuestConfig:
+def _guest_config(options: EvalOptions, programs: ConnectedPrograms | None) -> GuestConfig:
     """How submitted agents are isolated, and which arguments and files they get."""
     agent_inputs = inputs.parse_inputs(options.agent_args, options.readable)
-    return GuestConfig(isolation=options.isolation, hidden=_hidden_paths(options), inputs=agent_inputs)
+    hidden = _hidden_paths(options)
+    return GuestConfig(isolation=options.isolation, hidden=hidden, inputs=agent_inputs, programs=programs)
 
 
 def _hidden_paths(options: EvalOptions) -> tuple[str, ...]:

@@ -99,7 +99,7 @@ class RunPlanner:
         common = self._setting.guests
         level = common.isolation if own.level == guest.SERVED else own.level  # for agents next to a served one
         hidden = (*common.hidden, str(run.folder.path.resolve()))
-        guests = GuestConfig(isolation=level, hidden=hidden, inputs=common.inputs)
+        guests = msgspec.structs.replace(common, isolation=level, hidden=hidden)
         sources = msgspec.structs.replace(run.sources, guests=guests)
         return msgspec.structs.replace(run, sources=sources, isolation=own)
 

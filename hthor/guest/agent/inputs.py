@@ -115,9 +115,11 @@ class AgentInputs(Struct, frozen=True, kw_only=True):
         Raises:
             HthorError: when an argument names a folder that it may not read.
         """
-        if agent.url and (self.args or self.readable):
+        if agent.elsewhere and (self.args or self.readable):
             option = "--agent-args" if self.args else "--readable"
-            raise HthorError(f"{agent.text} is served elsewhere, so {option} is for 'hthor agent serve' there.")
+            if agent.url:
+                raise HthorError(f"{agent.text} is served elsewhere, so {option} is for 'hthor agent serve' there.")
+            raise HthorError(f"{agent.text} is a program that you start yourself; give it there what {option} names.")
         found = [*self.readable, *(value for value in agent.args.values() if os.path.exists(value))]
         for key, value in self.args.items():
             if not os.path.isabs(value) or _within(value, [agent.root, *found]):

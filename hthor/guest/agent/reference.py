@@ -24,8 +24,11 @@ FORMS = ("my_agent.py", "my_agent.py:Class", "package.module:Class", "cmd:PROGRA
 """The ways to name an agent that is not built in."""
 CHECKPOINT = "checkpoint"
 """The argument of a built-in agent that a path behind its name stands for: ``savn:runs/savn/best``."""
+SOCKET = "socket"
+"""The word for a program that connects to a live session; ``socket:NAME`` tells several apart."""
 HINT = f"An agent of your own is {', '.join(FORMS)} or wss://...; see docs/agents.md."
 _MODULE = re.compile(r"[A-Za-z_]\w*(\.[A-Za-z_]\w*)*:[A-Za-z_]\w*")
+_SOCKET = re.compile(rf"{SOCKET}(:([A-Za-z0-9_-]{{1,40}}))?")
 _COMMANDS = ("cmd", "command", "exec", "run", "program", "process", "shell")
 _SYSTEM = ("/usr", "/bin", "/sbin", "/lib", "/lib64", sys.prefix, sys.base_prefix)
 _ENV = ("/usr/bin/env", "/bin/env")
@@ -35,11 +38,11 @@ class AgentReference(Struct, frozen=True, kw_only=True):
     """A submitted agent, as described before any of its code runs.
 
     Attributes:
-        form: file, module, command or served.
+        form: file, module, command, served, or socket for a program that connects to this process.
         text: a text that names the same agent for any process of this machine, in any working folder.
         source: its name in results, without folders of this machine.
         name: its name, unless the agent itself gives another name.
-        path: the file that is imported or started; empty for a served agent.
+        path: the file that is imported or started; empty for an agent that runs elsewhere.
         root: its own folder, which it may read; empty if it has none.
         cls: the class to use, empty for the only one. module: the module's name if it is imported by name.
         words: the program and its arguments. url: the server's address.
@@ -64,8 +67,13 @@ class AgentReference(Struct, frozen=True, kw_only=True):
         return plugins.is_built_in("agent", self.source.partition(":")[0])
 
     @property
+    def elsewhere(self) -> bool:
+        """Whether it runs where hthor neither starts nor confines it, so that its identity is what it claims."""
+        return self.form in ("served", SOCKET)
+
+    @property
     def sha256(self) -> str:
-        """Hash of its file; of a command's words without folders, and its files or else its program; "" if served.
+        """Hash of its file; of a command's words without folders, and its files or else its program; "" if elsewhere.
 
         Raises:
             AgentError: when a file cannot be read.
@@ -78,8 +86,13 @@ class AgentReference(Struct, frozen=True, kw_only=True):
 
 
 def is_served(text: str) -> bool:
-    """Whether this text names an agent that runs elsewhere."""
-    return "://" in text
+    """Whether this text names an agent that runs elsewhere: at an address, or as a program that connects."""
+    return "://" in text or is_socket(text)
+
+
+def is_socket(text: str) -> bool:
+    """Whether this text stands for a program that connects to a live session."""
+    return _SOCKET.fullmatch(text) is not None
 
 
 def parse_reference(text: str, cls: str | None = None) -> AgentReference:
@@ -93,6 +106,8 @@ def parse_reference(text: str, cls: str | None = None) -> AgentReference:
         return _command(text)
     if "://" in text:
         return _served(text)
+    if found := _SOCKET.fullmatch(text):
+        return AgentReference(form=SOCKET, text=text, source=text, name=found[2] or SOCKET)
     file, colon, named = text.rpartition(":") if ".py:" in text else (text, "", "")
     if file.endswith(".py"):
         return _file(Path(file), cls or named, colon)

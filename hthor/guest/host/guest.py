@@ -50,12 +50,13 @@ class Guest:
     another thread: they end its trial at once, unless the agent is ``persistent``, which must complete its step.
 
     Args:
-        path: the agent, as `reference.parse_reference` reads it: a file, a module, a command or an address.
+        path: the agent, as `reference.parse_reference` reads it: a file, a module, a command, an address, or a program
+            that connects.
         cls: the class to use when the file has several.
         start_s: seconds allowed to start the agent, and as many for every ``begin``.
         step_s: seconds allowed for each ``act``, without the time that the host takes to answer it (rendering).
         bank_s: extra seconds that all ``act`` calls of a trial may use together beyond ``step_s``.
-        config: how the agent is isolated, and its inputs. An agent that is served elsewhere is not isolated at all.
+        config: how the agent is isolated, and its inputs. An agent that runs elsewhere is not isolated at all.
         pool: keeps idle processes, also this guest's when it is closed; without a pool, that process ends then.
         memory_mb: the memory that it may use. disk_mb: how much it may write in a trial.
 
@@ -104,7 +105,7 @@ class Guest:
         """Start the agent, unless it runs already.
 
         Raises:
-            Unreachable: when it is served elsewhere and the server does not answer.
+            Unreachable: when it is served elsewhere and the server does not answer, or has left and not come back.
             AgentError: when its file is missing, does not compile, cannot be imported in time, or has no agent class.
             IsolationError: when the requested level does not start.
         """
@@ -154,6 +155,8 @@ class Guest:
         """End the trial; its process ends in the background. Calling this is optional."""
         with self._sole_use():
             self._start_end()
+            if self.reference.form == reference.SOCKET and self._info is not None:
+                self._startup.leave_idle(self._info)  # between trials it may leave and connect again
 
     def close(self) -> None:
         """End the process, or leave it idle in the pool; a later ``begin`` starts another."""

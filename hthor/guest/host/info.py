@@ -11,6 +11,7 @@ from hthor.guest.agent.inputs import AgentInputs
 from hthor.guest.agent.manifest import File
 from hthor.guest.agent.reference import AgentReference
 from hthor.guest.confinement import AUTO, Isolation, check_level
+from hthor.guest.host.connected_programs import ConnectedPrograms
 from hthor.guest.protocol import versions, wire
 from hthor.guest.protocol.wire import is_printable_name, sanitize_text
 
@@ -22,11 +23,13 @@ class GuestConfig(Struct, frozen=True, kw_only=True):
         isolation: "L1", "L2", "L3", or "auto" for the strongest level that starts on this machine.
         hidden: files and folders that no agent may read, even in its own folder.
         inputs: constructor arguments, and files beyond the agent's own folder.
+        programs: where programs connect to this process; None where none can, as in every worker.
     """
 
     isolation: str = AUTO
     hidden: tuple[str, ...] = ()
     inputs: AgentInputs = AgentInputs()
+    programs: ConnectedPrograms | None = None
 
     def __post_init__(self) -> None:
         """Check the level.
@@ -41,8 +44,8 @@ class GuestInfo(Struct, frozen=True, kw_only=True):
     """An agent's description of itself.
 
     Attributes:
-        sha256: hash of its file alone (its `Manifest` lists the rest); for a served agent, of all that its server
-            says, ``manifest`` included.
+        sha256: hash of its file alone (its `Manifest` lists the rest); for an agent that runs elsewhere, of all that
+            it says, ``manifest`` included.
         robots: the bodies that it is made for, empty for any. absent: whether there is no robot at all.
         persistent: whether one process serves all its trials. gpus: the share of a GPU that it needs.
         isolation: how it was confined when it gave this description.
@@ -80,17 +83,17 @@ def make_info(reference: AgentReference, sha256: str, ready: wire.Ready, held: I
             most = f"at most {wire.NAME_MAX} characters that can be seen"
             raise AgentError(f"{reference.text}: a name has {most}, got '{sanitize_text(name[:80])}'.")
     python = reference.form in ("file", "module")
-    served = reference.form == "served"
+    claimed = reference.elsewhere
     return GuestInfo(
         name=reference.name if python else ready.name or reference.name,
         source=reference.source,
-        sha256=hashlib.sha256(msgspec.json.encode(ready)).hexdigest() if served else sha256,
+        sha256=hashlib.sha256(msgspec.json.encode(ready)).hexdigest() if claimed else sha256,
         privileges=ready.privileges,
         robots=ready.robots,
         absent=ready.absent,
-        persistent=ready.persistent or served,
+        persistent=ready.persistent or claimed,
         doc=sanitize_text(ready.doc)[: wire.TEXT_MAX],
         gpus=ready.gpus,
-        manifest=ready.manifest if served else (),
+        manifest=ready.manifest if claimed else (),
         isolation=held,
     )

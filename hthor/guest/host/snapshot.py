@@ -19,7 +19,7 @@ def take_manifest(guest: Guest, name: str) -> Manifest:
         AgentError: when it cannot be loaded, or a file cannot be read.
     """
     info, agent, paths = guest.load(), guest.reference, guest.paths
-    if agent.url:
+    if agent.elsewhere:
         return Manifest(name=name, source=info.source, sha256=info.sha256, files=info.manifest, claimed=True)
     if not info.absent and not agent.words:
         _try_beginning(guest, info.privileges)

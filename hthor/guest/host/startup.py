@@ -8,7 +8,7 @@ import os
 from hthor.errors import KILLED, AgentError, AgentKilled
 from hthor.guest.agent import inputs
 from hthor.guest.agent.agent_paths import AgentPaths
-from hthor.guest.agent.reference import AgentReference
+from hthor.guest.agent.reference import SOCKET, AgentReference
 from hthor.guest.confinement import AUTO, LEVELS, Isolation, IsolationError, Policy, namespaces
 from hthor.guest.host import info, process, websocket_client
 from hthor.guest.host.channel import GuestFault, MessageChannel, isolation_reason
@@ -69,7 +69,7 @@ class GuestStartup:
             channel.loaded, self.ahead = True, idle.ahead
             self.policy = idle.process.policy
             return idle.info
-        isolation = self._connect() if agent.url else self._start_process()
+        isolation = self._connect() if agent.elsewhere else self._start_process()
         try:
             ready = channel.receive(self._start_s)[0]
         except GuestFault as fault:
@@ -86,7 +86,7 @@ class GuestStartup:
         except AgentError:
             channel.close()
             raise
-        if known.gpus and not self._gpus and not agent.url:  # start again, with the GPUs that it needs
+        if known.gpus and not self._gpus and not agent.elsewhere:  # start again, with the GPUs that it needs
             channel.close()
             self._gpus = known.gpus
             return self.start()
@@ -94,8 +94,15 @@ class GuestStartup:
         return known
 
     def leave_idle(self, info: GuestInfo) -> bool:
-        """Leave the guest, which has no trial, in the pool; False when it must be ended instead."""
+        """Leave the guest, which has no trial, in the pool, or a program that connected at its connection.
+
+        Returns:
+            False when it must be ended instead.
+        """
         process = self._channel.transport
+        if process is not None and self._agent.form == SOCKET:
+            self._channel.release()
+            return True
         if not isinstance(process, GuestProcess):
             return False
         idle = IdleGuest(process=process, info=info, ahead=self.ahead)
@@ -110,7 +117,16 @@ class GuestStartup:
         return self._agent.text, digest, *limits, tuple(config.inputs.args.items()), self._paths.readable
 
     def _connect(self) -> Isolation:
-        self._channel.open(websocket_client.connect(self._agent.url, self._start_s))
+        agent, programs = self._agent, self._config.programs
+        if agent.url:
+            self._channel.open(websocket_client.connect(agent.url, self._start_s))
+        elif programs is not None:
+            self._channel.open(programs.take(agent.text, self._start_s))
+        else:
+            raise AgentError(
+                f"agent '{agent.text}' is a program that connects to a session of 'hthor live'. Here, let hthor start "
+                "it (cmd:PROGRAM ARGS) or connect to it (ws://HOST:PORT)."
+            )
         return websocket_client.ISOLATION
 
     def _start_process(self) -> Isolation:

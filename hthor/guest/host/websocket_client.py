@@ -31,7 +31,7 @@ _TOO_BIG = 1009
 
 
 class Unreachable(AgentError):
-    """No server answers at an agent's address."""
+    """No server answers at an agent's address, or a program that connected has not come back."""
 
 
 def connect(url: str, seconds: float) -> WebSocketTransport:
