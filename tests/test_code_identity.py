@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import cProfile
+import gc
 import random
 import shutil
 from pathlib import Path
@@ -293,7 +294,12 @@ def test_everything_that_a_trial_runs_counts(sources: Sources, suite: str, agent
 def _called(act: Any) -> set[str]:
     """Names of our modules of which a function is called; a module's own first run does not count."""
     profile = cProfile.Profile(builtins=False)
-    profile.runcall(act)
+    gc.collect()
+    gc.disable()  # generators that earlier tests left would be closed, and so called, while this one is watched
+    try:
+        profile.runcall(act)
+    finally:
+        gc.enable()
     codes = [entry.code for entry in profile.getstats()]
     files = {code.co_filename for code in codes if not isinstance(code, str) and code.co_name != "<module>"}
     paths = [Path(file) for file in files if Path(file).is_relative_to(code_identity.PACKAGE)]

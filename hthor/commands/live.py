@@ -48,9 +48,13 @@ _FIELDS["agent"] = (
 _FIELDS["participants"] = (
     Annotated[
         int | None,
-        Option(least=1, help="How many people take part, one after another; each does ten tasks."),
+        Option(
+            least=1,
+            help="How many people take part in all; those of a trial do ten tasks, and then the next come.",
+            default="those of one trial",
+        ),
     ],
-    1,
+    None,
 )
 LiveOptions = msgspec.defstruct(
     "LiveOptions", [(name, *_FIELDS[name]) for name in _AS_IN_EVAL], frozen=True, kw_only=True

@@ -33,6 +33,7 @@ from hthor.live.sessions import LiveSessions
 from hthor.live.tokens import SessionTokens
 from hthor.live.unfinished import UnfinishedTrial
 from hthor.trials import robot_team
+from hthor.trials.human_team import HumanTeam
 
 _FAREWELL_S = 1.0
 """[s] For the pages to hear that the session is over. Our choice."""
@@ -74,8 +75,15 @@ class LiveRun:
         now: Callable[[], float] = time.perf_counter,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
-        options = msgspec.structs.replace(options, clock="concurrent", control=False, jobs=1)
-        self.seats = {seat: LiveSeat(seat) for seat in _live_seats(options)}
+        people = _people(options)
+        options = msgspec.structs.replace(
+            options,
+            participants=options.participants or len(people.members),
+            clock="concurrent",
+            control=False,
+            jobs=1,
+        )
+        self.seats = {seat: LiveSeat(seat) for seat in _live_seats(people)}
         self.control = SessionControl(experimenter_starts=experimenter_starts)
         programs = _named_programs(options)
         self._session_tokens = SessionTokens(options)
@@ -164,12 +172,16 @@ class LiveRun:
         self.control.wait(seconds)
 
 
-def _live_seats(options: EvalOptions) -> list[str]:
-    """The seats of the people who take part at pages; raises HthorError when there is none."""
+def _people(options: EvalOptions) -> HumanTeam:
+    """The people of a trial; raises HthorError when several populations or robot teams are named."""
     peoples = human_populations.find_people(options.humans)
     if len(peoples) != 1 or len(options.agent) > 1:
         raise HthorError("a person meets one robot team in a session: name one --agent and one word of --humans.")
-    (people,) = peoples
+    return peoples[0]
+
+
+def _live_seats(people: HumanTeam) -> list[str]:
+    """The seats of the people who take part at pages; raises HthorError when there is none."""
     live = [human.seat for human, word in zip(people.seats(0), people.models, strict=True) if word == LIVE]
     if not live:
         raise HthorError(

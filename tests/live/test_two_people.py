@@ -72,3 +72,10 @@ def test_a_simulated_person_beside_somebody_at_a_page_remembers_after_a_restart(
     assert first.log.ticks == second.log.ticks == 900
     assert states[1]["human2"]["trials"] == 1
     assert remember(TrialRunner(), [first], {})["human2"] == states[1]["human2"]
+
+
+def test_a_session_has_the_people_of_one_trial(tmp_path: Path) -> None:
+    options = EvalOptions(agent=("none",), humans=("live,live",), kind="collect", out=tmp_path / "run")
+    with LiveRun(options, page=False) as live:
+        (session,) = live.scheduled.sessions
+    assert [human.seat for human in session.trials[0].humans] == ["human", "human2"]

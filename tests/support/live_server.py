@@ -1,7 +1,8 @@
 """A session as a process that can be killed: `python live_server.py FOLDER PORT FASTER [NAME=VALUE ...]`.
 
 Serves the smoke suite's first trials to living people, ``FASTER`` times faster than real time. Writes the tokens of the
-seats in the order of the seats, one line each.
+seats in the order of the seats, one line each. With ``page=yes`` browsers may come; their houses lack the light that
+takes long to compute.
 """
 
 from __future__ import annotations
@@ -10,10 +11,13 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
+
 from hthor.eval.config.options import EvalOptions
 from hthor.eval.runner.progress import Silent
 from hthor.live import house_file
 from hthor.live.run import LiveRun
+from hthor.world.rendering.scene.baked_light import BakedLight
 
 
 def main(folder: str, port: str, faster: str, *options: str) -> None:
@@ -23,6 +27,7 @@ def main(folder: str, port: str, faster: str, *options: str) -> None:
         agent=(given.get("agent", "none"),),
         humans=(given.get("humans", "live"),),
         suite="smoke",
+        house=(given["house"],) if "house" in given else (),
         limit=int(given.get("limit", "2")),
         out=Path(folder),
     )
@@ -41,6 +46,9 @@ def main(folder: str, port: str, faster: str, *options: str) -> None:
 
 
 if __name__ == "__main__":
-    if "looks=yes" not in sys.argv:
+    if "page=yes" in sys.argv:
+        BakedLight._light = lambda self, points, normals: np.full((len(points), 3), 0.8)  # type: ignore[method-assign]
+        BakedLight._openness = lambda self, points, normals: np.ones(len(points))  # type: ignore[method-assign]
+    else:
         house_file._make = lambda scene, house: b""
-    main(*[one for one in sys.argv[1:] if not one.startswith("looks=")])
+    main(*sys.argv[1:])
