@@ -76,6 +76,13 @@ def live(
         bool,
         typer.Option("--experimenter-starts", help="Each trial waits until the experimenter starts it on their page."),
     ] = False,
+    practice: Annotated[
+        bool,
+        typer.Option(
+            "--practice/--no-practice",
+            help="Whether people try each control once, in a room of its own, before a session's first trial.",
+        ),
+    ] = True,
     json: Json = False,
     **given: object,
 ) -> None:
@@ -92,7 +99,9 @@ def live(
     chosen = make_record(LiveOptions, given)
     options = EvalOptions(**{name: getattr(chosen, name) for name in _AS_IN_EVAL})
     tell = partial(output.say, to=talk)
-    with LiveRun(options, port=port, lan=lan, experimenter_starts=experimenter_starts, tell=tell) as run:
+    with LiveRun(
+        options, port=port, lan=lan, experimenter_starts=experimenter_starts, practice=practice, tell=tell
+    ) as run:
         for line in _welcome(run):
             tell(line)
         done = run.play(partial(progress.make_watcher, talk, quiet=False, live=output.live()))

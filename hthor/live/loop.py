@@ -16,6 +16,7 @@ from hthor.humans.model import HumanModel
 from hthor.live import wire
 from hthor.live.control import Pacer, SessionControl, SessionStopped
 from hthor.live.desk import Desk
+from hthor.live.practice import OVER
 from hthor.live.scenery import Scenery
 from hthor.live.seat import AWAY_S, LiveSeat
 from hthor.live.unfinished import UnfinishedTrial
@@ -23,6 +24,7 @@ from hthor.types import SUBTICKS, BodySpec, Mind, TrialSpec
 
 if TYPE_CHECKING:
     from hthor.live.house_file import HouseFile
+    from hthor.live.practice import Practice
     from hthor.world.sensing_simulation import SensingSimulation
 
 ABSENT_S = 2.0
@@ -62,9 +64,18 @@ class RealTimeLoop:
         self._sceneries: WeakKeyDictionary[TrialWorld, Scenery] = WeakKeyDictionary()
 
     def __call__(
-        self, trial: TrialSpec, world: TrialWorld, humans: Mapping[str, HumanModel], robots: Mapping[str, Mind]
+        self,
+        trial: TrialSpec,
+        world: TrialWorld,
+        humans: Mapping[str, HumanModel],
+        robots: Mapping[str, Mind],
+        practice: Practice | None = None,
     ) -> EpisodeLog:
-        """Run one trial from its announcement to the ratings."""
+        """Run one trial from its announcement to the ratings.
+
+        Args:
+            practice: what the trial is, if it is one: it ends when this is over, and nothing of it is kept.
+        """
         episode = Episode(trial, world, (*humans, *robots))
         clock = Concurrent(pace=lambda _: None) if trial.clock == "concurrent" else make_clock(trial)
         episode.reset()
@@ -74,13 +85,13 @@ class RealTimeLoop:
             scenery = self._scenery(world)
             file = self._publish(scenery.file) if scenery is not None and self._publish is not None else ""
             self._desk.open(episode, file, scenery.own if scenery is not None else None)
-            self._announce(episode, scenery, file)
+            self._announce(episode, scenery, file, practice)
             self._show_bodies(episode, scenery)
             pacer = Pacer(self._now, self._sleep)
             while not episode.done:
-                if self._unfinished is not None and episode.tick % _KEPT_EVERY_TICKS == 0:
+                if self._unfinished is not None and practice is None and episode.tick % _KEPT_EVERY_TICKS == 0:
                     self._unfinished.keep(episode, humans)
-                if self._hold(episode):
+                if self._hold(episode, practice):
                     pacer.restart()
                     self._desk.watch(episode, pacer)
                     continue
@@ -96,23 +107,28 @@ class RealTimeLoop:
             clock.close()
         for seat in self._seats.values():
             seat.note(episode.tick, "real time", **pacer.figures())
-        self._show_end(episode, rate=bool(robots) and not episode.voided)
-        return finish(episode, humans)
+        rate = bool(robots) and not episode.voided and practice is None
+        self._show_end(episode, rate=rate)
+        return finish(episode, humans) if practice is None else episode.log()
 
-    def _announce(self, episode: Episode, scenery: Scenery | None, file: str) -> None:
+    def _announce(self, episode: Episode, scenery: Scenery | None, file: str, practice: Practice | None) -> None:
         """Show everybody the task, and wait until all are ready."""
         trial = episode.trial
         ahead = wire.TrialAhead(
             trial=trial.index,
             trials=self.trials,
-            house=trial.task.house,
+            house=episode.world.house.id,
             instruction=trial.task.instruction,
             time_limit=trial.task.time_limit,
             bodies=tuple(_body(seat, episode.world.bodies[seat]) for seat in episode.seats),
+            practice=practice is not None,
         )
         for name, seat in self._seats.items():
             own = scenery.own[name] if scenery is not None else ()
             seat.open(msgspec.structs.replace(ahead, file=file, own=own))
+        if practice is not None:
+            practice.show()
+            episode.attach(practice.watch)
         while not self._desk.gather():
             if self._control.draining:
                 raise SessionStopped
@@ -130,17 +146,18 @@ class RealTimeLoop:
         scenery.restart()
         return scenery
 
-    def _hold(self, episode: Episode) -> bool:
+    def _hold(self, episode: Episode, practice: Practice | None) -> bool:
         """Whether time stands still: the experimenter has paused the trial, or somebody's page is gone."""
         control = self._control
         away = {name: seat.absent_s() for name, seat in self._seats.items()}
-        if control.stopped or (control.draining and max(away.values()) > ABSENT_S):
+        if control.stopped or (control.draining and (practice is not None or max(away.values()) > ABSENT_S)):
             raise SessionStopped
-        gone = [name for name, seconds in away.items() if seconds > AWAY_S]
-        if control.void or gone:
+        gone = [name for name, seconds in away.items() if seconds > AWAY_S and practice is None]
+        ends = OVER if practice is not None and practice.over else control.void
+        if ends or gone:
             if episode.paused:
                 episode.resume()
-            episode.void(control.void or f"the page of {', '.join(gone)} did not come back")
+            episode.void(ends or f"the page of {', '.join(gone)} did not come back")
             control.void = ""
             return True
         lost = [name for name, seconds in away.items() if seconds > (0.0 if episode.paused else ABSENT_S)]

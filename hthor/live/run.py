@@ -47,6 +47,7 @@ class LiveRun:
         port, page: where to serve, and whether to browsers.
         lan: whether other machines on the local network may connect, with encryption; else only this one.
         experimenter_starts: whether each trial waits for the experimenter.
+        practice: whether each session begins with a practice, see `hthor.live.practice`.
         tell: called with a sentence before something that takes a while, and with the addresses of robots' programs.
         now, sleep: as of `hthor.live.loop.RealTimeLoop`.
 
@@ -71,6 +72,7 @@ class LiveRun:
         page: bool = True,
         lan: bool = False,
         experimenter_starts: bool = False,
+        practice: bool = False,
         tell: Callable[[str], None] = lambda _: None,
         now: Callable[[], float] = time.perf_counter,
         sleep: Callable[[float], None] = time.sleep,
@@ -95,7 +97,7 @@ class LiveRun:
         self.certificate: Certificate | None = None
         self.server = self._make_server(port, tokens, lan=lan)
         self._options, self._tell = options, tell
-        self._now, self._sleep, self._page = now, sleep, page
+        self._now, self._sleep, self._page, self._practice = now, sleep, page, practice
 
     def __enter__(self) -> LiveRun:
         self.server.start(page=self._page)
@@ -129,7 +131,14 @@ class LiveRun:
             sleep=self._sleep,
         )
         sessions = functools.partial(
-            LiveSessions, run.sources, self.seats, loop, run.folder, unfinished, self._book.due
+            LiveSessions,
+            run.sources,
+            self.seats,
+            loop,
+            run.folder,
+            unfinished,
+            self._book.due,
+            practice=self._practice,
         )
         live = msgspec.structs.replace(run, engine=LiveEngine(self.control), runner=sessions)
         self._void_unfinished(run.folder, unfinished)

@@ -17,7 +17,7 @@ from typing import Protocol
 from hthor.live import wire
 from hthor.live.choices import find_choices
 from hthor.live.pictures import to_jpeg
-from hthor.live.wire import Act, FrameHead, Steering, ToPage
+from hthor.live.wire import PRACTICE, Act, FrameHead, Steering, ToPage
 from hthor.types import Action, Briefing, Controls, Drive, Observation, Pose
 from hthor.types.events import Note
 
@@ -27,7 +27,7 @@ AWAY_S = 60.0
 """[s] Somebody whose page has been gone for so long has left the trial. Our choice."""
 _TURN_S = 0.25
 """[s] How often the trial, while it waits for a rating, looks whether the page is still there. Our choice."""
-_OF_A_TRIAL = (wire.Began, wire.Now, wire.Choices, wire.Panel, wire.Map, wire.Paused, wire.Ended)
+_OF_A_TRIAL = (wire.Steps, wire.Began, wire.Now, wire.Choices, wire.Panel, wire.Map, wire.Paused, wire.Ended)
 """What a page no longer shows when the next trial is opened."""
 
 
@@ -63,6 +63,7 @@ class LiveSeat:
         self._acts: deque[Act] = deque()
         self._acted = 0  # the number of the last act that was taken
         self._ready = False  # for the trial that was opened last
+        self._skips = False  # that trial, if it is the practice
         self._rating: int | None = None  # of that trial
         self._screen: dict[type[ToPage], ToPage] = {}  # what the page shows, by kind, for a page that joins again
         self._picture: tuple[int, bytes] | None = None
@@ -72,7 +73,7 @@ class LiveSeat:
         self.round_trip = self.frames = 0.0
         self._notes: list[Note] = []
         self._last: Observation | None = None
-        self._trial = -1
+        self._trial: int | None = None
         self._body: wire.Body | None = None
 
     # ----------------------------------------------------------------------------------------- from the server's thread
@@ -122,6 +123,12 @@ class LiveSeat:
         with self._lock:
             self._ready = self._ready or trial == self._trial
 
+    def skip(self, trial: int) -> None:
+        """The person does not want to practise, if this trial is the practice."""
+        with self._lock:
+            if trial == self._trial == PRACTICE:
+                self._ready = self._skips = True
+
     def rate(self, trial: int, value: int) -> None:
         """Take the rating of a trial."""
         with self._lock:
@@ -156,7 +163,7 @@ class LiveSeat:
     def open(self, ahead: wire.TrialAhead) -> None:
         """Show the person the next trial."""
         with self._lock:
-            self._trial, self._ready, self._rating = ahead.trial, False, None
+            self._trial, self._ready, self._skips, self._rating = ahead.trial, False, False, None
             self._head, self._places = None, {}
         self._body = next(body for body in ahead.bodies if body.seat == self.seat)
         self.show(ahead, instead_of=_OF_A_TRIAL)
@@ -166,6 +173,12 @@ class LiveSeat:
         """Whether the person is there and ready for the trial that was opened last."""
         with self._lock:
             return self._page is not None and self._ready
+
+    @property
+    def skips(self) -> bool:
+        """Whether the person has skipped the practice that is going on."""
+        with self._lock:
+            return self._skips
 
     def ask_rating(self) -> int | None:
         """The person's trust in the robots, 1 to 7; waits for it, but not for somebody who has gone away."""

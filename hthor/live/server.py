@@ -354,6 +354,8 @@ def _take(seat: LiveSeat, page: Connection, message: wire.FromPage) -> None:
             if not wire.is_rating(message.value):
                 raise Malformed(f"{message.value} is no rating")
             seat.rate(message.trial, message.value)
+        case wire.Skip():
+            seat.skip(message.trial)
         case wire.Ping():
             seat.ping(message)
             page.send(wire.Pong(sent=message.sent))

@@ -14,6 +14,8 @@ from hthor.guest import GuestPool
 from hthor.humans.model import State
 from hthor.humans.models import live
 from hthor.live.loop import RealTimeLoop
+from hthor.live.practice import Practice
+from hthor.live.practice_room import practice_trial
 from hthor.live.seat import LiveSeat
 from hthor.live.unfinished import UnfinishedTrial
 from hthor.trials import Participants, Sources, TrialRunner
@@ -35,6 +37,7 @@ class LiveSessions:
         folder: of the run. unfinished: keeps the trial that is going on.
         due: the next attempts at trials of a session, by its number, that were voided after they were over; they are
             played when all others are.
+        practice: whether people practise before a session's first trial. A session that goes on begins without.
     """
 
     def __init__(
@@ -45,13 +48,18 @@ class LiveSessions:
         folder: RunFolder,
         unfinished: UnfinishedTrial,
         due: Callable[[int], Sequence[TrialSpec]] = lambda _: (),
+        *,
+        practice: bool = False,
     ) -> None:
         self._runner = TrialRunner(sources, GuestPool(), loop=loop)
         self._past = TrialRunner(sources, worlds=self._runner.worlds)
         self._seats, self._folder, self._unfinished, self._due = seats, folder, unfinished, due
+        self._loop, self._practises = loop, practice
 
     def __call__(self, session: Session) -> Iterator[TrialOutcome]:
         """Play what is left of a session."""
+        if self._practises and not self._begun(session):
+            self._practise(session)
         logged = {record.key: record for record in self._played(session)}
         past: list[ScoredTrial] = []
         states: States = {}
@@ -67,6 +75,20 @@ class LiveSessions:
                 trial = repeated[0]
                 before = [record for record in self._played(session) if record.spec.index < trial.index]
                 yield from self._play(participants, trial, remember(self._past, before, {}))
+
+    def _practise(self, session: Session) -> None:
+        """Let the people at pages practise; nobody remembers it, and it is in no log."""
+        first = session.trials[0]
+        people = self._runner.make_people(first)
+        practice = Practice(self._seats)
+        trial = practice_trial(first, self._seats)
+        with Participants({name: people[name] for name in self._seats}, trial.robots, lambda _: practice.guide) as all_:
+            welcome(all_, self._seats)
+            self._loop(trial, self._runner.world(trial), all_.humans, all_.ready_agents(), practice)
+
+    def _begun(self, session: Session) -> bool:
+        """Whether the log has any attempt at a trial of the session."""
+        return any(record.spec.session == session.number for record in RunFolder(self._folder.path).attempts())
 
     def _played(self, session: Session) -> list[ScoredTrial]:
         """The session's trials that the log has, in their order."""

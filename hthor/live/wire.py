@@ -37,6 +37,9 @@ VERSION = "hthor.live.1"
 LARGEST = 16_384
 """[bytes] No message of a page is larger; one that is ends its connection."""
 
+PRACTICE = -1
+"""The number of the practice among a session's trials, which count from 0."""
+
 HandMotion = Pick | Place | Drop | Open | Close
 """The motions of the hands; walking and looking come as `Steering`."""
 
@@ -76,6 +79,12 @@ class Rate(Struct, frozen=True, kw_only=True, tag="rate"):
     value: int
 
 
+class Skip(Struct, frozen=True, kw_only=True, tag="skip"):
+    """The person does not want to practise any longer, or at all; ``trial`` is the practice's number."""
+
+    trial: int
+
+
 class Ping(Struct, frozen=True, kw_only=True, tag="ping"):
     """Answered by `Pong`. ``frames`` [1/s]: how many pictures the page draws; ``round_trip`` [s]: of the last ping."""
 
@@ -84,7 +93,7 @@ class Ping(Struct, frozen=True, kw_only=True, tag="ping"):
     round_trip: float = 0.0
 
 
-FromPage = Join | Begin | Act | Rate | Ping
+FromPage = Join | Begin | Act | Rate | Skip | Ping
 """What a page may send."""
 
 
@@ -138,7 +147,8 @@ class TrialAhead(Struct, frozen=True, kw_only=True, tag="trial"):
     """The next trial, which begins when every person has sent `Begin`.
 
     Attributes:
-        trial: its number in the session, from 0, of ``trials``. house: the floor plan's name.
+        trial: its number in the session, from 0, of ``trials``; `PRACTICE` for the practice before them.
+        practice: whether it is the practice. house: the floor plan's name.
         instruction: the task in words. time_limit: [s].
         bodies: of all seats. file: the address of the house's glTF file, on this server. own: the numbers of what the
             person does not see of themselves in it, their body and their head.
@@ -152,6 +162,27 @@ class TrialAhead(Struct, frozen=True, kw_only=True, tag="trial"):
     bodies: tuple[Body, ...]
     file: str = ""
     own: tuple[int, ...] = ()
+    practice: bool = False
+
+
+class Step(Struct, frozen=True, kw_only=True):
+    """Something to try in the practice, in words.
+
+    Attributes:
+        actions: what its keys do, in the words of the page's ``keys.js``. done: whether the person has tried it.
+    """
+
+    name: str
+    words: str
+    actions: tuple[str, ...]
+    done: bool = False
+
+
+class Steps(Struct, frozen=True, kw_only=True, tag="steps"):
+    """What there is to try in the practice, whenever that changes; ``skipped``: whether the person sent `Skip`."""
+
+    steps: tuple[Step, ...]
+    skipped: bool = False
 
 
 class Began(Struct, frozen=True, kw_only=True, tag="began"):
@@ -243,7 +274,20 @@ class Pong(Struct, frozen=True, kw_only=True, tag="pong"):
 
 
 ToPage = (
-    Welcome | Problem | TrialAhead | Began | Now | Choices | Panel | Map | Acknowledged | Paused | Ended | Over | Pong
+    Welcome
+    | Problem
+    | TrialAhead
+    | Steps
+    | Began
+    | Now
+    | Choices
+    | Panel
+    | Map
+    | Acknowledged
+    | Paused
+    | Ended
+    | Over
+    | Pong
 )
 """What the server sends."""
 

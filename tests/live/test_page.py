@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 import shutil
+import threading
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
@@ -17,8 +18,15 @@ from live_session import LiveSession
 from relay import Relay
 from world_house import COUNTER, TABLE, house, on, task
 
+from hthor.errors import HthorError
+from hthor.eval.config.options import EvalOptions
+from hthor.eval.runner.progress import Silent
+from hthor.eval.runner.run_job import RunJob
 from hthor.live import server
-from hthor.types import HUMAN, Goal, Pose, TaskSpec
+from hthor.live.practice_room import practice_trial
+from hthor.live.run import LiveRun
+from hthor.trials.sessions import Session
+from hthor.types import HUMAN, Goal, Pose, TaskSpec, TrialSpec
 from hthor.types.events import Accepted, Declined, Displayed
 from hthor.world import World
 
@@ -146,6 +154,51 @@ def test_a_person_plays_a_delivery_and_a_search_in_the_browser(live: LiveSession
     play(live, live.server.address)
 
 
+@pytest.fixture
+def small(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Trials in the room of the practice, which is drawn in no time."""
+    whole = RunJob.sessions.fget  # type: ignore[attr-defined]
+
+    def moved(trial: TrialSpec) -> TrialSpec:
+        room = practice_trial(trial, (HUMAN,)).task
+        return msgspec.structs.replace(trial, task=msgspec.structs.replace(room, time_limit=90.0))
+
+    def sessions(run: RunJob) -> tuple[Session, ...]:
+        return tuple(msgspec.structs.replace(one, trials=tuple(map(moved, one.trials))) for one in whole(run))
+
+    monkeypatch.setattr(RunJob, "sessions", property(sessions))
+
+
+def test_a_practice_ticks_off_what_was_tried_and_is_skipped(tmp_path: Path, small: None) -> None:
+    options = EvalOptions(agent=("none",), humans=("live",), limit=1, suite="smoke", out=tmp_path / "run")
+    with LiveRun(options, practice=True) as run:
+        playing = threading.Thread(target=lambda: play_until_stopped(run))
+        playing.start()
+        with opened(plain(run.server.url(HUMAN)), run.server.address) as page:
+            page.wait_for_selector("#title:text('Practice')")
+            page.click("#go:not(.hidden)")
+            page.wait_for_selector("#steps-left:text('Still to try: 11')")
+            assert page.is_hidden("#time")
+            page.wait_for_selector("#words:text('confirm this message')")
+            page.keyboard.press("y")
+            page.wait_for_selector("#steps-list .done :text('confirm a message')")
+            page.evaluate("page.keys.yaw = 0.1")
+            page.keyboard.down("w")
+            page.wait_for_selector("#steps-list .done :text('walk about')")
+            page.keyboard.up("w")
+            page.click("#skip")
+            page.wait_for_selector("#text:text('You have 90 seconds.')")
+            assert page.text_content("#trial") == "1 of 1"
+            assert page.is_hidden("#steps")
+        run.control.stop()
+        playing.join()
+
+
+def play_until_stopped(run: LiveRun) -> None:
+    with suppress(HthorError):  # it is ended before its end
+        run.play(lambda _: Silent())
+
+
 @pytest.mark.nightly
 @pytest.mark.parametrize("round_trip_ms", [100, 200, 300])
 def test_delays_and_jitter_spoil_neither(round_trip_ms: int, live: LiveSession) -> None:
@@ -156,7 +209,7 @@ def test_delays_and_jitter_spoil_neither(round_trip_ms: int, live: LiveSession) 
 
 def play(live: LiveSession, address: str) -> float:
     """Play a session at this address, and check what became of it; the largest correction [m] of the own motion."""
-    with opened(live, f"{address}/?plain#{live.server.tokens[HUMAN]}", address) as page:
+    with opened(f"{address}/?plain#{live.server.tokens[HUMAN]}", address) as page:
         person = Person(page)
         deliver(person)
         search(person)
@@ -178,7 +231,10 @@ def play(live: LiveSession, address: str) -> float:
 
 
 def test_the_experimenter_starts_a_trial_and_sees_what_everybody_sees(tmp_path: Path) -> None:
-    with session(tmp_path, experimenter_starts=True) as live, opened(live, plain(live.server.desk_url)) as page:
+    with (
+        session(tmp_path, experimenter_starts=True) as live,
+        opened(plain(live.server.desk_url), live.server.address) as page,
+    ):
         page.wait_for_selector("#state:text('waiting for human')")
         assert page.is_disabled("#start")
         with live.person() as person:
@@ -202,7 +258,7 @@ def plain(url: str) -> str:
 
 
 @contextmanager
-def opened(live: LiveSession, url: str, address: str = "") -> Iterator[Any]:
+def opened(url: str, address: str) -> Iterator[Any]:
     """A page in a browser, which must not complain, nor ask any other site for anything."""
     complaints: list[str] = []
     with browsers.sync_playwright() as playwright:
@@ -210,7 +266,7 @@ def opened(live: LiveSession, url: str, address: str = "") -> Iterator[Any]:
         page = browser.new_page(viewport={"width": 480, "height": 300})
         page.on("console", lambda message: complaints.append(message.text))
         page.on("pageerror", lambda error: complaints.append(str(error)))
-        page.on("request", lambda request: note_foreign(request.url, address or live.server.address, complaints))
+        page.on("request", lambda request: note_foreign(request.url, address, complaints))
         page.goto(url)
         page.set_default_timeout(_PATIENCE_MS)
         yield page

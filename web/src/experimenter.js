@@ -32,6 +32,7 @@ function make(tag, text, kind = "") {
 class Desk {
   constructor() {
     /** @type {any} */ this.plan = null;
+    this.practice = false;
     /** Where everybody has been. @type {Map<string, number[][]>} */
     this.trails = new Map();
     /** What the seats see, while that is shown. @type {Views | null} */
@@ -40,7 +41,10 @@ class Desk {
     find("look").onclick = () => this.look(this.views === null);
     find("pause").onclick = () => this.tell({ type: "pause", reason: reason() });
     find("go-on").onclick = () => this.tell({ type: "go_on" });
-    find("void").onclick = () => this.tell({ type: "void", reason: reason() });
+    find("void").onclick = () => {
+      const given = reason();
+      this.tell({ type: "void", reason: given || (this.practice ? "the experimenter ended the practice" : "") });
+    };
     this.connect();
   }
 
@@ -85,7 +89,10 @@ class Desk {
     this.plan = plan;
     this.trails = new Map(plan.seats.map((/** @type {string} */ seat) => [seat, []]));
     const attempt = plan.attempt ? `, attempt ${plan.attempt + 1}` : "";
-    find("task").textContent = `Trial ${plan.trial + 1}${attempt}: ${plan.instruction}`;
+    this.practice = plan.trial < 0;
+    const what = this.practice ? "Practice" : `Trial ${plan.trial + 1}${attempt}`;
+    find("void").textContent = this.practice ? "End the practice" : "Void and repeat";
+    find("task").textContent = `${what}: ${plan.instruction}`;
     find("state").textContent = "waiting for everybody to begin";
     find("events").replaceChildren();
     find("start").classList.add("hidden");
@@ -133,8 +140,9 @@ class Desk {
   /** @param {any} watch */
   on_watch({ tick, paused, factor, people }) {
     const left = this.plan.time_limit - tick / TICKS_PER_S;
+    const time = this.practice ? "people practise" : `${left.toFixed(0)} s left`;
     const speed = factor < 0.98 ? `, real-time factor ${factor.toFixed(2)}` : "";
-    find("state").textContent = paused ? `paused: ${paused}` : `${left.toFixed(0)} s left${speed}`;
+    find("state").textContent = paused ? `paused: ${paused}` : `${time}${speed}`;
     find("state").classList.toggle("paused", paused !== "");
     for (const one of people) this.trails.get(one.seat)?.push([one.x, one.y]);
     this.draw(people);

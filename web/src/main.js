@@ -53,22 +53,25 @@ class Page {
     /** @type {any} */ this.head = null;
     /** How the trial ended. @type {any} */ this.ended = null;
     /** Why time stands still. */ this.paused = "";
+    /** What there is to try, in the practice. @type {any} */ this.steps = null;
+    this.skipped = false;
     this.ready = this.begun = this.rated = this.keysShown = false;
     this.known = { panel: false, map: false };
   }
 
   /** Whether the person can act. */
   get plays() {
-    const still = this.paused || this.lost || this.problem;
+    const still = this.paused || this.lost || this.problem || this.skipped;
     return this.begun && this.house !== null && this.ended === null && !still;
   }
 
   /** Show the card that fits, or the house. */
   show() {
     this.panels.reveal(this.begun && this.house !== null && this.ended === null);
-    const { title, text, button, done, help, rate } = this.card();
+    const { title, text, button, done, other, otherDone, help, rate } = this.card();
     if (rate) this.panels.rating(title, done);
-    else this.panels.card(title ? { title, text, button } : null, done);
+    else this.panels.card(title ? { title, text, button, other } : null, done, otherDone);
+    this.panels.steps(this.plays ? this.steps : null, () => this.skip());
     if (help) this.panels.help();
     if (!title) this.offer();
   }
@@ -83,7 +86,10 @@ class Page {
     if (this.trial === null) return { title: "hthor", text: "The session is being prepared …" };
     const task = this.trial.instruction;
     if (this.ended !== null) return this.endCard();
-    if (this.house === null) return { title: "The next task", text: "The house is being loaded …" };
+    if (this.skipped) return { title: "Practice", text: "The first task comes when everybody is ready …" };
+    if (this.house === null) {
+      return { title: this.trial.practice ? "Practice" : "The next task", text: "The house is being loaded …" };
+    }
     if (this.begun && this.paused) return { title: "Paused", text: this.paused };
     if (this.begun && this.keysShown) {
       const done = () => this.change({ keysShown: false });
@@ -95,10 +101,22 @@ class Page {
       this.worker.postMessage({ type: "begin", trial: this.trial.trial });
       this.change({ ready: true });
     };
+    if (this.trial.practice) {
+      const text = "Try each control once, in any order, before the first task. A list shows what is left.";
+      const [other, otherDone] = ["Skip the practice", () => this.skip()];
+      return { title: "Practice", text, button: "Begin", done, other, otherDone, help: true };
+    }
     return { title: task, text: `You have ${this.trial.time_limit} seconds.`, button: "Begin", done, help: true };
   }
 
+  /** Leave the practice out. */
+  skip() {
+    this.worker.postMessage({ type: "skip", trial: this.trial.trial });
+    this.change({ skipped: true });
+  }
+
   endCard() {
+    if (this.trial.practice) return { title: "The practice is over", text: "Please wait for the first task …" };
     const { voided, met, rate, trial } = this.ended;
     const words = voided ? `The trial does not count: ${voided}.` : met ? "Done!" : "The time is over.";
     if (!rate) return { title: words, text: "Please wait …" };
@@ -162,6 +180,11 @@ class Page {
     house.move(this.early);
     house.step(1, null);
     this.change({ house });
+  }
+
+  /** @param {any} message */
+  on_steps({ steps, skipped }) {
+    this.change({ steps, skipped: this.skipped || skipped });
   }
 
   on_began() {

@@ -27,7 +27,8 @@ export class Panels {
   /** The task, and how far the session is. @param {any} trial */
   task(trial) {
     find("task").textContent = trial.instruction;
-    find("trial").textContent = `${trial.trial + 1} of ${trial.trials}`;
+    find("trial").textContent = trial.practice ? "Practice" : `${trial.trial + 1} of ${trial.trials}`;
+    toggle("time", !trial.practice);
   }
 
   /** @param {number} seconds @param {string} phase */
@@ -79,6 +80,32 @@ export class Panels {
     find("map-keys").replaceChildren(this.#hint("map", "hide"));
   }
 
+  /**
+   * What there is to try in the practice; null outside of it.
+   * @param {{words: string, actions: string[], done: boolean}[] | null} steps
+   * @param {() => void} skip
+   */
+  steps(steps, skip) {
+    toggle("steps", steps !== null);
+    if (steps === null) return;
+    const left = steps.filter((step) => !step.done).length;
+    find("steps-left").textContent = left > 0 ? `Still to try: ${left}` : "All done. Please wait for the others.";
+    find("steps-list").replaceChildren(
+      ...steps.map(({ words, actions, done }) => {
+        const row = document.createElement("li");
+        row.classList.toggle("done", done);
+        const keys = document.createElement("span");
+        keys.className = "keys";
+        keys.append(...actions.map((action) => this.#key(action)));
+        const text = document.createElement("span");
+        text.textContent = words;
+        row.append(keys, text);
+        return row;
+      }),
+    );
+    find("skip").onclick = skip;
+  }
+
   /** Words that go away after a while. @param {string} words */
   notice(words) {
     find("notice").textContent = words;
@@ -88,11 +115,12 @@ export class Panels {
   }
 
   /**
-   * A card in the middle, with a button; null takes it away.
-   * @param {{title: string, text: string, button?: string} | null} card
+   * A card in the middle, with a button, and another one for something else; null takes it away.
+   * @param {{title: string, text: string, button?: string, other?: string} | null} card
    * @param {() => void} [done]
+   * @param {() => void} [otherDone]
    */
-  card(card, done) {
+  card(card, done, otherDone) {
     toggle("card", card !== null);
     if (card === null) return;
     document.exitPointerLock?.();
@@ -102,6 +130,10 @@ export class Panels {
     button.classList.toggle("hidden", !card.button);
     button.textContent = card.button ?? "";
     button.onclick = () => done?.();
+    const other = find("other");
+    toggle("other", Boolean(card.other));
+    other.textContent = card.other ?? "";
+    other.onclick = () => otherDone?.();
     toggle("scale", false);
     find("help").replaceChildren();
     if (card.button) button.focus();
@@ -143,9 +175,14 @@ export class Panels {
   #hint(action, words) {
     const hint = document.createElement("span");
     hint.className = "hint";
+    hint.append(this.#key(action), ` ${words}`);
+    return hint;
+  }
+
+  /** @param {string} action */
+  #key(action) {
     const key = document.createElement("kbd");
     key.textContent = keyName(this.keys.codes[action]);
-    hint.append(key, ` ${words}`);
-    return hint;
+    return key;
   }
 }
