@@ -189,7 +189,7 @@ def _attend(person: Follower, trial: int) -> None:
     """Begin and rate a trial."""
     person.wait_for("trial", trial=trial)
     person.send({"type": "begin", "trial": trial})
-    person.wait_for("ended", 600.0, trial=trial)
+    person.wait_for("ended", 3600.0, trial=trial)
     person.send({"type": "rate", "trial": trial, "value": 4})
 
 
@@ -200,8 +200,8 @@ ALL = pytest.mark.nightly
     ("agent", "sessions", "trials"),
     [
         pytest.param("frontier", (0,), 2, id="two trials"),
-        pytest.param("none", range(2), 10, id="all of smoke without a robot", marks=ALL),
-        pytest.param("frontier", range(2), 10, id="all of smoke beside a robot", marks=ALL),
+        pytest.param("none", range(6), 10, id="all of smoke without a robot", marks=ALL),
+        pytest.param("frontier", range(6), 10, id="all of smoke beside a robot", marks=ALL),
     ],
 )
 def test_what_a_proxy_decided_ends_at_a_page_as_in_batch(agent: str, sessions: Sequence[int], trials: int) -> None:
