@@ -5,13 +5,17 @@ from __future__ import annotations
 import queue
 import threading
 from collections.abc import Generator, Sequence
+from contextlib import suppress
 
 from hthor.eval.records.trial_log import BEAT_S
 from hthor.eval.runner.engines import SessionFailed
 from hthor.eval.runner.messages import Failed, News, RunnerFactory, TrialDone
 from hthor.eval.runner.worker import SessionPlayer
-from hthor.live.control import SessionControl
+from hthor.live.control import SessionControl, SessionStopped
 from hthor.trials.sessions import Session
+
+_TURN_S = 0.01
+"""[s] How often the trials' thread looks whether its news were taken. Our choice."""
 
 
 class LiveEngine:
@@ -51,6 +55,12 @@ class LiveEngine:
         """Start no more trials; the one that is going on is finished."""
         self._control.draining = True
 
+    def _wait_until_taken(self, news: queue.Queue[News | None]) -> None:
+        """Wait until all news were taken, but not for somebody who has closed the generator."""
+        with suppress(SessionStopped):
+            while news.unfinished_tasks:
+                self._control.wait(_TURN_S)
+
     def _play(self, sessions: Sequence[Session], make: RunnerFactory, news: queue.Queue[News | None]) -> None:
         player = SessionPlayer(make)
         try:
@@ -58,7 +68,7 @@ class LiveEngine:
                 for message in player.run(session):
                     news.put(message)
                     if isinstance(message, TrialDone):
-                        news.join()
+                        self._wait_until_taken(news)
                     if self._control.draining or self._control.stopped:
                         return
         finally:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import os
 import secrets
 from collections.abc import Iterable
+from contextlib import suppress
 from pathlib import Path
 
 from hthor import documents, installation, jsonio
@@ -25,7 +26,7 @@ class SessionTokens:
     def of(self, names: Iterable[str]) -> dict[str, str]:
         """The token of each of these places, such as "human"; made at the first time."""
         known: dict[str, str] = {}
-        if self._file.exists():
+        with suppress(FileNotFoundError, documents.Unreadable):  # a damaged file only costs open pages their addresses
             known = documents.decode(self._file.read_bytes(), dict[str, str])
         tokens = {name: known.get(name) or secrets.token_urlsafe(16) for name in names}
         if tokens != known:

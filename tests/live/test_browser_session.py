@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import random
-import shutil
 import signal
 import subprocess
 import sys
@@ -16,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from live_browser import CHROMIUM, launch
 from live_command import Command
 from live_session import AGENT
 
@@ -29,8 +29,6 @@ browsers = pytest.importorskip(
     "playwright.sync_api", reason="pages are opened with an optional dependency: pip install 'hthor[browser]'"
 )
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
-_GRAPHICS = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist")
 _ANSWERS = """
 setInterval(() => {
   const button = document.querySelector("#card:not(.hidden) #scale:not(.hidden) [data-value='5']")
@@ -57,8 +55,7 @@ def teller(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 @contextmanager
 def somebody(playwright: Any, command: Command, mark: str = "") -> Iterator[Any]:
     """A browser at the session's page, with somebody who begins and rates all trials."""
-    marks = [f"--hthor-session={mark}"] if mark else []
-    browser = playwright.chromium.launch(executable_path=CHROMIUM, args=[*_GRAPHICS, *marks])
+    browser = launch(playwright, *([f"--hthor-session={mark}"] if mark else []))
     page = browser.new_page(viewport={"width": 320, "height": 200})
     page.add_init_script(_ANSWERS)
     page.goto(f"{command.address}/?plain#{command.token}")

@@ -42,6 +42,7 @@ def test_a_killed_server_and_lost_pages_cost_nothing_but_the_trial(
         token = command.token
         for kill in range(times):
             command.wait_until(functools.partial(_has_begun, person, kill + 1))
+            command.wait_until((tmp_path / "run" / NAME).exists)
             time.sleep(moments.uniform(0.0, 1.0))
             command.kill()
             command.start()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import shutil
 import threading
 import time
 from collections.abc import Iterator
@@ -14,19 +13,18 @@ from urllib.parse import urlsplit
 
 import msgspec
 import pytest
+from live_browser import CHROMIUM, launch
 from live_session import LiveSession
+from practice_trials import play_in_practice_room
 from relay import Relay
 from world_house import COUNTER, TABLE, house, on, task
 
 from hthor.errors import HthorError
 from hthor.eval.config.options import EvalOptions
 from hthor.eval.runner.progress import Silent
-from hthor.eval.runner.run_job import RunJob
 from hthor.live import server
-from hthor.live.practice_room import practice_trial
 from hthor.live.run import LiveRun
-from hthor.trials.sessions import Session
-from hthor.types import HUMAN, Goal, Pose, TaskSpec, TrialSpec
+from hthor.types import HUMAN, Goal, Pose, TaskSpec
 from hthor.types.events import Accepted, Declined, Displayed
 from hthor.world import World
 
@@ -35,8 +33,6 @@ browsers = pytest.importorskip(
     "playwright.sync_api", reason="pages are opened with an optional dependency: pip install 'hthor[browser]'"
 )
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
-_GRAPHICS = ("--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist")
 _PATIENCE_MS = 60_000
 APPLE = (2.95, 2.8)
 
@@ -157,16 +153,7 @@ def test_a_person_plays_a_delivery_and_a_search_in_the_browser(live: LiveSession
 @pytest.fixture
 def small(monkeypatch: pytest.MonkeyPatch) -> None:
     """Trials in the room of the practice, which is drawn in no time."""
-    whole = RunJob.sessions.fget  # type: ignore[attr-defined]
-
-    def moved(trial: TrialSpec) -> TrialSpec:
-        room = practice_trial(trial, (HUMAN,)).task
-        return msgspec.structs.replace(trial, task=msgspec.structs.replace(room, time_limit=90.0))
-
-    def sessions(run: RunJob) -> tuple[Session, ...]:
-        return tuple(msgspec.structs.replace(one, trials=tuple(map(moved, one.trials))) for one in whole(run))
-
-    monkeypatch.setattr(RunJob, "sessions", property(sessions))
+    play_in_practice_room(monkeypatch, 90.0)
 
 
 def test_a_practice_ticks_off_what_was_tried_and_is_skipped(tmp_path: Path, small: None) -> None:
@@ -262,7 +249,7 @@ def opened(url: str, address: str) -> Iterator[Any]:
     """A page in a browser, which must not complain, nor ask any other site for anything."""
     complaints: list[str] = []
     with browsers.sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=list(_GRAPHICS))
+        browser = launch(playwright)
         page = browser.new_page(viewport={"width": 480, "height": 300})
         page.on("console", lambda message: complaints.append(message.text))
         page.on("pageerror", lambda error: complaints.append(str(error)))

@@ -10,17 +10,16 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-import msgspec
 import pytest
 from live_client import ScriptedPerson
 from live_session import smoke_session
+from practice_trials import play_in_practice_room
 
 from hthor.episode import Episode
 from hthor.errors import HthorError
 from hthor.eval.config.options import EvalOptions
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.runner.progress import Silent
-from hthor.eval.runner.run_job import RunJob
 from hthor.houses import load, names
 from hthor.live import house_file
 from hthor.live.practice import LOOK_RAD, STEPS, WALK_M, Practice, Progress
@@ -31,7 +30,6 @@ from hthor.live.unfinished import NAME
 from hthor.live.wire import PRACTICE
 from hthor.tasks.validate import task_faults
 from hthor.trials import TrialRunner, form_team
-from hthor.trials.sessions import Session
 from hthor.types import HUMAN, Action, Close, Drop, Open, Pick, Place, Pose, Reply, Rotate, Show, TrialSpec, Wait
 from hthor.types.events import (
     Accepted,
@@ -220,16 +218,7 @@ def play_session(run: LiveRun, trials: int) -> list[int]:
 @pytest.fixture
 def short(monkeypatch: pytest.MonkeyPatch) -> None:
     """Trials of two seconds in the room of the practice, so that no other world is built."""
-    whole = RunJob.sessions.fget  # type: ignore[attr-defined]
-
-    def cut(trial: TrialSpec) -> TrialSpec:
-        room = practice_trial(trial, (HUMAN,)).task
-        return msgspec.structs.replace(trial, task=msgspec.structs.replace(room, time_limit=2.0))
-
-    def sessions(run: RunJob) -> tuple[Session, ...]:
-        return tuple(msgspec.structs.replace(one, trials=tuple(map(cut, one.trials))) for one in whole(run))
-
-    monkeypatch.setattr(RunJob, "sessions", property(sessions))
+    play_in_practice_room(monkeypatch, 2.0)
 
 
 def test_every_participant_practises_and_nothing_of_it_is_in_the_run(tmp_path: Path, no_looks: None, short: None):
