@@ -6,6 +6,7 @@ import msgspec
 from msgspec import Struct
 
 from hthor.live import wire
+from hthor.live.event_sentences import sentence
 from hthor.types import Vec2
 from hthor.types.events import Event
 
@@ -133,7 +134,7 @@ class Watch(Struct, frozen=True, kw_only=True, tag="watch"):
 
 
 class Line(Struct, frozen=True, kw_only=True):
-    """An event of the trial: its tick, seat and kind, and what else its record says."""
+    """An event of the trial: its tick, seat and kind, and a sentence that says what happened."""
 
     tick: int
     seat: str
@@ -194,7 +195,4 @@ def decode(text: str) -> FromDesk:
 
 def line(event: Event) -> Line:
     """An event in a line."""
-    fields = msgspec.to_builtins(event)
-    rest = {name: value for name, value in fields.items() if name not in ("tick", "seat", "kind")}
-    words = ", ".join(f"{name} {value}" for name, value in rest.items())
-    return Line(tick=event.tick, seat=event.seat, kind=event.kind, words=words)
+    return Line(tick=event.tick, seat=event.seat, kind=event.kind, words=sentence(event))

@@ -122,6 +122,7 @@ class RealTimeLoop:
             time_limit=trial.task.time_limit,
             bodies=tuple(_body(seat, episode.world.bodies[seat]) for seat in episode.seats),
             practice=practice is not None,
+            phases=bool(trial.task.phases),
         )
         for name, seat in self._seats.items():
             own = scenery.own[name] if scenery is not None else ()

@@ -148,7 +148,8 @@ class TrialAhead(Struct, frozen=True, kw_only=True, tag="trial"):
 
     Attributes:
         trial: its number in the session, from 0, of ``trials``; `PRACTICE` for the practice before them.
-        practice: whether it is the practice. house: the floor plan's name.
+        practice: whether it is the practice. phases: whether the task has phases, which a person can end by a signal.
+        house: the floor plan's name.
         instruction: the task in words. time_limit: [s].
         bodies: of all seats. file: the address of the house's glTF file, on this server. own: the numbers of what the
             person does not see of themselves in it, their body and their head.
@@ -163,6 +164,7 @@ class TrialAhead(Struct, frozen=True, kw_only=True, tag="trial"):
     file: str = ""
     own: tuple[int, ...] = ()
     practice: bool = False
+    phases: bool = False
 
 
 class Step(Struct, frozen=True, kw_only=True):

@@ -12,8 +12,13 @@ const CORRECTIONS = [["yes", true], ["no", false], ["exclude", null]];
 /** @param {string} id */
 const find = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
 
-/** The reason that the experimenter has written. */
-const reason = () => /** @type {HTMLInputElement} */ (find("reason")).value;
+/** The reason that the experimenter has written, which is then gone from the page: it is for one command. */
+function reason() {
+  const field = /** @type {HTMLInputElement} */ (find("reason"));
+  const given = field.value;
+  field.value = "";
+  return given;
+}
 
 /** A text inside a picture. @param {string} text @param {number} x @param {number} y @param {string} colour */
 function words(text, x, y, colour) {
@@ -148,7 +153,7 @@ class Desk {
     this.draw(people);
     const rows = people.map((/** @type {any} */ one) => {
       const row = make("tr", "");
-      const page = one.away_s === null ? "no page" : one.away_s > 0 ? `away for ${one.away_s} s` : "there";
+      const page = one.away_s === null ? "" : one.away_s > 0 ? `away for ${one.away_s} s` : "there";
       const time = one.round_trip_ms === null ? "" : `${one.round_trip_ms} ms`;
       const frames = one.frames === null ? "" : `${one.frames} pictures/s`;
       row.append(...[one.seat, page, time, frames].map((words) => make("td", words)));
@@ -159,9 +164,9 @@ class Desk {
 
   /** @param {any} message */
   on_happened({ events }) {
-    const lines = events.map((/** @type {any} */ { tick, seat, kind, words }) => {
+    const lines = events.map((/** @type {any} */ { tick, words }) => {
       const line = make("li", "");
-      line.append(make("b", (tick / TICKS_PER_S).toFixed(1)), `${seat} ${kind.replaceAll("_", " ")} ${words}`);
+      line.append(make("b", (tick / TICKS_PER_S).toFixed(1)), words);
       return line;
     });
     find("events").prepend(...lines.reverse());

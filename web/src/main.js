@@ -72,7 +72,7 @@ class Page {
     if (rate) this.panels.rating(title, done);
     else this.panels.card(title ? { title, text, button, other } : null, done, otherDone);
     this.panels.steps(this.plays ? this.steps : null, () => this.skip());
-    if (help) this.panels.help();
+    if (help) this.panels.help(this.trial.phases);
     if (!title) this.offer();
   }
 

@@ -21,10 +21,15 @@ export function drawMap({ bodies, places }) {
     const scale = (RING / range) * Math.min(1, length > 0 ? range / length : 1) * 100;
     return [50 - scale * left, 50 - scale * forward];
   };
-  const parts = [0.5, 1].flatMap((share) => [
-    `<circle cx="50" cy="50" r="${100 * RING * share}" fill="none" stroke="#c4c8ce" stroke-width="0.6"/>`,
-    words(`${range * share} m`, 50, 50 + 100 * RING * share + 4.5, "#464a52"),
-  ]);
+  const marks = [...bodies, ...places].map(at);
+  const parts = [0.5, 1].flatMap((share) => {
+    const radius = 100 * RING * share;
+    const [x, y] = label(radius + 4, marks);
+    return [
+      `<circle cx="50" cy="50" r="${radius}" fill="none" stroke="#c4c8ce" stroke-width="0.6"/>`,
+      words(`${range * share} m`, x, y + 1.5, "#464a52"),
+    ];
+  });
   for (const place of places) {
     const [x, y] = at(place);
     parts.push(`<polygon points="${star(x, y, 3.6)}" fill="${PLACE}"/>`);
@@ -39,6 +44,17 @@ export function drawMap({ bodies, places }) {
   }
   parts.push(`<polygon points="50,45.5 53.4,53.6 50,51.8 46.6,53.6" fill="${PERSON}"/>`);
   return `<svg viewBox="0 0 100 100" role="img" aria-label="map">${parts.join("")}</svg>`;
+}
+
+/**
+ * Where the words of a ring stand: below the person, or where no mark covers them.
+ * @param {number} radius @param {number[][]} marks
+ */
+function label(radius, marks) {
+  const free = (/** @type {number[]} */ [x, y]) => marks.every((mark) => Math.hypot(mark[0] - x, mark[1] - y) > 12);
+  const turns = [0, 0.25, -0.25, 0.5, -0.5].map((share) => Math.PI * share);
+  const spots = turns.map((turn) => [50 + radius * Math.sin(turn), 50 + radius * Math.cos(turn)]);
+  return spots.find(free) ?? spots[0];
 }
 
 /** @param {string} text @param {number} x @param {number} y @param {string} shade */

@@ -122,6 +122,7 @@ export class Panels {
    */
   card(card, done, otherDone) {
     toggle("card", card !== null);
+    document.body.classList.toggle("asking", card !== null);
     if (card === null) return;
     document.exitPointerLock?.();
     find("title").textContent = card.title;
@@ -153,10 +154,11 @@ export class Panels {
     toggle("scale", true);
   }
 
-  /** The list of keys, in the card. */
-  help() {
+  /** The list of keys, in the card. @param {boolean} phases whether there are phases to be ready for */
+  help(phases) {
+    const useful = Object.entries(ACTIONS).filter(([action]) => action !== "ready" || phases);
     find("help").replaceChildren(
-      ...Object.entries(ACTIONS).map(([action, [words]]) => {
+      ...useful.map(([action, [words]]) => {
         const row = document.createElement("button");
         row.className = "key-row";
         row.dataset.action = action;
@@ -164,7 +166,7 @@ export class Panels {
         row.onclick = () => {
           row.textContent = `press a key to ${words}, Escape to leave it`;
           row.blur();
-          this.keys.choose(action, () => this.help());
+          this.keys.choose(action, () => this.help(phases));
         };
         return row;
       }),
