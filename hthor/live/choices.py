@@ -7,29 +7,39 @@ decided by the world, whose reason is shown when it does not.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 
-from hthor.live.wire import Choice, Choices
+from hthor.live.wire import Choice, Choices, Hand
 from hthor.types import Close, Detection, Drop, Observation, Open, Pick, Place, Vec3
 
 _AIM = math.radians(24.0)
 """[rad] A thing is aimed at when its middle is no farther from the line of sight. Our choice."""
+_TOUCH_M = 0.15
+"""[m] A hand of a person with a headset touches what is no farther from it. Our choice."""
+_ABOVE_M = 0.6
+"""[m] A hand that is no higher above furniture puts things down straight below it. Our choice."""
+_DOWN = (0.0, 0.0, -1.0)
 
 
-def find_choices(seen: Observation, eye: float, reach: float) -> Choices:
-    """What a person whose eyes are so high and whose arms reach so far [m] may do now."""
+def find_choices(seen: Observation, eye: float, reach: float, hand: Hand | None = None) -> Choices:
+    """What a person whose eyes are so high and whose arms reach so far [m] may do now.
+
+    Args:
+        hand: of a person with a headset, who does what the hand is near or points at; else what they look at counts.
+    """
     if not seen.idle:
         return Choices()
     near = [one for one in seen.detections if _gap(one, seen) <= reach]
-    sight = _sight(seen, eye)
-    aim = _aimed(near, *sight)
+    sight = _sight(seen, eye) if hand is None else hand
+    aim = _aimed(near, *sight, touch=0.0 if hand is None else _TOUCH_M)
     door = aim(lambda one: one.state in ("open", "closed"))
     opens = None
     if door is not None:
         shut = door.state == "closed"
         motion = Open(thing=door.id) if shut else Close(thing=door.id)
         opens = Choice(words=f"{'open' if shut else 'close'} the {_name(door.kind)}", motion=motion)
-    return Choices(hand=_held(seen, near, *sight) if seen.holding else _free(aim), door=opens)
+    lines = [(*sight, math.inf)] if hand is None else [(hand.place, _DOWN, _ABOVE_M), (*hand, math.inf)]
+    return Choices(hand=_held(seen, near, lines) if seen.holding else _free(aim), door=opens)
 
 
 def _free(aim: Callable[[Callable[[Detection], bool]], Detection | None]) -> Choice | None:
@@ -37,25 +47,35 @@ def _free(aim: Callable[[Callable[[Detection], bool]], Detection | None]) -> Cho
     return None if thing is None else Choice(words=f"pick up the {_name(thing.kind)}", motion=Pick(object=thing.id))
 
 
-def _held(seen: Observation, near: Iterable[Detection], eye: Vec3, way: Vec3) -> Choice:
-    """What to do with what is in hand: put it where the line of sight meets furniture in reach, or let go of it."""
+def _held(seen: Observation, near: Sequence[Detection], lines: Iterable[tuple[Vec3, Vec3, float]]) -> Choice:
+    """What to do with what is in hand: put it where one of the lines meets furniture in reach, or let go of it.
+
+    Args:
+        lines: where each begins [m], its direction, and its length [m]; the first that meets something counts.
+    """
     held = next((one.kind for one in seen.detections if one.id == seen.holding), seen.holding)
-    hits = [(met, one) for one in near if one.family == "furniture" and (met := _meets(one, eye, way)) is not None]
-    if not hits:
+    for start, way, length in lines:
+        met = [(_meets(one, start, way), one) for one in near if one.family == "furniture"]
+        hits = [(distance, one) for distance, one in met if distance is not None and distance <= length]
+        if hits:
+            break
+    else:
         return Choice(words=f"let go of the {_name(held)}", motion=Drop())
     distance, thing = min(hits, key=lambda hit: (hit[0], hit[1].id))
-    point = (eye[0] + distance * way[0], eye[1] + distance * way[1], eye[2] + distance * way[2])
+    point = (start[0] + distance * way[0], start[1] + distance * way[1], start[2] + distance * way[2])
     inside = "in" if thing.state else "on"
     words = f"put the {_name(held)} {inside} the {_name(thing.kind)}"
     return Choice(words=words, motion=Place(on=thing.id, position=point))
 
 
 def _aimed(
-    near: Iterable[Detection], eye: Vec3, way: Vec3
+    near: Iterable[Detection], eye: Vec3, way: Vec3, touch: float
 ) -> Callable[[Callable[[Detection], bool]], Detection | None]:
-    """A function that finds what the person aims at, among what fits."""
+    """A function that finds what the person touches, or else aims at, among what fits."""
 
     def angle(one: Detection) -> float:
+        if touch > 0.0 and (gap := _outside(one, eye)) <= touch:
+            return gap - touch
         if _meets(one, eye, way) is not None:
             return 0.0
         to = tuple(a - b for a, b in zip(one.position, eye, strict=True))
@@ -102,6 +122,13 @@ def _meets(one: Detection, eye: Vec3, way: Vec3) -> float | None:
         a, b = (-size / 2 - begin) / slope, (size / 2 - begin) / slope
         first, last = max(first, min(a, b)), min(last, max(a, b))
     return first if first <= last else None
+
+
+def _outside(one: Detection, point: Vec3) -> float:
+    """[m] How far a point is from a thing's box; 0 inside."""
+    return math.hypot(
+        *(max(0.0, abs(along) - size / 2) for along, size in zip(_local(one, point), one.size, strict=True))
+    )
 
 
 def _local(one: Detection, point: Vec3) -> Vec3:

@@ -232,7 +232,9 @@ class LiveSeat:
         if not isinstance(old, wire.Now) or _without_tick(old) != _without_tick(now):
             self.show(now)
         assert self._body is not None
-        offered = find_choices(seen, self._body.eye, self._body.reach)
+        with self._lock:
+            hand = self._steering.hand
+        offered = find_choices(seen, self._body.eye, self._body.reach, hand)
         if offered != self._screen.get(wire.Choices):
             self.show(offered)
         message = seen.display.message if seen.display is not None else None

@@ -30,9 +30,10 @@ from hthor.types import (
     Reply,
     Send,
     Show,
+    Vec3,
 )
 
-VERSION = "hthor.live.1"
+VERSION = "hthor.live.2"
 """The sub-protocol. A page of another version is refused with a sentence."""
 LARGEST = 16_384
 """[bytes] No message of a page is larger; one that is ends its connection."""
@@ -97,14 +98,23 @@ FromPage = Join | Begin | Act | Rate | Skip | Ping
 """What a page may send."""
 
 
-class Steering(NamedTuple):
-    """The stick and the head of the person; newer ones replace older ones.
+class Hand(NamedTuple):
+    """The hand of somebody with a headset: its ``place`` [m] and the unit vector that it points along, house frame."""
 
-    ``number`` counts them; the server's frames say which one took effect last.
+    place: Vec3
+    direction: Vec3
+
+
+class Steering(NamedTuple):
+    """The stick, the head and the hand of the person; newer ones replace older ones.
+
+    ``number`` counts them; the server's frames say which one took effect last. ``hand`` is the hand that acts; None for
+    somebody at a desk, whose hand is where they look.
     """
 
     number: int
     drive: Drive
+    hand: Hand | None = None
 
 
 # ---------------------------------------------------------------------------------------------------------- to a page
@@ -296,7 +306,7 @@ ToPage = (
 _TO_PAGE = msgspec.json.Encoder()
 _FROM_PAGE: msgspec.json.Decoder[FromPage] = msgspec.json.Decoder(FromPage)
 _Message = TypeVar("_Message")
-_STEERING = struct.Struct("<BIffff")
+_STEERING, _HAND = struct.Struct("<BIffff"), struct.Struct("<ffffff")
 _HEAD = struct.Struct("<BIBIfffff")
 _NUMBER, _ROW = struct.Struct("<H"), struct.Struct("<H7h")
 _STEER, _FRAME, _PICTURE = 1, 2, 3
@@ -329,18 +339,26 @@ def decode_steering(data: bytes) -> Steering:
     Raises:
         Malformed: when it is none, or a number in it is not finite.
     """
-    if len(data) != _STEERING.size or data[0] != _STEER:
-        raise Malformed(f"a binary frame has {_STEERING.size} bytes and begins with {_STEER}")
-    _, number, forward, left, yaw, pitch = _STEERING.unpack(data)
-    if not all(map(math.isfinite, (forward, left, yaw, pitch))):
+    sizes = _STEERING.size, _STEERING.size + _HAND.size
+    if len(data) not in sizes or data[0] != _STEER:
+        raise Malformed(f"a binary frame has {sizes[0]} or {sizes[1]} bytes and begins with {_STEER}")
+    _, number, *drive = _STEERING.unpack_from(data)
+    hand = _HAND.unpack_from(data, _STEERING.size) if len(data) == sizes[1] else ()
+    if not all(map(math.isfinite, (*drive, *hand))):
         raise Malformed("a number of the steering is not finite")
-    return Steering(number, Drive(forward=forward, left=left, yaw=yaw, pitch=pitch))
+    forward, left, yaw, pitch = drive
+    return Steering(
+        number,
+        Drive(forward=forward, left=left, yaw=yaw, pitch=pitch),
+        Hand((hand[0], hand[1], hand[2]), (hand[3], hand[4], hand[5])) if hand else None,
+    )
 
 
 def encode_steering(steering: Steering) -> bytes:
     """A binary frame of a page, as `decode_steering` reads it; for clients in Python."""
-    drive = steering.drive
-    return _STEERING.pack(_STEER, steering.number, drive.forward, drive.left, drive.yaw, drive.pitch)
+    drive, hand = steering.drive, steering.hand
+    head = _STEERING.pack(_STEER, steering.number, drive.forward, drive.left, drive.yaw, drive.pitch)
+    return head if hand is None else head + _HAND.pack(*hand.place, *hand.direction)
 
 
 def encode(message: Struct) -> str:

@@ -7,7 +7,7 @@ import msgspec
 import pytest
 
 from hthor.live.choices import find_choices
-from hthor.live.wire import Choice, Choices
+from hthor.live.wire import Choice, Choices, Hand
 from hthor.types import Close, Detection, Drop, Observation, Open, Pick, Place, Pose
 
 APPLE = Detection(
@@ -82,3 +82,44 @@ def test_doors_are_opened_and_closed_with_full_hands_too(state: str, motion: Any
     placed = offered(fridge, holding="apple").hand
     assert placed is not None
     assert placed.words == "put the apple in the fridge"
+
+
+def by_hand(*detections: Detection, place: tuple[float, float, float], **more: Any) -> Choices:
+    """What is offered to a hand that points ahead, of a person who looks up at nothing."""
+    return find_choices(seen(*detections, pitch=1.2, **more), 1.6, 0.8, Hand(place, (1.0, 0.0, 0.0)))
+
+
+def test_a_hand_picks_what_it_touches_and_else_what_it_points_at() -> None:
+    assert by_hand(APPLE, MUG, place=(0.7, 0.2, 0.95)).hand == Choice(
+        words="pick up the coffee mug", motion=Pick(object="mug")
+    )
+    assert by_hand(APPLE, MUG, place=(0.2, 0.0, 0.9)).hand == Choice(
+        words="pick up the apple", motion=Pick(object="apple")
+    )
+    assert by_hand(APPLE, MUG, place=(0.2, 0.0, 2.0)) == Choices()
+
+
+@pytest.mark.parametrize(
+    ("place", "point"),
+    [((0.7, 0.3, 1.1), (0.7, 0.3, 0.8)), ((0.2, 0.0, 0.6), (0.5, 0.0, 0.6)), ((0.7, 0.3, 1.6), None)],
+)
+def test_a_hand_puts_things_down_below_it_or_where_it_points(
+    place: tuple[float, float, float], point: tuple[float, float, float] | None
+) -> None:
+    choice = by_hand(TABLE, APPLE, place=place, holding="apple").hand
+    assert choice is not None
+    if point is None:
+        assert choice.motion == Drop()
+    else:
+        assert isinstance(choice.motion, Place)
+        assert choice.motion.position == pytest.approx(point)
+
+
+def test_a_hand_opens_what_it_touches_and_puts_things_inside() -> None:
+    fridge = msgspec.structs.replace(FRIDGE, state="closed")
+    assert by_hand(fridge, place=(0.6, 0.0, 1.0)).door == Choice(words="open the fridge", motion=Open(thing="fridge"))
+    inside = by_hand(msgspec.structs.replace(fridge, state="open"), place=(0.8, 0.0, 1.0), holding="apple").hand
+    assert inside is not None
+    assert inside.words == "put the apple in the fridge"
+    assert isinstance(inside.motion, Place)
+    assert inside.motion.position == pytest.approx((0.8, 0.0, 1.0))

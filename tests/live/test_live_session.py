@@ -139,7 +139,7 @@ def test_what_is_no_message_has_no_effect(live: LiveSession, caplog: pytest.LogC
     [
         ({"token": "guess"}, "belongs to no seat"),
         ({"token": "Schlüssel"}, "belongs to no seat"),
-        ({"version": "hthor.live.0"}, "this server speaks hthor.live.1, the page hthor.live.0"),
+        ({"version": "hthor.live.0"}, "this server speaks hthor.live.2, the page hthor.live.0"),
     ],
 )
 def test_who_does_not_belong_here_is_told_so(live: LiveSession, changes: dict[str, str], words: str) -> None:

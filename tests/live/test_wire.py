@@ -8,20 +8,29 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hthor.live import wire
-from hthor.live.wire import FrameHead, Malformed, Steering
+from hthor.live.wire import FrameHead, Hand, Malformed, Steering
 from hthor.types import Drive
 
 _NUMBERS = st.floats(-30.0, 30.0, width=32)
 
 
-@given(number=st.integers(0, 2**32 - 1), values=st.tuples(_NUMBERS, _NUMBERS, _NUMBERS, _NUMBERS))
-def test_steering_arrives_as_it_was_sent(number: int, values: tuple[float, float, float, float]) -> None:
+_PLACES = st.tuples(_NUMBERS, _NUMBERS, _NUMBERS)
+
+
+@given(
+    number=st.integers(0, 2**32 - 1),
+    values=st.tuples(_NUMBERS, _NUMBERS, _NUMBERS, _NUMBERS),
+    hand=st.none() | st.builds(Hand, _PLACES, _PLACES),
+)
+def test_steering_arrives_as_it_was_sent(
+    number: int, values: tuple[float, float, float, float], hand: Hand | None
+) -> None:
     forward, left, yaw, pitch = values
-    sent = Steering(number, Drive(forward=forward, left=left, yaw=yaw, pitch=pitch))
+    sent = Steering(number, Drive(forward=forward, left=left, yaw=yaw, pitch=pitch), hand)
     assert wire.decode_steering(wire.encode_steering(sent)) == sent
 
 
-@given(data=st.binary(max_size=40))
+@given(data=st.binary(max_size=50))
 def test_what_is_no_steering_is_refused(data: bytes) -> None:
     try:
         steering = wire.decode_steering(data)

@@ -70,7 +70,7 @@ self.onmessage = ({ data }) => {
   } else if (data.type === "steer") {
     steered = data.number;
     frames = data.frames;
-    if (socket?.readyState === WebSocket.OPEN) socket.send(encodeSteering(steered, data.drive));
+    if (socket?.readyState === WebSocket.OPEN) socket.send(encodeSteering(steered, data.drive, data.hand ?? null));
   } else if (data.type === "act") {
     acted += 1;
     const act = { ...data, number: acted };

@@ -1,6 +1,6 @@
 // The binary frames of the protocol, see hthor/live/wire.py.
 
-export const VERSION = "hthor.live.1";
+export const VERSION = "hthor.live.2";
 const STEER = 1;
 const FRAME = 2;
 const PICTURE = 3;
@@ -10,17 +10,20 @@ const ROW_BYTES = 16;
 /**
  * @typedef {{forward: number, left: number, yaw: number, pitch: number}} Drive velocity [m/s] in the frame of the head's
  *   heading [rad], and how far it looks up [rad]
+ * @typedef {{place: number[], direction: number[]}} Hand where a hand is [m], and the unit vector that it points along
  * @typedef {{tick: number, step: number, steering: number, x: number, y: number, yaw: number, gaze: number,
  *   pitch: number}} FrameHead
  * @typedef {{number: number, position: number[], turn: number[]}} Moved position [m] and quaternion (x, y, z, w)
  */
 
-/** @param {number} number @param {Drive} drive */
-export function encodeSteering(number, drive) {
-  const data = new DataView(new ArrayBuffer(21));
+/** @param {number} number @param {Drive} drive @param {Hand | null} hand the one that acts; null at a desk */
+export function encodeSteering(number, drive, hand) {
+  const values = [drive.forward, drive.left, drive.yaw, drive.pitch];
+  if (hand) values.push(...hand.place, ...hand.direction);
+  const data = new DataView(new ArrayBuffer(5 + 4 * values.length));
   data.setUint8(0, STEER);
   data.setUint32(1, number, true);
-  [drive.forward, drive.left, drive.yaw, drive.pitch].forEach((value, k) => data.setFloat32(5 + 4 * k, value, true));
+  values.forEach((value, k) => data.setFloat32(5 + 4 * k, value, true));
   return data.buffer;
 }
 
