@@ -14,6 +14,7 @@ await build({
     page: join(here, "src", "main.js"),
     socket: join(here, "src", "socket_worker.js"),
     experimenter: join(here, "src", "experimenter.js"),
+    emulation: join(here, "src", "headset", "emulation.js"),
   },
   outdir: out,
   bundle: true,

@@ -2,12 +2,18 @@
 
 import * as THREE from "three";
 import { FOV, lookFrom } from "./eye.js";
+import { Headset } from "./headset/headset.js";
+import { HeadsetChoice } from "./headset/headset_choice.js";
+import { shownIn } from "./headset/shown.js";
 import { House, outdoors } from "./house.js";
 import { Keys } from "./keys.js";
 import { OwnMotion } from "./motion.js";
 import { Panels } from "./panels.js";
 
 const QUESTION = "How much do you trust your robot teammate?";
+const SCALE = 7;
+const NOTICE_MS = 2500;
+const SWITCH_MS = 200; // until the server offers what the other hand can do
 
 THREE.ColorManagement.enabled = false; // colours are computed as the pictures of hthor are
 
@@ -25,6 +31,12 @@ class Page {
     this.keys = new Keys(canvas, (action) => this.press(action));
     this.panels = new Panels(this.keys);
     this.motion = new OwnMotion();
+    this.headset = new Headset(this.renderer, () => this.show());
+    this.scene.add(this.headset.group);
+    this.headsetChoice = new HeadsetChoice(this.headset, () => this.show());
+    /** What the hand that acts no longer has just been told to do. @type {{actions: string[], at: number} | null} */
+    this.later = null;
+    this.notice = { words: "", until: 0 };
     /** @type {House | null} */
     this.house = null;
     /** @type {import("./wire.js").Moved[]} */
@@ -39,7 +51,7 @@ class Page {
     this.fps = 60;
     addEventListener("resize", () => this.resize());
     this.resize();
-    this.renderer.setAnimationLoop((now) => this.draw(now));
+    this.renderer.setAnimationLoop((now, frame) => this.draw(now, frame));
   }
 
   /** A new trial. */
@@ -55,6 +67,9 @@ class Page {
     /** Why time stands still. */ this.paused = "";
     /** What there is to try, in the practice. @type {any} */ this.steps = null;
     this.skipped = false;
+    /** The rating that is chosen with a headset. */ this.chosen = 4;
+    /** What can be done here and now. @type {[string, string][]} */ this.offers = [];
+    this.headset?.recentre();
     this.ready = this.begun = this.rated = this.keysShown = false;
     this.known = { panel: false, map: false };
   }
@@ -69,6 +84,7 @@ class Page {
   show() {
     this.panels.reveal(this.begun && this.house !== null && this.ended === null);
     const { title, text, button, done, other, otherDone, help, rate } = this.card();
+    this.headsetChoice.show(Boolean(button));
     if (rate) this.panels.rating(title, done);
     else this.panels.card(title ? { title, text, button, other } : null, done, otherDone);
     this.panels.steps(this.plays ? this.steps : null, () => this.skip());
@@ -135,6 +151,7 @@ class Page {
   }
 
   resize() {
+    if (this.headset.session) return; // its size is the headset's
     this.renderer.setSize(innerWidth, innerHeight, false);
     this.camera.aspect = innerWidth / innerHeight;
     this.camera.updateProjectionMatrix();
@@ -203,7 +220,10 @@ class Page {
   /** @param {any} now */
   on_now(now) {
     const fresh = JSON.stringify(now.outcome) !== JSON.stringify(this.now.outcome);
-    if (fresh && now.outcome && !now.outcome.ok) this.panels.notice(now.outcome.reason);
+    if (fresh && now.outcome && !now.outcome.ok) {
+      this.panels.notice(now.outcome.reason);
+      this.notice = { words: now.outcome.reason, until: performance.now() + NOTICE_MS };
+    }
     this.now = now;
     this.panels.holding(now.holding);
     this.offer();
@@ -226,8 +246,8 @@ class Page {
     if (this.now.phase) offers.push(["ready", "ready for the next part"]);
     if (this.known.panel && !this.panel) offers.push(["panel", "show the message"]);
     if (this.known.map && !this.shownMap) offers.push(["map", "show the map"]);
-    offers.push(["keys", "keys"]);
-    this.panels.offers(offers);
+    this.offers = offers;
+    this.panels.offers([...offers, ["keys", "keys"]]);
   }
 
   /** @param {any} panel */
@@ -241,6 +261,8 @@ class Page {
   /** @param {any} picture */
   on_picture({ jpeg }) {
     this.panels.picture(jpeg);
+    this.jpeg = jpeg;
+    this.headset.screens?.takePicture(jpeg);
   }
 
   /** @param {any} message */
@@ -283,32 +305,69 @@ class Page {
     }
   }
 
-  /** @param {number} now */
-  draw(now) {
+  /** @param {number} now @param {XRFrame} [frame] of the headset, if there is one */
+  draw(now, frame) {
     const seconds = Math.min(0.25, (now - this.last) / 1000);
     this.last = now;
     this.fps += 0.05 * (1 / Math.max(1e-3, seconds) - this.fps);
+    const worn = this.headset.session && frame ? this.wear(frame, seconds) : null;
     if (this.head) {
-      const drive = this.keys.drive(seconds, this.self.speed);
-      if (!this.plays || this.now.busy) drive.forward = drive.left = 0; // as the world does with busy hands
+      const { speed } = this.self;
+      const still = !this.plays || this.now.busy; // as the world does with busy hands
+      const drive = worn ? this.headset.rig.drive(worn.stick, speed, this.motion) : this.keys.drive(seconds, speed);
+      if (still) drive.forward = drive.left = 0;
+      const before = { x: this.motion.x, y: this.motion.y };
       const number = this.motion.steer(drive, seconds);
-      this.worker.postMessage({ type: "steer", number, drive, frames: Math.round(this.fps) });
-      this.time();
+      if (worn) this.headset.rig.follow(this.motion.shown, this.motion, seconds, still ? 0 : this.motion.share);
+      this.motion.shown = { x: this.motion.x, y: this.motion.y };
+      const hand = worn ? this.headset.hand : null;
+      this.worker.postMessage({ type: "steer", number, drive, hand, frames: Math.round(this.fps) });
+      this.panels.time(this.left, this.now.phase);
+      if (worn) this.headset.darken(Math.hypot(this.motion.x - before.x, this.motion.y - before.y) > 0.002, seconds);
     }
     this.house?.step(seconds, this.inHand());
-    this.aim();
-    this.renderer.render(this.scene, this.camera);
+    if (worn) this.headset.screens.show(shownIn(this), this.headset.rig.head, seconds);
+    else this.aim();
+    this.renderer.render(this.scene, worn ? this.headset.camera : this.camera);
   }
 
-  time() {
-    const left = this.trial.time_limit - (this.head.tick + this.head.step / 6) / 10;
-    this.panels.time(left, this.now.phase);
+  /** [s] How much time is left. */
+  get left() {
+    return this.trial.time_limit - (this.head.tick + this.head.step / 6) / 10;
   }
 
-  /** What is in hand, and where it is shown: in front of the person, without any delay. */
+  /** Take what somebody with a headset does. @param {XRFrame} frame @param {number} seconds */
+  wear(frame, seconds) {
+    const { x, y } = this.motion;
+    const body = this.head ? { x, y, yaw: this.head.gaze, eye: this.self.eye } : null;
+    const { controls } = this.headset;
+    const hand = controls.active;
+    const done = this.headset.track(frame, seconds, body);
+    const card = this.card();
+    if (card.rate) this.chosen = Math.max(1, Math.min(SCALE, this.chosen + done.choose));
+    else if (done.turn) this.headset.rig.turn(done.turn);
+    if (card.title) this.answer(card, done.actions);
+    else if (controls.active !== hand) this.later = { actions: done.actions, at: performance.now() + SWITCH_MS };
+    else done.actions.forEach((action) => this.press(action));
+    if (this.later && performance.now() > this.later.at) {
+      this.later.actions.forEach((action) => this.press(action));
+      this.later = null;
+    }
+    return done;
+  }
+
+  /** Press the buttons of a card with a headset's. @param {any} card @param {string[]} actions */
+  answer({ rate, done, otherDone }, actions) {
+    const yes = actions.includes("accept") || actions.includes("door");
+    if (yes && done) done(rate ? this.chosen : undefined);
+    else if (actions.includes("decline")) otherDone?.();
+  }
+
+  /** What is in hand, and where it is shown: in the hand, or in front of the person, without any delay. */
   inHand() {
     const number = this.house && this.now.holding ? this.house.numberOf(this.now.holding) : -1;
     const place = this.house?.places.get(number);
+    if (this.headset.session) return this.headset.held(place ? number : -1, place?.turn ?? [0, 0, 0, 1]);
     if (!place || !this.head) return null;
     const dx = place.position[0] - this.head.x;
     const dy = place.position[1] - this.head.y;

@@ -1,0 +1,54 @@
+// A headset that is not there: Meta's emulator of the Quest, with the keys and the mouse of the desk.
+
+import { XRDevice, metaQuest2, metaQuest3 } from "iwer";
+
+const LOOK_PER_PIXEL = 0.0024; // [rad]
+const EYES_M = 1.6;
+const KEYS = {
+  KeyE: ["right", "squeeze"],
+  KeyF: ["right", "trigger"],
+  KeyY: ["right", "a-button"],
+  KeyN: ["right", "b-button"],
+  KeyM: ["left", "x-button"],
+  KeyP: ["left", "y-button"],
+  KeyR: ["right", "thumbstick"],
+};
+
+/** Put an emulated headset where the browser would have its own. @param {string} name "quest2" or "quest3" */
+export function emulate(name) {
+  const device = new XRDevice(name === "quest2" ? metaQuest2 : metaQuest3);
+  device.installRuntime(/** @type {any} */ ({ forceInstall: true }));
+  device.stereoEnabled = false;
+  device.position.set(0, EYES_M, 0);
+  return device;
+}
+
+/** Let keys and mouse move an emulated headset. @param {any} device @param {HTMLElement} view where the mouse looks around */
+export function steerByKeys(device, view) {
+  /** @type {Set<string>} */
+  const held = new Set();
+  let yaw = 0;
+  let pitch = 0;
+  const stick = () => {
+    const on = (/** @type {string} */ code) => (held.has(code) ? 1 : 0);
+    device.controllers.left.updateAxes("thumbstick", on("KeyD") - on("KeyA"), on("KeyS") - on("KeyW"));
+    device.controllers.right.updateAxes("thumbstick", on("ArrowRight") - on("ArrowLeft"), 0);
+  };
+  const key = (/** @type {KeyboardEvent} */ event) => {
+    const down = event.type === "keydown";
+    if (down) held.add(event.code);
+    else held.delete(event.code);
+    const button = /** @type {Record<string, string[]>} */ (KEYS)[event.code];
+    if (button) device.controllers[button[0]].updateButtonValue(button[1], down ? 1 : 0);
+    stick();
+  };
+  addEventListener("keydown", key);
+  addEventListener("keyup", key);
+  view.addEventListener("mousemove", (event) => {
+    if (document.pointerLockElement !== view) return;
+    yaw -= LOOK_PER_PIXEL * event.movementX;
+    pitch = Math.max(-1.35, Math.min(1.35, pitch - LOOK_PER_PIXEL * event.movementY));
+    const [sy, cy, sp, cp] = [Math.sin(yaw / 2), Math.cos(yaw / 2), Math.sin(pitch / 2), Math.cos(pitch / 2)];
+    device.quaternion.set(cy * sp, sy * cp, -sy * sp, cy * cp);
+  });
+}
