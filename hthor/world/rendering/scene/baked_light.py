@@ -27,6 +27,10 @@ _DARKEST = 0.35
 """The share of the light from all sides that reaches the deepest crease."""
 _PROBE_M, _PROBE_HEIGHT_M = 0.25, 0.9
 """[m] Side of the cells of the grid of probes, and the height that they are for."""
+_INSIDE = 0.4
+"""A point is inside something when so great a share of its rays meets surfaces from behind. Our choice."""
+_SLIT_M = 0.04
+"""[m] A point is in a slit when its rays go no farther on average. Our choice."""
 _CHUNK = 8192
 """[count] Points of one task of a thread."""
 
@@ -39,6 +43,13 @@ class Probes(NamedTuple):
     origin: Vec2
     side: float
     light: Any
+
+
+class Seen(NamedTuple):
+    """Of points: ``light`` (N, 3) or (N,), and whether each is ``hidden`` (N,), inside a body or in a slit."""
+
+    light: Any
+    hidden: Any
 
 
 class BakedLight:
@@ -55,12 +66,12 @@ class BakedLight:
         self._height, self._threads = height, threads
         self._ways = _cosine_directions(_RAYS)
 
-    def openness(self, points: Any, normals: Any) -> Any:
-        """(N,) How open each point is to its surroundings, from `_DARKEST` in a crease to 1."""
+    def openness(self, points: Any, normals: Any) -> Seen:
+        """How open each point is to its surroundings, (N,), from `_DARKEST` in a crease to 1."""
         return self._in_chunks(self._openness, points, normals)
 
-    def light(self, points: Any, normals: Any) -> Any:
-        """(N, 3) The light at static points with these normals; 1 shows a surface in its own colour."""
+    def light(self, points: Any, normals: Any) -> Seen:
+        """The light at static points with these normals, (N, 3); 1 shows a surface in its own colour."""
         return self._in_chunks(self._light, points, normals)
 
     def probes(self, bounds: tuple[float, float, float, float]) -> Probes:
@@ -74,7 +85,7 @@ class BakedLight:
             lamp += self._lamp(place, share, grid, up)[:, 1]
         return Probes((x0, y0), _PROBE_M, lamp.reshape(len(ys), len(xs)).astype(np.float32))
 
-    def _light(self, points: Any, normals: Any) -> Any:
+    def _light(self, points: Any, normals: Any) -> Seen:
         lit = np.zeros((len(points), 3))
         for place, share in self._lamps:
             near = np.hypot(points[:, 0] - place[0], points[:, 1] - place[1]) < _LAMP_FAR_M
@@ -83,7 +94,8 @@ class BakedLight:
         way, colour = lights.FILL
         aim = -np.array(way) / np.linalg.norm(way)
         around = np.array(lights.AMBIENT) + 0.5 * np.array(lights.HEAD) + np.clip(normals @ aim, 0, 1)[:, None] * colour
-        return lit + around * self._openness(points, normals)[:, None]
+        openness, hidden = self._openness(points, normals)
+        return Seen(lit + around * openness[:, None], hidden)
 
     def _lamp(self, place: Vec2, share: float, points: Any, normals: Any) -> Any:
         """(N, 3) What one lamp adds: its own light with shadows, and what the room throws back where it is seen."""
@@ -102,15 +114,16 @@ class BakedLight:
         thrown = share * seen * slope * lights.attenuation(lights.BOUNCE_FADE, distance)
         return direct[:, None] * np.array(lights.LAMP) + thrown[:, None] * np.array(lights.BOUNCE)
 
-    def _openness(self, points: Any, normals: Any) -> Any:
+    def _openness(self, points: Any, normals: Any) -> Seen:
         begin = points + _OFF_M * normals
-        found = triangle_kernel.openness(*self._tree, begin, normals, self._ways, _NEAR_M)
-        return _DARKEST + (1.0 - _DARKEST) * found
+        found, behind = triangle_kernel.openness(*self._tree, begin, normals, self._ways, _NEAR_M)
+        return Seen(_DARKEST + (1.0 - _DARKEST) * found, (behind > _INSIDE) | (found < _SLIT_M / _NEAR_M))
 
-    def _in_chunks(self, work: Callable[[Any, Any], Any], points: Any, normals: Any) -> Any:
+    def _in_chunks(self, work: Callable[[Any, Any], Seen], points: Any, normals: Any) -> Seen:
         spans = [slice(k, k + _CHUNK) for k in range(0, len(points), _CHUNK)]
         with ThreadPoolExecutor(self._threads) as pool:
-            return np.concatenate(list(pool.map(lambda span: work(points[span], normals[span]), spans)))
+            done = list(pool.map(lambda span: work(points[span], normals[span]), spans))
+        return Seen(*map(np.concatenate, zip(*done, strict=True)))
 
 
 def _slope(light: Any, points: Any, normals: Any) -> tuple[Any, Any, Any]:
