@@ -15,8 +15,8 @@ from hthor.live.surfaces import edges_of
 
 _INWARD_M, _INWARD = 0.015, 0.3
 """[m] How far towards the middle of its triangles a corner's light is computed, and at most this share of the way."""
-_NEAR_M = 0.5
-"""[m] So far away light is looked for where no corner of a surface is seen."""
+_APART_M = 1e4
+"""[m] Surfaces are so far apart where the nearest corner of the same surface is looked for."""
 
 
 def inward(vertices: Any, faces: Any) -> Any:
@@ -32,8 +32,12 @@ def inward(vertices: Any, faces: Any) -> Any:
     return vertices + way * np.minimum(_INWARD, _INWARD_M / np.maximum(far, 1e-9))[:, None]
 
 
-def spread_light(light: Any, hidden: Any, vertices: Any, faces: Any) -> Any:
-    """The light (V, ...) of all corners, that of ``hidden`` ones (V,) taken from the corners around them."""
+def spread_light(light: Any, hidden: Any, vertices: Any, faces: Any, of: Any = 0) -> Any:
+    """The light (V, ...) of all corners, that of ``hidden`` ones (V,) taken from those around them.
+
+    Where no triangle leads to a corner that is seen, the nearest one is taken of the same surface, whose number is in
+    ``of`` (V,).
+    """
     light, known = light.copy(), ~hidden
     edges, _ = edges_of(faces)
     while True:
@@ -48,7 +52,8 @@ def spread_light(light: Any, hidden: Any, vertices: Any, faces: Any) -> Any:
         light[reached] = (total[reached].T / count[reached]).T
         known |= reached
     if known.any() and not known.all():
-        far, nearest = cKDTree(vertices[known]).query(vertices[~known], distance_upper_bound=_NEAR_M)
-        near = np.isfinite(far)
-        light[np.flatnonzero(~known)[near]] = light[np.flatnonzero(known)[nearest[near]]]
+        places = np.column_stack([vertices, np.broadcast_to(of, len(vertices)) * _APART_M])
+        far, nearest = cKDTree(places[known]).query(places[~known])
+        same = far < _APART_M / 2
+        light[np.flatnonzero(~known)[same]] = light[np.flatnonzero(known)[nearest[same]]]
     return light

@@ -2,7 +2,8 @@
 
 What never moves is one node, whose primitives are merged by texture. Each part that moves (a thing, a door, a body or a
 head) is a node of its own, called by its number, as `SceneParts.poses` counts them; it has the colours of its
-materials, and the page lights it by the grid of probes that the scene's ``extras`` hold.
+materials, and the page lights it by the grid of probes that the scene's ``extras`` hold. Doors and drawers, which are
+``lit``, have the light that they have while they are shut.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ _EDGE_M, _FLOOR_EDGE_M = 0.6, 0.45
 give the largest of our houses more than 250,000 triangles.
 """
 _MOST_TRIANGLES = 270_000
-"""[count] About so many triangles a house has at the most, the person's own body included. Our choice."""
+"""[count] About so many triangles a house has at the most, with a person and a robot. Our choice."""
 _TEXTURE_PX = 256
 """[pixels] Side of the textures. Our choice: a person looks from half a metre at the least."""
 _JPEG_QUALITY = 85
@@ -81,15 +82,12 @@ def _make(scene: SceneParts, house: HouseSpec) -> bytes:
     still = [one.refined(_FLOOR_EDGE_M if one.owner.startswith(_FLOOR) else _EDGE_M) for one in still]
     shown = still_light.lit(still, light, _MOST_TRIANGLES - moving)
     nodes = [file.node(name="still", mesh=_mesh(file, book, shown))]
+    doors = _doors(scene, light)
     for number in range(len(scene.moving)):
-        parts = [Surface.of(part) for part in scene.parts if part.puppet == number]
+        parts = doors.get(number) or _creased(_parts(scene, number))
         if parts:
-            owner = parts[0].owner
-            nodes.append(
-                file.node(
-                    name=str(number), mesh=_mesh(file, book, _creased(parts)), extras={"owner": owner, "part": number}
-                )
-            )
+            about = {"owner": parts[0].owner, "part": number, "lit": number in doors}
+            nodes.append(file.node(name=str(number), mesh=_mesh(file, book, parts), extras=about))
     xs, ys = zip(*(point for room in house.rooms for point in room.polygon), strict=True)
     probes = light.probes((min(xs), min(ys), max(xs), max(ys)))
     turned = file.node(root=True, name="house", children=nodes, rotation=[-(0.5**0.5), 0.0, 0.0, 0.5**0.5])
@@ -107,8 +105,27 @@ def _make(scene: SceneParts, house: HouseSpec) -> bytes:
     return file.file()
 
 
+def _parts(scene: SceneParts, number: int) -> list[Surface]:
+    return [Surface.of(part) for part in scene.parts if part.puppet == number]
+
+
+def _doors(scene: SceneParts, light: BakedLight) -> dict[int, list[Surface]]:
+    """Doors and drawers with the light that they have while they are shut, by their numbers."""
+    numbers, shut = [], []
+    for number, frame in scene.hung.items():
+        for one in _parts(scene, number):
+            numbers.append(number)
+            shut.append(one.moved(*frame))
+    found: dict[int, list[Surface]] = {}
+    for number, one in zip(numbers, still_light.lit(shut, light) if shut else [], strict=True):
+        found.setdefault(number, []).append(one.moved_back(*scene.hung[number]))
+    return found
+
+
 def _creased(parts: list[Surface]) -> list[Surface]:
     """Parts that move together, with the shade that they throw on each other."""
+    if not parts:
+        return []
     light = BakedLight(np.concatenate([one.corners for one in parts]), {}, 0.0)
     found = []
     for one in parts:

@@ -27,8 +27,8 @@ class _Heap(NamedTuple):
     of: Any
 
 
-def lit(surfaces: Sequence[Surface], light: BakedLight, most: int) -> list[Surface]:
-    """The surfaces with their colours, and as many triangles as light needs, about ``most`` of them at most."""
+def lit(surfaces: Sequence[Surface], light: BakedLight, most: int = 0) -> list[Surface]:
+    """The surfaces with their colours, and with more triangles where light needs them, up to about ``most``."""
     heap = _together(surfaces)
     through = np.array([not one.opaque for one in surfaces])
     shown, hidden = _seen(light, heap, slice(None), through)
@@ -42,7 +42,7 @@ def lit(surfaces: Sequence[Surface], light: BakedLight, most: int) -> list[Surfa
         heap = _Heap(rows, faces, np.concatenate([heap.of, heap.of[edges[:, 0]]]))
         more, unseen = _seen(light, heap, slice(first, None), through)
         shown, hidden = np.concatenate([shown, more]), np.concatenate([hidden, unseen])
-    shown = hidden_corners.spread_light(shown, hidden, heap.rows[:, :3], heap.faces)
+    shown = hidden_corners.spread_light(shown, hidden, heap.rows[:, :3], heap.faces, heap.of)
     return _apart(surfaces, heap, shown)
 
 

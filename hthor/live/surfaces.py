@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 if TYPE_CHECKING:
     from hthor.world.rendering.scene.scene_parts import ScenePart
@@ -58,6 +59,16 @@ class Surface(NamedTuple):
         """(F, 3, 3) [m]."""
         return self.vertices[self.faces]
 
+    def moved(self, position: Any, turn: Any) -> Surface:
+        """The same surface turned by the quaternion (w, x, y, z) ``turn``, then moved by ``position`` [m]."""
+        about = _rotation(turn)
+        return self._replace(vertices=about.apply(self.vertices) + position, normals=about.apply(self.normals))
+
+    def moved_back(self, position: Any, turn: Any) -> Surface:
+        """The inverse of `moved`."""
+        about = _rotation(turn).inv()
+        return self._replace(vertices=about.apply(self.vertices - position), normals=about.apply(self.normals))
+
     def refined(self, longest_m: float) -> Surface:
         """The same surface with no edge longer than ``longest_m``."""
         rows, faces = np.concatenate([self.vertices, self.normals, self.uv], axis=1), self.faces
@@ -107,6 +118,10 @@ def halved(rows: Any, faces: Any, edges: Any) -> tuple[Any, Any]:
 def unit(vectors: Any) -> Any:
     """Vectors (N, 3) made one long."""
     return vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-9)
+
+
+def _rotation(turn: Any) -> Rotation:
+    return Rotation.from_quat(np.roll(turn, -1))
 
 
 def _keys(pairs: Any) -> Any:

@@ -9,6 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from hthor.types import Vec2
 from hthor.world.rendering.scene import lights, triangle_kernel
@@ -23,8 +24,10 @@ _LAMP_FAR_M = 9.0
 """[m] A lamp that is farther away adds nothing."""
 _LAMP_M = 0.18
 """[m] Size of a lamp, of which four points give light: shadows have soft edges."""
-_DARKEST = 0.35
+_DARKEST = 0.45
 """The share of the light from all sides that reaches the deepest crease."""
+_HEAD = 0.75
+"""The share of the light at the viewer's head that surfaces get on average, as it goes with them."""
 _PROBE_M, _PROBE_HEIGHT_M = 0.25, 0.9
 """[m] Side of the cells of the grid of probes, and the height that they are for."""
 _INSIDE = 0.4
@@ -75,7 +78,10 @@ class BakedLight:
         return self._in_chunks(self._light, points, normals)
 
     def probes(self, bounds: tuple[float, float, float, float]) -> Probes:
-        """The light of the lamps at the height of a table, on the area x0, y0, x1, y1 [m]."""
+        """The light of the lamps at the height of a table, on the area x0, y0, x1, y1 [m].
+
+        Cells inside of something have the light of the nearest one that is outside.
+        """
         x0, y0, x1, y1 = bounds
         xs, ys = np.arange(x0, x1 + _PROBE_M, _PROBE_M), np.arange(y0, y1 + _PROBE_M, _PROBE_M)
         grid = np.stack([*np.meshgrid(xs, ys), np.full((len(ys), len(xs)), _PROBE_HEIGHT_M)], axis=-1).reshape(-1, 3)
@@ -83,6 +89,9 @@ class BakedLight:
         lamp = np.zeros(len(grid))
         for place, share in self._lamps:
             lamp += self._lamp(place, share, grid, up)[:, 1]
+        hidden = self.openness(grid, up).hidden
+        if hidden.any() and not hidden.all():
+            lamp[hidden] = lamp[~hidden][cKDTree(grid[~hidden]).query(grid[hidden])[1]]
         return Probes((x0, y0), _PROBE_M, lamp.reshape(len(ys), len(xs)).astype(np.float32))
 
     def _light(self, points: Any, normals: Any) -> Seen:
@@ -93,7 +102,7 @@ class BakedLight:
                 lit[near] += self._lamp(place, share, points[near], normals[near])
         way, colour = lights.FILL
         aim = -np.array(way) / np.linalg.norm(way)
-        around = np.array(lights.AMBIENT) + 0.5 * np.array(lights.HEAD) + np.clip(normals @ aim, 0, 1)[:, None] * colour
+        around = np.array(lights.AMBIENT) + _HEAD * np.array(lights.HEAD) + np.clip(normals @ aim, 0, 1)[:, None] * colour
         openness, hidden = self._openness(points, normals)
         return Seen(lit + around * openness[:, None], hidden)
 
