@@ -15,6 +15,8 @@ from hthor.live.surfaces import edges_of
 
 _INWARD_M, _INWARD = 0.015, 0.3
 """[m] How far towards the middle of its triangles a corner's light is computed, and at most this share of the way."""
+_SAME_M = 0.003
+"""[m] Corners that are not farther apart are at the same place."""
 _APART_M = 1e4
 """[m] Surfaces are so far apart where the nearest corner of the same surface is looked for."""
 
@@ -35,10 +37,18 @@ def inward(vertices: Any, faces: Any) -> Any:
 def spread_light(light: Any, hidden: Any, vertices: Any, faces: Any, of: Any = 0) -> Any:
     """The light (V, ...) of all corners, that of ``hidden`` ones (V,) taken from those around them.
 
-    Where no triangle leads to a corner that is seen, the nearest one is taken of the same surface, whose number is in
-    ``of`` (V,).
+    It is that of a corner at the same place, else of the corners that triangles lead to, else of the nearest corner, all
+    of the same surface, whose number is in ``of`` (V,).
     """
+    if not hidden.any() or hidden.all():
+        return light
     light, known = light.copy(), ~hidden
+    places = np.column_stack([vertices, np.broadcast_to(of, len(vertices)) * _APART_M])
+    far, nearest = cKDTree(places[~hidden]).query(places[hidden])
+    nearest = np.flatnonzero(~hidden)[nearest]
+    same = far < _SAME_M
+    light[np.flatnonzero(hidden)[same]] = light[nearest[same]]
+    known[np.flatnonzero(hidden)[same]] = True
     edges, _ = edges_of(faces)
     while True:
         ends = np.concatenate([edges, edges[:, ::-1]])
@@ -51,9 +61,6 @@ def spread_light(light: Any, hidden: Any, vertices: Any, faces: Any, of: Any = 0
         reached = count > 0
         light[reached] = (total[reached].T / count[reached]).T
         known |= reached
-    if known.any() and not known.all():
-        places = np.column_stack([vertices, np.broadcast_to(of, len(vertices)) * _APART_M])
-        far, nearest = cKDTree(places[known]).query(places[~known])
-        same = far < _APART_M / 2
-        light[np.flatnonzero(~known)[same]] = light[np.flatnonzero(known)[nearest[same]]]
+    rest = ~known[hidden] & (far < _APART_M / 2)
+    light[np.flatnonzero(hidden)[rest]] = light[nearest[rest]]
     return light

@@ -32,8 +32,10 @@ _EDGE_M, _FLOOR_EDGE_M = 0.6, 0.45
 """[m] No edge of a mesh, or of a floor, is longer, as light is computed at corners only. Our choice: finer would
 give the largest of our houses more than 250,000 triangles.
 """
-_MOST_TRIANGLES = 270_000
-"""[count] About so many triangles a house has at the most, with a person and a robot. Our choice."""
+_MOST_TRIANGLES = 246_000
+"""[count] About so many triangles are drawn at the most, without those of one's own body. Our choice."""
+_MORE_ON_DOORS = 6000
+"""[count] So many of these are added to doors and drawers at the most. Our choice."""
 _TEXTURE_PX = 256
 """[pixels] Side of the textures. Our choice: a person looks from half a metre at the least."""
 _JPEG_QUALITY = 85
@@ -76,11 +78,12 @@ def _make(scene: SceneParts, house: HouseSpec) -> bytes:
     still = [Surface.of(part) for part in scene.parts if part.puppet == STATIC and part.group != ABOVE]
     hides = [one.corners for one in still if one.opaque and not one.owner.startswith(_CEILING)]
     light = BakedLight(np.concatenate(hides), scene.lamps.places, house.height)
+    own = next(iter(scene.seats.values()), ())
     file = GlbWriter("hthor")
     book = _Materials(file, scene)
-    moving = sum(len(part.mesh.faces) for part in scene.parts if part.puppet != STATIC)
+    moving = sum(len(part.mesh.faces) for part in scene.parts if part.puppet not in (STATIC, *own))
     still = [one.refined(_FLOOR_EDGE_M if one.owner.startswith(_FLOOR) else _EDGE_M) for one in still]
-    shown = still_light.lit(still, light, _MOST_TRIANGLES - moving)
+    shown = still_light.lit(still, light, _MOST_TRIANGLES - _MORE_ON_DOORS - moving)
     nodes = [file.node(name="still", mesh=_mesh(file, book, shown))]
     doors = _doors(scene, light)
     for number in range(len(scene.moving)):
@@ -116,8 +119,11 @@ def _doors(scene: SceneParts, light: BakedLight) -> dict[int, list[Surface]]:
         for one in _parts(scene, number):
             numbers.append(number)
             shut.append(one.moved(*frame))
+    if not shut:
+        return {}
+    most = sum(len(one.faces) for one in shut) + _MORE_ON_DOORS
     found: dict[int, list[Surface]] = {}
-    for number, one in zip(numbers, still_light.lit(shut, light) if shut else [], strict=True):
+    for number, one in zip(numbers, still_light.lit(shut, light, most, whole=True), strict=True):
         found.setdefault(number, []).append(one.moved_back(*scene.hung[number]))
     return found
 
@@ -184,8 +190,8 @@ def _mesh(file: GlbWriter, book: _Materials, surfaces: list[Surface]) -> int:
 
 
 def _rounded(values: Any) -> Any:
-    """Values to the nearest part of 2048, whose many zero bits make the file small."""
-    return (np.round(values * 2048.0) / 2048.0).astype("f4")
+    """Values to the nearest part of 8192, whose many zero bits make the file small."""
+    return (np.round(values * 8192.0) / 8192.0).astype("f4")
 
 
 def _bytes(values: Any) -> Any:

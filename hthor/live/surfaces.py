@@ -84,8 +84,8 @@ class Surface(NamedTuple):
 def edges_of(faces: Any) -> tuple[Any, Any]:
     """The edges (E, 2) of triangles (F, 3), each once, and which three each triangle has, (F, 3)."""
     pairs = np.sort(faces[:, _SIDES], axis=2)
-    edges, which = np.unique(pairs.reshape(-1, 2), axis=0, return_inverse=True)
-    return edges, which.reshape(-1, 3)
+    keys, which = np.unique(_keys(pairs.reshape(-1, 2)), return_inverse=True)
+    return np.stack([keys >> 32, keys & 0xFFFFFFFF], 1), which.reshape(-1, 3)
 
 
 def halved(rows: Any, faces: Any, edges: Any) -> tuple[Any, Any]:

@@ -18,6 +18,8 @@ _RAYS = 24
 """[count] Rays that look for what is near a point."""
 _NEAR_M = 0.9
 """[m] What is farther away makes a point no darker."""
+_FAR_M, _FEW = 50.0, 8
+"""[m] Longer than any house; and one of so many rays is enough to tell whether a point is inside a body."""
 _OFF_M = 0.012
 """[m] Rays begin so far above their surface."""
 _LAMP_FAR_M = 9.0
@@ -73,12 +75,17 @@ class BakedLight:
         """How open each point is to its surroundings, (N,), from `_DARKEST` in a crease to 1."""
         return self._in_chunks(self._openness, points, normals)
 
+    def inside(self, points: Any, normals: Any) -> Any:
+        """(N,) Whether each point is inside a closed body."""
+        begin = points + _OFF_M * normals
+        return triangle_kernel.openness(*self._tree, begin, normals, self._ways[::_FEW], _FAR_M)[1] == 1.0
+
     def light(self, points: Any, normals: Any) -> Seen:
         """The light at static points with these normals, (N, 3); 1 shows a surface in its own colour."""
         return self._in_chunks(self._light, points, normals)
 
     def probes(self, bounds: tuple[float, float, float, float]) -> Probes:
-        """The light of the lamps at the height of a table, on the area x0, y0, x1, y1 [m].
+        """The light of the lamps on what faces them at the height of a table, on the area x0, y0, x1, y1 [m].
 
         Cells inside of something have the light of the nearest one that is outside.
         """
@@ -86,25 +93,29 @@ class BakedLight:
         xs, ys = np.arange(x0, x1 + _PROBE_M, _PROBE_M), np.arange(y0, y1 + _PROBE_M, _PROBE_M)
         grid = np.stack([*np.meshgrid(xs, ys), np.full((len(ys), len(xs)), _PROBE_HEIGHT_M)], axis=-1).reshape(-1, 3)
         up = np.tile((0.0, 0.0, 1.0), (len(grid), 1))
-        lamp = np.zeros(len(grid))
-        for place, share in self._lamps:
-            lamp += self._lamp(place, share, grid, up)[:, 1]
+        lamp = np.zeros((len(self._lamps), len(grid)))
+        for number, (place, share) in enumerate(self._lamps):
+            way = (*place, self._height) - grid
+            towards = way / np.linalg.norm(way, axis=1, keepdims=True)
+            lamp[number] = self._lamp(place, share, grid, towards)[:, 1]
+        lamp = _brightest(lamp)
         hidden = self.openness(grid, up).hidden
         if hidden.any() and not hidden.all():
             lamp[hidden] = lamp[~hidden][cKDTree(grid[~hidden]).query(grid[hidden])[1]]
         return Probes((x0, y0), _PROBE_M, lamp.reshape(len(ys), len(xs)).astype(np.float32))
 
     def _light(self, points: Any, normals: Any) -> Seen:
-        lit = np.zeros((len(points), 3))
-        for place, share in self._lamps:
-            near = np.hypot(points[:, 0] - place[0], points[:, 1] - place[1]) < _LAMP_FAR_M
-            if near.any():
-                lit[near] += self._lamp(place, share, points[near], normals[near])
-        way, colour = lights.FILL
-        aim = -np.array(way) / np.linalg.norm(way)
-        around = np.array(lights.AMBIENT) + _HEAD * np.array(lights.HEAD) + np.clip(normals @ aim, 0, 1)[:, None] * colour
         openness, hidden = self._openness(points, normals)
-        return Seen(lit + around * openness[:, None], hidden)
+        lit = np.zeros((len(self._lamps), len(points), 3))
+        for number, (place, share) in enumerate(self._lamps):
+            near = (np.hypot(points[:, 0] - place[0], points[:, 1] - place[1]) < _LAMP_FAR_M) & ~hidden
+            if near.any():
+                lit[number, near] = self._lamp(place, share, points[near], normals[near])
+        direction, colour = lights.FILL
+        aim = -np.array(direction) / np.linalg.norm(direction)
+        around = np.array(lights.AMBIENT) + _HEAD * np.array(lights.HEAD)
+        around = around + np.clip(normals @ aim, 0, 1)[:, None] * colour
+        return Seen(_brightest(lit) + around * openness[:, None], hidden)
 
     def _lamp(self, place: Vec2, share: float, points: Any, normals: Any) -> Any:
         """(N, 3) What one lamp adds: its own light with shadows, and what the room throws back where it is seen."""
@@ -133,6 +144,11 @@ class BakedLight:
         with ThreadPoolExecutor(self._threads) as pool:
             done = list(pool.map(lambda span: work(points[span], normals[span]), spans))
         return Seen(*map(np.concatenate, zip(*done, strict=True)))
+
+
+def _brightest(lit: Any) -> Any:
+    """(N, ...) The light of the lamps that give each point most, of (L, N, ...): `nice` lights no more at a time."""
+    return np.sort(lit, axis=0)[-lights.LAMPS :].sum(0)
 
 
 def _slope(light: Any, points: Any, normals: Any) -> tuple[Any, Any, Any]:
