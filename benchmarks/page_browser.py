@@ -128,7 +128,7 @@ def _serve(file: HouseFile) -> ThreadingHTTPServer:
             self.end_headers()
             self.wfile.write(data)
 
-        def log_message(self, format: str, *words: Any) -> None:  # noqa: A002  the name of the method that it replaces
+        def log_message(self, format: str, *words: Any) -> None:
             pass
 
     made = ThreadingHTTPServer(("127.0.0.1", 0), Handler)

@@ -37,8 +37,8 @@ def inward(vertices: Any, faces: Any) -> Any:
 def spread_light(light: Any, hidden: Any, vertices: Any, faces: Any, of: Any = 0) -> Any:
     """The light (V, ...) of all corners, that of ``hidden`` ones (V,) taken from those around them.
 
-    It is that of a corner at the same place, else of the corners that triangles lead to, else of the nearest corner, all
-    of the same surface, whose number is in ``of`` (V,).
+    It is that of a corner at the same place, else of the corners that triangles lead to, else of the nearest corner,
+    all of the same surface, whose number is in ``of`` (V,).
     """
     if not hidden.any() or hidden.all():
         return light

@@ -15,15 +15,17 @@ if TYPE_CHECKING:
 
 _STEP = 0.06
 """Where light changes more from corner to corner, an edge is cut in the middle. Our choice."""
-_SHORTEST_M = (0.3, 0.15, 0.1)
+_SHORTEST_M = (0.3, 0.15, 0.1, 0.06)
 """[m] Edges that are not longer are not cut, in the first and in the later rounds."""
 
+_DOOR = 0.6
+"""The least light on doors and drawers. Our choice."""
 _SAMPLES = np.array(((1, 1, 1), (8, 1, 1), (1, 8, 1), (1, 1, 8))) / ((3,), (10,), (10,), (10,))
 """Shares of the three corners at the places of a triangle that are looked at."""
 
 
 class _Heap(NamedTuple):
-    """Surfaces as one mesh: ``rows`` (V, 8) place, normal, texture coordinates; ``of`` (V,) which surface each is of."""
+    """Surfaces as one mesh: ``rows`` (V, 8) place, normal, texture coordinates; ``of`` (V,) the surface of each."""
 
     rows: Any
     faces: Any
@@ -33,7 +35,8 @@ class _Heap(NamedTuple):
 def lit(surfaces: Sequence[Surface], light: BakedLight, most: int, *, whole: bool = False) -> list[Surface]:
     """The surfaces with their colours, and with more triangles where light needs them, up to about ``most``.
 
-    Without ``whole`` they lack the triangles that are inside of walls and other bodies.
+    Without ``whole`` they lack the triangles that are inside of walls and other bodies. With it they are doors, which
+    are no darker than `_DOOR` anywhere: their inner sides are seen when they are open.
     """
     heap = _together(surfaces)
     through = np.array([not one.opaque for one in surfaces])
@@ -52,7 +55,7 @@ def lit(surfaces: Sequence[Surface], light: BakedLight, most: int, *, whole: boo
         more, unseen = _seen(light, heap, slice(first, None), through)
         shown, hidden = np.concatenate([shown, more]), np.concatenate([hidden, unseen])
     shown = hidden_corners.spread_light(shown, hidden, heap.rows[:, :3], heap.faces, heap.of)
-    return _apart(surfaces, heap, shown)
+    return _apart(surfaces, heap, np.maximum(shown, _DOOR) if whole else shown)
 
 
 def _seen(light: BakedLight, heap: _Heap, which: slice, through: Any) -> Any:

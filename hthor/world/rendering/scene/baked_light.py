@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 from hthor.types import Vec2
 from hthor.world.rendering.scene import lights, triangle_kernel
 
-_RAYS = 24
+_RAYS = 20
 """[count] Rays that look for what is near a point."""
 _NEAR_M = 0.9
 """[m] What is farther away makes a point no darker."""

@@ -63,9 +63,7 @@ class SceneParts:
         self.parts = tuple(collector.parts)
         self._followers = np.array(builder.followers, int)
         doors = set(puppets.hung.values())
-        self.hung = {
-            number: puppets.rest(body) for number, body in enumerate(builder.followers) if body in doors
-        }
+        self.hung = {number: puppets.rest(body) for number, body in enumerate(builder.followers) if body in doors}
         owners = {part.puppet: part.owner for part in self.parts}
         self.moving = tuple(owners.get(number, "") for number in range(collector.puppets))
 
