@@ -23,7 +23,7 @@ def surface(mesh: Mesh, owner: str = "thing", **material: Any) -> Surface:
 
 
 FLOOR = surface(facet((-2.0, -2.0, 0.0), (4.0, 0.0, 0.0), (0.0, 4.0, 0.0)), "floor of room")
-BOX = surface(slab((0.8, 0.0, 0.3), (0.35, 0.35, 0.3)), "box")
+BOX = surface(slab((0.8, 0.0, 0.31), (0.35, 0.35, 0.3)), "box")
 
 
 def baked(*surfaces: Surface) -> BakedLight:
