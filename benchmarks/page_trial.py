@@ -56,7 +56,7 @@ class Agent:
 """A robot that stands before the apple, and says so after four seconds."""
 _PAGE, _TILE, _DESK = (1200, 750), (600, 375), (1200, 740)
 _COLUMNS, _GAP, _BAR, _PAPER, _INK = 2, 8, 26, 250, (60, 55, 50)
-_REST_MS = 700
+_REST_MS, _TRIES, _PATIENCE_MS = 700, 20, 120_000
 _QUALITY, _DESK_QUALITY = 82, 86
 
 
@@ -143,7 +143,7 @@ def play() -> tuple[Any, Any]:
     """Play the trial; the sheet of the person's page, and the experimenter's page in the middle of it."""
     with page_browser.browser() as browser, session() as server:
         page = browser.new_page(viewport=dict(zip(("width", "height"), _PAGE, strict=True)))
-        page.set_default_timeout(120_000)
+        page.set_default_timeout(_PATIENCE_MS)
         page.goto(server.url(HUMAN))
         sheet, person = Sheet(page), Person(page)
         page.wait_for_selector("#go:not(.hidden)")
@@ -163,18 +163,18 @@ def play() -> tuple[Any, Any]:
         page.wait_for_timeout(500)
         sheet.take("the map, once the message is confirmed")
         person.walk_to(*_BY_COUNTER)
-        _face(person, *_apple().position)
-        page.wait_for_selector("#offers :text('pick up the apple')")
-        page.wait_for_timeout(500)
+        _face(person, _apple().position, "pick up the apple")
         sheet.take("the apple is in reach, and is offered")
+        page.evaluate("page.renderer.setPixelRatio(0.2)")  # leaves the processor to the other page
         desk = _experimenter(browser, server)
+        page.evaluate("page.renderer.setPixelRatio(1)")
         page.keyboard.press("e")
         person.until("page.now.holding === 'apple' && !page.now.busy")
         page.evaluate("page.keys.pitch = -0.8")
         page.wait_for_timeout(500)
         sheet.take("in hand")
         person.walk_to(*_BY_FRIDGE)
-        _face(person, *_FRIDGE)
+        _face(person, _FRIDGE, "open the fridge")
         person.open_fridge()
         page.wait_for_selector("#offers :text('put the apple in the fridge')")
         page.wait_for_timeout(1000)
@@ -187,11 +187,15 @@ def play() -> tuple[Any, Any]:
     return sheet.picture(), desk
 
 
-def _face(person: Person, x: float, y: float, z: float) -> None:
-    """Look at a place [m], once the last step is over."""
-    person.page.wait_for_timeout(_REST_MS)
-    person.look_at(x, y, z)
-    person.page.wait_for_timeout(_REST_MS)
+def _face(person: Person, place: tuple[float, float, float], words: str) -> None:
+    """Look at a place [m] until these words are offered, again and again, as the last step may not be over."""
+    for _ in range(_TRIES):
+        person.page.wait_for_timeout(_REST_MS)
+        person.look_at(*place)
+        person.page.wait_for_timeout(_REST_MS)
+        if person.page.query_selector(f"#offers :text('{words}')"):
+            return
+    raise SystemExit(f"the page does not offer to {words}")
 
 
 def _experimenter(browser: Any, server: LiveServer) -> Any:
@@ -209,7 +213,7 @@ def _experimenter(browser: Any, server: LiveServer) -> Any:
 
 
 def _screenshot(page: Any) -> Any:
-    return cv2.imdecode(np.frombuffer(page.screenshot(), np.uint8), cv2.IMREAD_COLOR)
+    return cv2.imdecode(np.frombuffer(page.screenshot(timeout=_PATIENCE_MS), np.uint8), cv2.IMREAD_COLOR)
 
 
 @functools.cache

@@ -39,7 +39,8 @@ void main() {
     if (where.w >= 0.0) light = vec3(${AMBIENT} + fill) + lamps;
   }
   vec3 lit = tint.rgb * 2.0 * light;
-  shade = vec4(lit / max(1.0, max(lit.r, max(lit.g, lit.b))), tint.a); // no brighter than the texture, as in OpenGL
+  float most = layer < 0.0 ? 1.0 : max(1.0, max(lit.r, max(lit.g, lit.b)));
+  shade = vec4(lit / most, tint.a); // no brighter than the texture, as in OpenGL
   mapped = vec3(uv, layer);
   gl_Position = projectionMatrix * modelViewMatrix * vec4(place, 1.0);
   if (part >= 0.0 && (part == hidden.x || part == hidden.y)) gl_Position = vec4(0.0, 0.0, -2.0, 1.0); // outside
