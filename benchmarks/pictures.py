@@ -26,7 +26,7 @@ from typing import Any
 import cv2
 import numpy as np
 
-from benchmarks import readme_film
+from benchmarks import page_looks, page_trial, readme_film
 from hthor import houses, jsonio, rules, tasks
 from hthor.eval.config import task_selection
 from hthor.eval.records.trial_record import TrialRecord
@@ -100,6 +100,13 @@ OF_TASKS = {
 """Figures of tasks in three dimensions: a task, and the option of `hthor tasks draw`."""
 FILMS = {"trial.webp": "paper/juniper/manipulation-03"}
 """Trials with the oracle as the README's film shows one."""
+LOOKS = "live_looks.jpg"
+_OF_PAGES: dict[str, Callable[[Path], None]] = {
+    LOOKS: page_looks.write,
+    page_trial.TRIAL: page_trial.write,
+    page_trial.EXPERIMENTER: page_trial.write,
+}
+"""Pictures of the page of `hthor live`, each with the function that writes it."""
 LADDER, _LADDER_OF = "savn_ladder.png", "hthor/agents/checkpoints/savn/eval.json"
 """How well robots find things, by the evaluation of the network that ships."""
 _LADDER_CODE = (
@@ -122,6 +129,7 @@ def names() -> list[str]:
         "eyes.jpg",
         *_OF_RUNS,
         "display.png",
+        *_OF_PAGES,
         LADDER,
         *(f"scenes/{name}.jpg" for name in houses.names()),
     ]
@@ -156,6 +164,10 @@ def origin(name: str) -> str:
         return jsonio.sha256(
             [AGENTS, CASE, tasks.load_suite(SUITE).sha256, rules.sha256(), *map(_code_sha256, _code_of_pages())]
         )
+    if name in _OF_PAGES:
+        shown = {home for home, _ in page_looks.ROOMS}
+        facts = [[houses.load(home).sha256 for home in sorted(shown)], rules.sha256()]
+        return jsonio.sha256([*facts, *map(_code_sha256, _code_of_live_pages(name))])
     if name == LADDER:
         return jsonio.sha256([_sha256(ROOT / _LADDER_OF), *(_code_sha256(ROOT / path) for path in _LADDER_CODE)])
     if name == "display.png":
@@ -241,9 +253,23 @@ def _code_of_films() -> list[Path]:
     return [ROOT / "benchmarks" / "readme_film.py", *folders, *(ROOT / path for path in more)]
 
 
+def _code_of_live_pages(name: str) -> list[Path]:
+    """The files that decide how the page of `hthor live` looks: how it draws, its light, and all else that is on it."""
+    light = (f"hthor/live/{part}.py" for part in ("glb", "hidden_corners", "house_file", "still_light", "surfaces"))
+    scene = sorted((ROOT / "hthor" / "world" / "rendering" / "scene").glob("*.py"))
+    code = [*(ROOT / path for path in light), *scene, ROOT / "benchmarks" / "page_browser.py"]
+    if name == LOOKS:
+        drawing = (ROOT / "web" / "src" / part for part in ("eye.js", "house.js"))
+        return [*code, *drawing, ROOT / "benchmarks" / "page_looks.py"]
+    own = (ROOT / "benchmarks" / f"{part}.py" for part in ("page_person", "page_trial"))
+    return [*code, *sorted((ROOT / "web" / "src").glob("*.*")), *own]
+
+
 def _maker(name: str) -> Callable[[Path], None]:
     if name in _OF_RUNS:
         return _OF_RUNS[name]
+    if name in _OF_PAGES:
+        return _OF_PAGES[name]
     if name == "eyes.jpg":
         return _draw_eyes
     if name in TASKS:

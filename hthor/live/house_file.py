@@ -2,7 +2,8 @@
 
 What never moves is one node, whose primitives are merged by texture. Each part that moves (a thing, a door, a body or a
 head) is a node of its own, called by its number, as `SceneParts.poses` counts them; it has the colours of its
-materials, and the page lights it by the grid of probes that the scene's ``extras`` hold.
+materials, and the page lights it by the grid of probes that the scene's ``extras`` hold. Doors and drawers, which are
+``lit``, have the light that they have while they are shut.
 """
 
 from __future__ import annotations
@@ -15,26 +16,31 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from hthor import installation, jsonio
+from hthor.live import hidden_corners, still_light
 from hthor.live.glb import GlbWriter
 from hthor.live.pictures import to_jpeg
+from hthor.live.surfaces import Surface
 from hthor.world.rendering.scene.baked_light import BakedLight
 from hthor.world.rendering.scene.scene_mesh import ABOVE
 from hthor.world.rendering.scene.scene_parts import STATIC
 
 if TYPE_CHECKING:
     from hthor.types import HouseSpec
-    from hthor.world.rendering.scene.scene_parts import ScenePart, SceneParts
+    from hthor.world.rendering.scene.scene_parts import SceneParts
 
 _EDGE_M, _FLOOR_EDGE_M = 0.6, 0.45
 """[m] No edge of a mesh, or of a floor, is longer, as light is computed at corners only. Our choice: finer would
 give the largest of our houses more than 250,000 triangles.
 """
+_MOST_TRIANGLES = 246_000
+"""[count] About so many triangles are drawn at the most, without those of one's own body. Our choice."""
+_MORE_ON_DOORS = 6000
+"""[count] So many of these are added to doors and drawers at the most. Our choice."""
 _TEXTURE_PX = 256
 """[pixels] Side of the textures. Our choice: a person looks from half a metre at the least."""
 _JPEG_QUALITY = 85
 _HALF = 0.5
 """Colours are stored times this, as light may be brighter than 1."""
-_OPAQUE = 0.99
 _FLOOR, _CEILING = "floor of", "ceiling of"
 """What the owners of floors begin with, and those of ceilings and their lamps, which hide no light."""
 
@@ -69,28 +75,22 @@ def _key(scene: SceneParts) -> str:
 
 
 def _make(scene: SceneParts, house: HouseSpec) -> bytes:
-    still = [_Surface.of(part) for part in scene.parts if part.puppet == STATIC and part.group != ABOVE]
-    hides = [one.corners for one in still if one.alpha >= _OPAQUE and not one.owner.startswith(_CEILING)]
+    still = [Surface.of(part) for part in scene.parts if part.puppet == STATIC and part.group != ABOVE]
+    hides = [one.corners for one in still if one.opaque and not one.owner.startswith(_CEILING)]
     light = BakedLight(np.concatenate(hides), scene.lamps.places, house.height)
+    own = next(iter(scene.seats.values()), ())
     file = GlbWriter("hthor")
     book = _Materials(file, scene)
-    still = [one.refined() for one in still]
-    lit = light.light(np.concatenate([one.vertices for one in still]), np.concatenate([one.normals for one in still]))
-    ends = np.cumsum([len(one.vertices) for one in still])
-    shown = [
-        one._replace(colours=one.tint * (own + one.emission))
-        for one, own in zip(still, np.split(lit, ends[:-1]), strict=True)
-    ]
+    moving = sum(len(part.mesh.faces) for part in scene.parts if part.puppet not in (STATIC, *own))
+    still = [one.refined(_FLOOR_EDGE_M if one.owner.startswith(_FLOOR) else _EDGE_M) for one in still]
+    shown = still_light.lit(still, light, _MOST_TRIANGLES - _MORE_ON_DOORS - moving)
     nodes = [file.node(name="still", mesh=_mesh(file, book, shown))]
+    doors = _doors(scene, light)
     for number in range(len(scene.moving)):
-        parts = [_Surface.of(part) for part in scene.parts if part.puppet == number]
+        parts = doors.get(number) or _creased(_parts(scene, number))
         if parts:
-            owner = parts[0].owner
-            nodes.append(
-                file.node(
-                    name=str(number), mesh=_mesh(file, book, _creased(parts)), extras={"owner": owner, "part": number}
-                )
-            )
+            about = {"owner": parts[0].owner, "part": number, "lit": number in doors}
+            nodes.append(file.node(name=str(number), mesh=_mesh(file, book, parts), extras=about))
     xs, ys = zip(*(point for room in house.rooms for point in room.polygon), strict=True)
     probes = light.probes((min(xs), min(ys), max(xs), max(ys)))
     turned = file.node(root=True, name="house", children=nodes, rotation=[-(0.5**0.5), 0.0, 0.0, 0.5**0.5])
@@ -108,72 +108,37 @@ def _make(scene: SceneParts, house: HouseSpec) -> bytes:
     return file.file()
 
 
-def _creased(parts: list[_Surface]) -> list[_Surface]:
+def _parts(scene: SceneParts, number: int) -> list[Surface]:
+    return [Surface.of(part) for part in scene.parts if part.puppet == number]
+
+
+def _doors(scene: SceneParts, light: BakedLight) -> dict[int, list[Surface]]:
+    """Doors and drawers with the light that they have while they are shut, by their numbers."""
+    numbers, shut = [], []
+    for number, frame in scene.hung.items():
+        for one in _parts(scene, number):
+            numbers.append(number)
+            shut.append(one.moved(*frame))
+    if not shut:
+        return {}
+    most = sum(len(one.faces) for one in shut) + _MORE_ON_DOORS
+    found: dict[int, list[Surface]] = {}
+    for number, one in zip(numbers, still_light.lit(shut, light, most, whole=True), strict=True):
+        found.setdefault(number, []).append(one.moved_back(*scene.hung[number]))
+    return found
+
+
+def _creased(parts: list[Surface]) -> list[Surface]:
     """Parts that move together, with the shade that they throw on each other."""
+    if not parts:
+        return []
     light = BakedLight(np.concatenate([one.corners for one in parts]), {}, 0.0)
-    return [
-        one._replace(
-            colours=one.tint
-            * np.minimum(1.0 / _HALF, light.openness(one.vertices, one.normals) + one.emission)[:, None]
-        )
-        for one in parts
-    ]
-
-
-class _Surface(NamedTuple):
-    """A mesh in the frame of the house, or of what it moves with; ``colours`` (V, 3)."""
-
-    owner: str
-    texture: str
-    tint: Any
-    alpha: float
-    emission: float
-    vertices: Any
-    normals: Any
-    uv: Any
-    faces: Any
-    colours: Any = None
-
-    @classmethod
-    def of(cls, part: ScenePart) -> _Surface:
-        """The surface of a part."""
-        mesh, material = part.mesh, part.material
-        return cls(
-            part.owner,
-            material.texture,
-            np.array(material.rgba[:3]),
-            material.rgba[3],
-            material.emission,
-            np.asarray(mesh.vertices, float),
-            _unit(np.asarray(mesh.normals, float)),
-            np.asarray(mesh.uv, float),
-            np.asarray(mesh.faces),
-        )
-
-    @property
-    def corners(self) -> Any:
-        """(F, 3, 3) [m]."""
-        return self.vertices[self.faces]
-
-    def refined(self) -> _Surface:
-        """The same surface without long edges: each is halved again and again, so that neighbours stay neighbours."""
-        faces = self.faces
-        rows = np.concatenate([self.vertices, self.normals, self.uv], axis=1)
-        while True:
-            corners = rows[faces][:, :, :3]
-            edges = np.linalg.norm(corners - np.roll(corners, -1, axis=1), axis=2)
-            longest = edges.argmax(1)
-            long = edges.max(1) > (_FLOOR_EDGE_M if self.owner.startswith(_FLOOR) else _EDGE_M)
-            if not long.any():
-                break
-            split, side = faces[long], longest[long]
-            a, b, c = (np.take_along_axis(split, ((side + k) % 3)[:, None], 1)[:, 0] for k in range(3))
-            ends, which = np.unique(np.sort(np.stack([a, b], 1), axis=1), axis=0, return_inverse=True)
-            middle = len(rows) + which.reshape(-1)
-            rows = np.concatenate([rows, rows[ends].mean(1)])
-            halves = np.concatenate([np.stack([a, middle, c], 1), np.stack([middle, b, c], 1)])
-            faces = np.concatenate([faces[~long], halves])
-        return self._replace(vertices=rows[:, :3], normals=_unit(rows[:, 3:6]), uv=rows[:, 6:], faces=faces)
+    found = []
+    for one in parts:
+        open_, hidden = light.openness(hidden_corners.inward(one.vertices, one.faces), one.normals)
+        shade = hidden_corners.spread_light(open_, hidden, one.vertices, one.faces)
+        found.append(one._replace(colours=one.tint * np.minimum(1.0 / _HALF, shade + one.emission)[:, None]))
+    return found
 
 
 class _Materials:
@@ -190,7 +155,7 @@ class _Materials:
             paint: dict[str, Any] = {"baseColorFactor": [1.0, 1.0, 1.0, alpha]}
             if texture:
                 paint["baseColorTexture"] = {"index": self._file.texture(self._picture(texture), "image/jpeg", texture)}
-            kind = {} if alpha >= _OPAQUE else {"alphaMode": "BLEND"}
+            kind = {} if alpha == 1.0 else {"alphaMode": "BLEND"}
             self._known[key] = self._file.material(
                 pbrMetallicRoughness=paint, extensions={"KHR_materials_unlit": {}}, **kind
             )
@@ -203,11 +168,11 @@ class _Materials:
         return to_jpeg(cv2.resize(picture, (_TEXTURE_PX, _TEXTURE_PX), interpolation=cv2.INTER_AREA), _JPEG_QUALITY)
 
 
-def _mesh(file: GlbWriter, book: _Materials, surfaces: list[_Surface]) -> int:
+def _mesh(file: GlbWriter, book: _Materials, surfaces: list[Surface]) -> int:
     """A mesh of surfaces, merged by texture."""
-    heaps: dict[tuple[str, float], list[_Surface]] = {}
+    heaps: dict[tuple[str, float], list[Surface]] = {}
     for one in surfaces:
-        alpha = 1.0 if one.alpha >= _OPAQUE else round(one.alpha, 3)
+        alpha = 1.0 if one.opaque else round(one.alpha, 3)
         heaps.setdefault((one.texture, alpha), []).append(one)
     primitives = []
     for key, heap in heaps.items():
@@ -225,8 +190,8 @@ def _mesh(file: GlbWriter, book: _Materials, surfaces: list[_Surface]) -> int:
 
 
 def _rounded(values: Any) -> Any:
-    """Values to the nearest part of 2048, whose many zero bits make the file small."""
-    return (np.round(values * 2048.0) / 2048.0).astype("f4")
+    """Values to the nearest part of 8192, whose many zero bits make the file small."""
+    return (np.round(values * 8192.0) / 8192.0).astype("f4")
 
 
 def _bytes(values: Any) -> Any:
@@ -235,7 +200,3 @@ def _bytes(values: Any) -> Any:
 
 def _signed_bytes(values: Any) -> Any:
     return np.clip(np.round(values * 127.0), -127, 127).astype("i1")
-
-
-def _unit(vectors: Any) -> Any:
-    return vectors / np.maximum(np.linalg.norm(vectors, axis=1, keepdims=True), 1e-9)

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import math
 import threading
-import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -19,6 +17,7 @@ from practice_trials import play_in_practice_room
 from relay import Relay
 from world_house import COUNTER, TABLE, house, on, task
 
+from benchmarks.page_person import Person
 from hthor.errors import HthorError
 from hthor.eval.config.options import EvalOptions
 from hthor.eval.runner.progress import Silent
@@ -45,22 +44,6 @@ _COLOURS = """(seat) => {
   return new Set(new Uint32Array(data.buffer)).size;
 }"""
 """How many colours the picture of what a seat sees has, on the experimenter's page."""
-
-_WALK = """([x, y]) => new Promise((done) => {
-  const begin = [x - page.motion.x, y - page.motion.y];
-  const step = () => {
-    const left = [x - page.motion.x, y - page.motion.y];
-    if (Math.hypot(...left) < 0.12 || left[0] * begin[0] + left[1] * begin[1] < 0) {
-      page.keys.held.clear();
-      return done();
-    }
-    page.keys.yaw = Math.atan2(left[1], left[0]);
-    requestAnimationFrame(step);
-  };
-  step();
-})"""
-"""Looks to a place, with the key to walk held down, until the person is there or has just passed it."""
-_NEAR_M = 0.25
 
 pytestmark = [
     pytest.mark.skipif(CHROMIUM is None, reason="no Chromium on the PATH"),
@@ -101,53 +84,6 @@ def session(folder: Path, **options: Any) -> Iterator[LiveSession]:
         yield made
     finally:
         made.close()
-
-
-class Person:
-    """Somebody at the browser."""
-
-    def __init__(self, page: Any) -> None:
-        self.page = page
-
-    def until(self, condition: str) -> None:
-        end = time.monotonic() + 60.0
-        while not self.page.evaluate(condition):
-            assert time.monotonic() < end, condition
-            self.page.wait_for_timeout(20)
-
-    def look_at(self, x: float, y: float, z: float) -> None:
-        here = self.page.evaluate("[page.motion.x, page.motion.y, page.self.eye]")
-        dx, dy, dz = x - here[0], y - here[1], z - here[2]
-        pitch = math.atan2(dz, math.hypot(dx, dy))
-        self.page.evaluate(f"page.keys.yaw = {math.atan2(dy, dx)}; page.keys.pitch = {pitch}")
-
-    def walk_to(self, x: float, y: float) -> None:
-        """Walk there, and see whether that is where they are, once the server has answered; else walk again."""
-        end = time.monotonic() + 60.0
-        while time.monotonic() < end:
-            self.page.evaluate(f"page.keys.yaw = Math.atan2({y} - page.motion.y, {x} - page.motion.x)")
-            self.page.keyboard.down("w")
-            self.page.evaluate(_WALK, [x, y])
-            self.page.keyboard.up("w")
-            last = self.page.evaluate("page.motion.number")
-            self.until(f"page.head.steering > {last}")
-            if self.page.evaluate(f"Math.hypot(page.head.x - {x}, page.head.y - {y})") < _NEAR_M:
-                return
-        raise AssertionError(f"the person does not come to {x}, {y}")
-
-    def open_fridge(self) -> None:
-        """Open it, with a step back each time that the door meets the person."""
-        while not self.page.query_selector("#offers :text('close the fridge')"):
-            self.press_when_offered("f", "open the fridge")
-            pressed = self.page.evaluate("page.head.tick")
-            self.until(f"page.head.tick > {pressed + 15} && !page.now.busy")
-            if self.page.evaluate("!page.now.outcome.ok"):
-                self.page.keyboard.press("s", delay=300)
-            self.page.wait_for_timeout(300)
-
-    def press_when_offered(self, key: str, words: str) -> None:
-        self.page.wait_for_selector(f"#offers :text('{words}')")
-        self.page.keyboard.press(key)
 
 
 def test_a_person_plays_a_delivery_and_a_search_in_the_browser(live: LiveSession) -> None:

@@ -47,8 +47,14 @@ def main(folder: str, port: str, faster: str, *options: str) -> None:
 
 if __name__ == "__main__":
     if "page=yes" in sys.argv:
-        BakedLight._light = lambda self, points, normals: np.full((len(points), 3), 0.8)  # type: ignore[method-assign]
-        BakedLight._openness = lambda self, points, normals: np.ones(len(points))  # type: ignore[method-assign]
+        BakedLight._light = lambda self, points, normals: (  # type: ignore[assignment,method-assign]
+            np.full((len(points), 3), 0.8),
+            np.zeros(len(points), bool),
+        )
+        BakedLight._openness = lambda self, points, normals: (  # type: ignore[assignment,method-assign]
+            np.ones(len(points)),
+            np.zeros(len(points), bool),
+        )
     else:
         house_file._make = lambda scene, house: b""
     main(*sys.argv[1:])

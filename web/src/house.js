@@ -9,7 +9,8 @@ import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 const SIDE_PX = 256;
 const STILL = -1;
 const NONE = -2;
-const AMBIENT = 0.36; // the light from all sides, as in the baked light
+const LIT = -1; // the light of a part whose colours have it already
+const AMBIENT = 0.39; // the light from all sides, as in the baked light
 const FILL = [0.35, 0.55, -0.6];
 const FOLLOW_PER_S = 22; // how fast a part goes to where the server says it is
 const JUMP_M = 1.0;
@@ -34,9 +35,12 @@ void main() {
     place = turned(turn, position) + where.xyz;
     vec3 facing = turned(turn, normal);
     float fill = 0.1 * max(0.0, -dot(facing, normalize(vec3(${FILL.join(", ")}))));
-    light = vec3(${AMBIENT} + fill) + where.w * (0.52 + 0.48 * facing.z) * vec3(1.0, 0.97, 0.9);
+    vec3 lamps = where.w * (0.52 + 0.48 * facing.z) * vec3(1.0, 0.97, 0.9);
+    if (where.w >= 0.0) light = vec3(${AMBIENT} + fill) + lamps;
   }
-  shade = vec4(tint.rgb * 2.0 * light, tint.a);
+  vec3 lit = tint.rgb * 2.0 * light;
+  float most = layer < 0.0 ? 1.0 : max(1.0, max(lit.r, max(lit.g, lit.b)));
+  shade = vec4(lit / most, tint.a); // no brighter than the texture, as in OpenGL
   mapped = vec3(uv, layer);
   gl_Position = projectionMatrix * modelViewMatrix * vec4(place, 1.0);
   if (part >= 0.0 && (part == hidden.x || part == hidden.y)) gl_Position = vec4(0.0, 0.0, -2.0, 1.0); // outside
@@ -82,11 +86,14 @@ export class House {
     this.places = new Map();
     /** The parts that are not there yet. @type {Set<number>} */
     this.moving = new Set();
+    /** The parts whose light is in their colours. @type {Set<number>} */
+    this.lit = new Set();
     const pictures = new Pictures();
     const heaps = [new Heap(), new Heap()];
     file.scene.traverse((/** @type {any} */ node) => {
       if (!node.isMesh) return;
-      const part = partOf(node);
+      const { part, lit } = aboutPart(node);
+      if (lit) this.lit.add(part);
       if (own.has(part)) return;
       const glass = node.material.opacity < 0.99;
       heaps[glass ? 1 : 0].add(node.geometry, pictures.layer(node.material.map), part, node.material.opacity);
@@ -177,7 +184,7 @@ export class House {
     for (let k = 0; k < 4; k += 1) row[at + 4 + k] += now * (sign * goal.turn[k] - row[at + 4 + k]);
     const length = Math.hypot(row[at + 4], row[at + 5], row[at + 6], row[at + 7]) || 1;
     for (let k = 4; k < 8; k += 1) row[at + k] /= length;
-    row[at + 3] = this.#light(row[at], row[at + 1]);
+    row[at + 3] = this.lit.has(number) ? LIT : this.#light(row[at], row[at + 1]);
     return now === 1 || gap < 5e-4;
   }
 
@@ -189,13 +196,13 @@ export class House {
   }
 }
 
-/** The number of the part that a mesh belongs to. @param {any} node */
-function partOf(node) {
+/** The number of the part that a mesh belongs to, and whether it has its light. @param {any} node */
+function aboutPart(node) {
   for (let one = node; one !== null; one = one.parent) {
-    const name = one.userData.part;
-    if (name !== undefined) return name;
+    const { part, lit } = one.userData;
+    if (part !== undefined) return { part, lit };
   }
-  return STILL;
+  return { part: STILL, lit: true };
 }
 
 /** The pictures of all materials as the layers of one texture. */
@@ -294,11 +301,42 @@ class Heap {
   }
 }
 
+const WAVES = [[4.1922, 5.6681], [2.4572, 5.7528], [2.7634, 3.9486], [2.6545, 4.2953], [2.2449, 4.6216]];
+
+/** The sky of hthor.world.rendering.scene.lights: clouds, and trees along the horizon. */
+const SKY = /* glsl */ `
+varying vec3 way;
+
+float waves(vec2 at) {
+  float total = 0.0;
+  ${WAVES.map(([turn, shift], k) => {
+    const scale = 1.7 ** k;
+    const [x, y] = [scale * Math.cos(turn), scale * Math.sin(turn)];
+    return `total += sin(dot(at, vec2(${x.toFixed(4)}, ${y.toFixed(4)})) + ${shift.toFixed(4)}) / ${(1 + k).toFixed(1)};`;
+  }).join("\n  ")}
+  return total / 2.0;
+}
+
+void main() {
+  vec3 to = normalize(way);
+  float rise = to.z;
+  float angle = atan(-to.y, to.x);
+  vec3 colour = mix(vec3(0.86, 0.93, 0.98), vec3(0.36, 0.58, 0.86), pow(clamp(rise / 0.7, 0.0, 1.0), 0.6));
+  vec3 cube = way / max(abs(way.x), max(abs(way.y), abs(way.z)));
+  float clouds = waves(3.0 * vec2(cube.x, -cube.y) / (abs(cube.z) + 0.35));
+  float veil = clamp(clouds - 0.15, 0.0, 0.8) * clamp(rise * 5.0, 0.0, 1.0);
+  colour = mix(colour, vec3(1.0), 0.8 * veil);
+  float crown = 0.055 + 0.03 * sin(7.0 * angle + 1.0) + 0.02 * sin(17.0 * angle) + 0.012 * sin(43.0 * angle + 2.0);
+  vec3 leaves = vec3(0.38, 0.52, 0.30) * (1.0 + 0.12 * sin(60.0 * angle) * sin(130.0 * rise + 9.0 * angle));
+  colour = mix(colour, leaves, clamp((crown - rise) * 90.0, 0.0, 1.0));
+  gl_FragColor = vec4(mix(colour, vec3(0.52, 0.64, 0.36), clamp(-rise * 60.0, 0.0, 1.0)), 1.0);
+}`;
+
 /** What is outside: a lawn and the sky. */
 export function outdoors() {
   const lawn = new THREE.Mesh(
     new THREE.CircleGeometry(80, 48),
-    new THREE.MeshBasicMaterial({ color: new THREE.Color(0.42, 0.52, 0.29) }),
+    new THREE.MeshBasicMaterial({ color: new THREE.Color(0.52, 0.64, 0.36) }),
   );
   lawn.position.z = -0.06;
   const dome = new THREE.SphereGeometry(90, 24, 16);
@@ -306,10 +344,10 @@ export function outdoors() {
     side: THREE.BackSide,
     depthWrite: false,
     vertexShader: `varying vec3 way; void main() {
-      way = position; gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0); }`,
-    fragmentShader: `varying vec3 way; void main() {
-      float rise = clamp(normalize(way).z / 0.7, 0.0, 1.0);
-      gl_FragColor = vec4(mix(vec3(0.86, 0.93, 0.98), vec3(0.36, 0.58, 0.86), pow(rise, 0.6)), 1.0); }`,
+      vec4 at = modelMatrix * vec4(position, 1.0);
+      way = at.xyz - cameraPosition;
+      gl_Position = projectionMatrix * viewMatrix * at; }`,
+    fragmentShader: SKY,
   });
   const group = new THREE.Group();
   const above = new THREE.Mesh(dome, sky);

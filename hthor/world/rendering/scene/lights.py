@@ -19,7 +19,7 @@ from hthor.world.model.engine import mujoco
 from hthor.world.rendering.scene.apertures import placed_meshes
 from hthor.world.rendering.scene.scene_mesh import INSIDE, SceneMesh
 
-_LAMPS = 3
+LAMPS = 3
 """OpenGL has eight lights: headlight, fill, and two for each of these lamps. Each light with shadows costs a pass."""
 _SPAN_M2, _MOST = 24.0, 3
 """[m2] One lamp for this much floor of a room, and the most lamps per room."""
@@ -105,7 +105,7 @@ class RoomLights:
         lamps = [(lamp, 1.0 / math.sqrt(len(self.places[own]))) for lamp in self.places[own]]
         others = [(lamp, 1.0 / len(self.places[room])) for room in self._next[own] for lamp in self.places[room]]
         others.sort(key=lambda lamp: (math.dist(place, lamp[0]), lamp))
-        return [*lamps, *others][:_LAMPS]
+        return [*lamps, *others][:LAMPS]
 
 
 def _add(scene: Any, kind: str, **given: Any) -> None:

@@ -59,9 +59,13 @@ class PoseSync:
         mujoco.mj_kinematics(self._model, self._data)
         return self._data.xpos, self._data.xquat
 
+    def rest(self, body: int) -> tuple[Any, Any]:
+        """The position (3,) and the quaternion (4,) of ``body`` at rest."""
+        return self._rest[0][body], self._rest[1][body]
+
     def relative(self, body: int, frame: tuple[Vec3, Quaternion]) -> tuple[Vec3, Quaternion]:
         """A frame given in the house frame, relative to ``body`` at rest."""
-        position, turn = self._rest[0][body], self._rest[1][body]
+        position, turn = self.rest(body)
         back, quat, pos = np.empty(4), np.empty(4), np.empty(3)
         mujoco.mju_negQuat(back, turn)
         mujoco.mju_mulQuat(quat, back, np.array(frame[1]))

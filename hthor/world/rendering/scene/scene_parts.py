@@ -44,6 +44,7 @@ class SceneParts:
         parts: the meshes. lamps: the places of each room's lamps.
         assets: hash of the furniture pack that looks come from, empty for our own.
         moving: for each puppet, the id of what moves with it; a seat has two, its body and its head.
+        hung: for each puppet that is a door or a drawer, its position [m] and quaternion (w, x, y, z) when it is shut.
     """
 
     def __init__(
@@ -61,6 +62,8 @@ class SceneParts:
         self.seats = builder.build(seats, self.lamps)
         self.parts = tuple(collector.parts)
         self._followers = np.array(builder.followers, int)
+        doors = set(puppets.hung.values())
+        self.hung = {number: puppets.rest(body) for number, body in enumerate(builder.followers) if body in doors}
         owners = {part.puppet: part.owner for part in self.parts}
         self.moving = tuple(owners.get(number, "") for number in range(collector.puppets))
 

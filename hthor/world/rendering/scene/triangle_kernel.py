@@ -65,10 +65,13 @@ def build_tree(corners: Floats) -> tuple[Floats, Ints, Ints]:
 @numba.njit(cache=True, error_model="numpy")
 def _first_hit(
     corners: Floats, boxes: Floats, links: Ints, order: Ints, origin: Floats, way: Floats, reach: float, any_hit: bool
-) -> float:
-    """[m] How far a ray goes, at most ``reach``; with ``any_hit`` only whether it is stopped matters."""
+) -> tuple[float, int]:
+    """[m] How far a ray goes, at most ``reach``, and which triangle stops it, -1 for none.
+
+    With ``any_hit`` only whether it is stopped matters.
+    """
     stack = np.empty(_DEEP, np.int64)
-    stack[0], waiting, best = 0, 1, reach
+    stack[0], waiting, best, which = 0, 1, reach, -1
     inverse = np.empty(3)
     for a in range(3):
         inverse[a] = 1.0 / way[a] if way[a] != 0.0 else math.inf
@@ -93,10 +96,10 @@ def _first_hit(
         for k in range(links[box, 0], links[box, 0] + links[box, 1]):
             distance = _hit(corners[order[k]], origin, way)
             if 0.0 < distance < best:
-                best = distance
+                best, which = distance, order[k]
                 if any_hit:
-                    return best  # type: ignore[no-any-return]
-    return best  # type: ignore[no-any-return]
+                    return best, which
+    return best, which
 
 
 @numba.njit(cache=True, error_model="numpy")
@@ -119,6 +122,15 @@ def _hit(corner: Floats, origin: Floats, way: Floats) -> float:
     return (vx * qx + vy * qy + vz * qz) / det  # type: ignore[no-any-return]
 
 
+@numba.njit(cache=True, error_model="numpy")
+def _is_back(corner: Floats, way: Floats) -> bool:
+    """Whether a ray meets a triangle from behind."""
+    ux, uy, uz = corner[1, 0] - corner[0, 0], corner[1, 1] - corner[0, 1], corner[1, 2] - corner[0, 2]
+    vx, vy, vz = corner[2, 0] - corner[0, 0], corner[2, 1] - corner[0, 1], corner[2, 2] - corner[0, 2]
+    towards = way[0] * (uy * vz - uz * vy) + way[1] * (uz * vx - ux * vz) + way[2] * (ux * vy - uy * vx)
+    return bool(towards > 0.0)
+
+
 @numba.njit(cache=True, error_model="numpy", nogil=True)
 def openness(
     corners: Floats,
@@ -129,29 +141,33 @@ def openness(
     normals: Floats,
     ways: Floats,
     reach: float,
-) -> Floats:
-    """How open each point is to its surroundings, from 0 in a crack to 1 on a wide plain.
+) -> tuple[Floats, Floats]:
+    """How open each point is to its surroundings, from 0 in a crack to 1 on a wide plain; and the share of its rays
+    that meet a triangle from behind, which is 1 inside a closed body.
 
     Args:
         points, normals: (N, 3) [m] and unit vectors. ways: (R, 3) unit vectors about +z, distributed as a cosine.
         reach: [m] what is farther away does not count; what is nearer counts the more.
     """
-    found = np.empty(len(points))
+    found, behind = np.empty(len(points)), np.empty(len(points))
     way = np.empty(3)
     for n in range(len(points)):
         nx, ny, nz = normals[n, 0], normals[n, 1], normals[n, 2]
         sign = 1.0 if nz >= 0.0 else -1.0
         a = -1.0 / (sign + nz)
         b = nx * ny * a
-        total = 0.0
+        total, backs = 0.0, 0
         for r in range(len(ways)):
             x, y, z = ways[r, 0], ways[r, 1], ways[r, 2]
             way[0] = x * (1.0 + sign * nx * nx * a) + y * b + z * nx
             way[1] = x * sign * b + y * (sign + ny * ny * a) + z * ny
             way[2] = -x * sign * nx - y * ny + z * nz
-            total += _first_hit(corners, boxes, links, order, points[n], way, reach, False) / reach
-        found[n] = total / len(ways)
-    return found
+            far, which = _first_hit(corners, boxes, links, order, points[n], way, reach, False)
+            total += far / reach
+            if which >= 0 and _is_back(corners[which], way):
+                backs += 1
+        found[n], behind[n] = total / len(ways), backs / len(ways)
+    return found, behind
 
 
 @numba.njit(cache=True, error_model="numpy", nogil=True)
@@ -166,6 +182,6 @@ def unhidden(
             way[a] = lamp[a] - points[n, a]
         if way[0] * normals[n, 0] + way[1] * normals[n, 1] + way[2] * normals[n, 2] <= 0.0:
             continue
-        if _first_hit(corners, boxes, links, order, points[n], way, 1.0, True) >= 1.0:
+        if _first_hit(corners, boxes, links, order, points[n], way, 1.0, True)[1] < 0:
             found[n] = 1.0
     return found
