@@ -158,11 +158,11 @@ class RealTimeLoop:
         if ends or gone:
             if episode.paused:
                 episode.resume()
-            episode.void(ends or f"the page of {', '.join(gone)} did not come back")
+            episode.void(ends or f"{', '.join(gone)} did not come back")
             control.void = ""
             return True
         lost = [name for name, seconds in away.items() if seconds > (0.0 if episode.paused else ABSENT_S)]
-        reason = control.paused or (f"the page of {', '.join(lost)} is gone" if lost else "")
+        reason = control.paused or "; ".join(self._absence(name) for name in lost)
         if bool(reason) != episode.paused:
             if reason:
                 episode.pause(reason)
@@ -173,6 +173,9 @@ class RealTimeLoop:
         if reason:
             control.wait(_TURN_S)
         return bool(reason)
+
+    def _absence(self, name: str) -> str:
+        return f"the headset of {name} is off" if self._seats[name].headset_off else f"the page of {name} is gone"
 
     def _show_bodies(self, episode: Episode, scenery: Scenery | None) -> None:
         moved = scenery.moved() if scenery is not None else {}

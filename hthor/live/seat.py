@@ -60,6 +60,7 @@ class LiveSeat:
         self._left_at = now()
         self._steering = Steering(0, Drive())
         self._steered_at = -1.0
+        self._off_at: float | None = None  # since when the headset has been off
         self._acts: deque[Act] = deque()
         self._acted = 0  # the number of the last act that was taken
         self._ready = False  # for the trial that was opened last
@@ -81,7 +82,7 @@ class LiveSeat:
     def join(self, page: Page) -> Page | None:
         """Take a page, and show it how things are; the page that was there before, if there was one."""
         with self._lock:
-            before, self._page = self._page, page
+            before, self._page, self._off_at = self._page, page, None
             page.send(wire.Welcome(seat=self.seat, acts=self._acted, server=self._server))
             for message in self._screen.values():
                 page.send(message)
@@ -97,7 +98,7 @@ class LiveSeat:
         """The page is gone."""
         with self._lock:
             if self._page is page:
-                self._page, self._left_at = None, self._now()
+                self._page, self._left_at, self._off_at = None, self._now(), None
                 self._changed.notify_all()
 
     def steer(self, steering: Steering) -> None:
@@ -117,6 +118,11 @@ class LiveSeat:
     def ping(self, ping: wire.Ping) -> None:
         """Note how the page and its connection are."""
         self.round_trip, self.frames = ping.round_trip, ping.frames
+        with self._lock:
+            if not ping.off:
+                self._off_at = None
+            elif self._off_at is None:
+                self._off_at = self._now()
 
     def begin_trial(self, trial: int) -> None:
         """The person is ready for this trial."""
@@ -156,9 +162,17 @@ class LiveSeat:
                 self._page.show(self._head, moved)
 
     def absent_s(self) -> float:
-        """[s] For how long no page has been there; 0 while there is one."""
+        """[s] For how long no page has been there, or the headset has been off; 0 while there is somebody."""
         with self._lock:
-            return 0.0 if self._page is not None else self._now() - self._left_at
+            if self._page is None:
+                return self._now() - self._left_at
+            return 0.0 if self._off_at is None else self._now() - self._off_at
+
+    @property
+    def headset_off(self) -> bool:
+        """Whether the person's page is there, but their headset is off."""
+        with self._lock:
+            return self._page is not None and self._off_at is not None
 
     def open(self, ahead: wire.TrialAhead) -> None:
         """Show the person the next trial."""

@@ -87,11 +87,17 @@ class Skip(Struct, frozen=True, kw_only=True, tag="skip"):
 
 
 class Ping(Struct, frozen=True, kw_only=True, tag="ping"):
-    """Answered by `Pong`. ``frames`` [1/s]: how many pictures the page draws; ``round_trip`` [s]: of the last ping."""
+    """Answered by `Pong`.
+
+    Attributes:
+        frames: [1/s] how many pictures the page draws. round_trip: [s] of the last ping.
+        off: whether the person is in VR, but has taken the headset off, or its system's menu hides the house.
+    """
 
     sent: float
     frames: float = 0.0
     round_trip: float = 0.0
+    off: bool = False
 
 
 FromPage = Join | Begin | Act | Rate | Skip | Ping

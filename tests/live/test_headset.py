@@ -13,7 +13,7 @@ from test_page import APPLE, opened, session
 from benchmarks.page_person import Person
 from hthor.live import server
 from hthor.types import HUMAN
-from hthor.types.events import Accepted, Declined, Displayed
+from hthor.types.events import Accepted, Declined, Displayed, Paused
 
 pytest.importorskip("starlette", reason="live sessions need an optional dependency: pip install 'hthor[live]'")
 pytest.importorskip("playwright", reason="pages are opened with an optional dependency: pip install 'hthor[browser]'")
@@ -116,6 +116,7 @@ def deliver(person: Wearer) -> None:
     assert abs(person.page.evaluate("page.headset.rig.head.z") - 1.6) < 0.01
     person.press("accept")
     person.until("page.shownMap !== null")
+    take_off(person)
     person.press("map")
     person.until("page.shownMap === null")
     person.press("map")
@@ -135,6 +136,14 @@ def deliver(person: Wearer) -> None:
     person.do("squeeze", "put the apple in the fridge")
     person.until("page.ended !== null && page.ended.rate")
     rate(person, 6)
+
+
+def take_off(person: Wearer) -> None:
+    """Take the headset off until time stands still, and put it on again."""
+    person.page.evaluate(f"{_DEVICE}.updateVisibilityState('hidden')")
+    person.until("page.paused === 'the headset of human is off'")
+    person.page.evaluate(f"{_DEVICE}.updateVisibilityState('visible')")
+    person.until("page.paused === ''")
 
 
 def search(person: Wearer) -> None:
@@ -167,5 +176,6 @@ def check(live: LiveSession) -> None:
     assert found.met
     assert [log.ratings for log in live.logs] == [{HUMAN: 6}, {HUMAN: 2}]
     assert any(isinstance(event, Accepted) for event in delivery.events)
+    assert [event.reason for event in delivery.events if isinstance(event, Paused)] == ["the headset of human is off"]
     assert any(isinstance(event, Declined) for event in found.events)
     assert [event.on for event in delivery.events if isinstance(event, Displayed)][-2:] == [False, True]

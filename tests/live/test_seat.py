@@ -121,3 +121,23 @@ def test_a_page_that_joins_later_gets_what_the_screen_shows_and_where_everything
     assert seat.join(other) is screen
     seat.leave(screen)
     assert seat.absent_s() == 0.0, "a page that was replaced leaves nothing"
+
+
+def test_somebody_whose_headset_is_off_is_absent_until_it_is_on_again_or_another_page_is_there() -> None:
+    clock = Clock()
+    seat, first, second = LiveSeat(HUMAN, clock), Screen(), Screen()
+    seat.join(first)
+    clock.time = 1.0
+    for clock.time in (1.0, 2.0):
+        seat.ping(wire.Ping(sent=0.0, off=True))
+    clock.time = 4.0
+    assert (seat.absent_s(), seat.headset_off) == (3.0, True)
+    seat.ping(wire.Ping(sent=0.0))
+    assert (seat.absent_s(), seat.headset_off) == (0.0, False)
+    seat.ping(wire.Ping(sent=0.0, off=True))
+    seat.join(second)
+    assert seat.absent_s() == 0.0
+    seat.ping(wire.Ping(sent=0.0, off=True))
+    seat.leave(second)
+    clock.time = 9.0
+    assert (seat.absent_s(), seat.headset_off) == (5.0, False)

@@ -31,7 +31,7 @@ class Page {
     this.keys = new Keys(canvas, (action) => this.press(action));
     this.panels = new Panels(this.keys);
     this.motion = new OwnMotion();
-    this.headset = new Headset(this.renderer, () => this.show());
+    this.headset = new Headset(this.renderer, () => this.onHeadset());
     this.scene.add(this.headset.group);
     this.headsetChoice = new HeadsetChoice(this.headset, () => this.show());
     /** What the hand that acts no longer has just been told to do. @type {{actions: string[], at: number} | null} */
@@ -78,6 +78,14 @@ class Page {
   get plays() {
     const still = this.paused || this.lost || this.problem || this.skipped;
     return this.begun && this.house !== null && this.ended === null && !still;
+  }
+
+  /** VR has begun or ended, or the house is hidden from the person in it, or no longer. */
+  onHeadset() {
+    this.worker.postMessage({ type: "headset", off: this.headset.off });
+    if (!this.headset.session) this.resize();
+    else if (this.jpeg) this.headset.screens.takePicture(this.jpeg);
+    this.show();
   }
 
   /** Show the card that fits, or the house. */

@@ -15,11 +15,15 @@ let steered = 0;
 let acted = 0;
 let frames = 0;
 let roundTrip = 0;
+/** Whether the person is in VR, but does not see the house. */
+let off = false;
 /** Acts that the server has not acknowledged, oldest first. @type {{number: number}[]} */
 let pending = [];
 
 /** @param {object} message */
 const tell = (message) => socket?.readyState === WebSocket.OPEN && socket.send(JSON.stringify(message));
+
+const ping = () => tell({ type: "ping", sent: performance.now(), frames, round_trip: roundTrip, off });
 
 function connect() {
   const scheme = self.location.protocol === "https:" ? "wss" : "ws";
@@ -66,11 +70,14 @@ self.onmessage = ({ data }) => {
   if (data.type === "open") {
     token = data.token;
     connect();
-    setInterval(() => tell({ type: "ping", sent: performance.now(), frames, round_trip: roundTrip }), PING_MS);
+    setInterval(ping, PING_MS);
   } else if (data.type === "steer") {
     steered = data.number;
     frames = data.frames;
     if (socket?.readyState === WebSocket.OPEN) socket.send(encodeSteering(steered, data.drive, data.hand ?? null));
+  } else if (data.type === "headset") {
+    off = data.off;
+    ping();
   } else if (data.type === "act") {
     acted += 1;
     const act = { ...data, number: acted };

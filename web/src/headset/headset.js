@@ -30,7 +30,8 @@ export class Headset {
     this.group.visible = false;
     /** @type {XRSession | null} */
     this.session = null;
-    /** @type {string} */
+    this.entering = false;
+    /** Which reference space tells where the head is. */
     this.space = "";
   }
 
@@ -39,17 +40,13 @@ export class Headset {
    * @param {import("./controls.js").Options} options
    */
   async enter(options) {
-    if (this.session || !navigator.xr) return;
-    const session = await navigator.xr.requestSession("immersive-vr", { optionalFeatures: ["local-floor"] });
-    this.session = session;
-    session.addEventListener("end", () => this.#end());
-    session.addEventListener("visibilitychange", () => this.onChange());
-    const { xr } = this.renderer;
-    xr.enabled = true;
-    this.space = await firstSpace(session);
-    xr.setReferenceSpaceType(/** @type {XRReferenceSpaceType} */ (this.space));
-    await xr.setSession(session);
-    xr.getReferenceSpace()?.addEventListener("reset", () => this.recentre());
+    if (this.session || this.entering || !navigator.xr) return;
+    this.entering = true;
+    try {
+      await this.#open(await navigator.xr.requestSession("immersive-vr", { optionalFeatures: ["local-floor"] }));
+    } finally {
+      this.entering = false;
+    }
     this.options = options;
     this.controls = new Controls(options);
     this.rig = new Rig();
@@ -69,6 +66,30 @@ export class Headset {
     this.onChange();
   }
 
+  /** @param {XRSession} session */
+  async #open(session) {
+    const { xr } = this.renderer;
+    try {
+      this.space = await firstSpace(session);
+      xr.enabled = true;
+      xr.setReferenceSpaceType(/** @type {XRReferenceSpaceType} */ (this.space));
+      await xr.setSession(session);
+    } catch (problem) {
+      xr.enabled = false;
+      await session.end().catch(() => {});
+      throw problem;
+    }
+    session.addEventListener("end", () => this.#end());
+    session.addEventListener("visibilitychange", () => this.onChange());
+    xr.getReferenceSpace()?.addEventListener("reset", () => this.recentre());
+    this.session = session;
+  }
+
+  /** Whether the person is in VR, but does not see the house: the headset is off, or its system's menu hides it. */
+  get off() {
+    return this.session?.visibilityState === "hidden";
+  }
+
   /** Leave VR. */
   leave() {
     return this.session?.end();
@@ -78,11 +99,6 @@ export class Headset {
   recentre() {
     this.standing = false;
     this.screens?.recentre();
-  }
-
-  /** Whether the person sees the house now: not while the system's own menu covers it. */
-  get looks() {
-    return this.session !== null && this.session.visibilityState !== "hidden";
   }
 
   /**

@@ -40,12 +40,17 @@ export class HeadsetChoice {
   }
 
   async #enter() {
+    find("vr-problem").textContent = "";
     if (!this.there && !this.device) {
       const { emulate, steerByKeys } = await import(new URL("emulation.js", document.baseURI).href);
       this.device = emulate(new URLSearchParams(location.search).get("emulated") ?? "quest3");
       steerByKeys(this.device, find("view"));
     }
-    await this.headset.enter(this.options);
+    try {
+      await this.headset.enter(this.options);
+    } catch (problem) {
+      find("vr-problem").textContent = `The headset cannot be entered: ${/** @type {Error} */ (problem).message}`;
+    }
   }
 
   /** @param {"hand" | "turn"} name @param {Record<string, string>} choices */
