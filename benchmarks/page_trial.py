@@ -38,7 +38,7 @@ from hthor.types import HUMAN, Goal, Placement, Pose, TaskSpec
 TRIAL, EXPERIMENTER = "live_trial.jpg", "live_experimenter.jpg"
 _HOME, _COUNTER = "juniper", "counter_top"
 _START, _ROBOT = Pose(x=2.3, y=8.9, yaw=-0.65), Pose(x=3.7, y=6.3, yaw=0.35, pitch=-0.1)
-_BY_COUNTER, _BY_FRIDGE, _FRIDGE = (4.5, 6.9), (4.25, 9.0), (5.43, 9.2, 1.0)
+BY_COUNTER, BY_FRIDGE, FRIDGE = (4.5, 6.9), (4.25, 9.0), (5.43, 9.2, 1.0)
 _AGENT = """
 from hthor.types import Action, Send, Wait
 
@@ -54,7 +54,7 @@ class Agent:
         return Action(say=Send(text="I found the apple here.", object="apple", position={place}))
 """
 """A robot that stands before the apple, and says so after four seconds."""
-_PAGE, _TILE, _DESK = (1200, 750), (600, 375), (1200, 740)
+PAGE, _TILE, _DESK = (1200, 750), (600, 375), (1200, 740)
 _COLUMNS, _GAP, _BAR, _PAPER, _INK = 2, 8, 26, 250, (60, 55, 50)
 _REST_MS, _TRIES, _PATIENCE_MS = 700, 20, 120_000
 _QUALITY, _DESK_QUALITY = 82, 86
@@ -70,7 +70,7 @@ def task() -> TaskSpec:
         kind="mobile_manipulation",
         human_start=_START,
         robot_starts=(_ROBOT,),
-        objects=(_apple(),),
+        objects=(apple(),),
         goal=Goal(target="apple", relation="in", destination="fridge"),
         instruction="Pick an apple and place it in a fridge.",
         house_sha256=plan.sha256,
@@ -79,7 +79,8 @@ def task() -> TaskSpec:
 
 
 @functools.cache
-def _apple() -> Placement:
+def apple() -> Placement:
+    """The apple, on a counter top."""
     thing = next(one for one in houses.load(_HOME).things if one.id == _COUNTER)
     top = next(rest for rest in supports_of(thing) if not rest.surface.inside)
     return place_on("apple", top, 0.45, 0.25, 0.0)
@@ -90,7 +91,7 @@ def session() -> Iterator[LiveServer]:
     """The server of a session with one trial, which is played in a thread."""
     with tempfile.TemporaryDirectory() as folder:
         agent = Path(folder) / "finder.py"
-        agent.write_text(_AGENT.replace("{place}", repr(_apple().position)), encoding="utf-8")
+        agent.write_text(_AGENT.replace("{place}", repr(apple().position)), encoding="utf-8")
         team = form_team(["scout"], [str(agent)])
         first = make_sessions("smoke", agent=team, humans="live", clock="concurrent")[0]
         trial = msgspec.structs.replace(first.trials[0], task=task(), index=0)
@@ -142,7 +143,7 @@ class Sheet:
 def play() -> tuple[Any, Any]:
     """Play the trial; the sheet of the person's page, and the experimenter's page in the middle of it."""
     with page_browser.browser() as browser, session() as server:
-        page = browser.new_page(viewport=dict(zip(("width", "height"), _PAGE, strict=True)))
+        page = browser.new_page(viewport=dict(zip(("width", "height"), PAGE, strict=True)))
         page.set_default_timeout(_PATIENCE_MS)
         page.goto(server.url(HUMAN))
         sheet, person = Sheet(page), Person(page)
@@ -150,7 +151,7 @@ def play() -> tuple[Any, Any]:
         sheet.take("before the trial: the task, and the keys")
         page.click("#go")
         person.until("page.head !== null && page.plays")
-        person.look_at(*_apple().position[:2], 1.3)
+        person.look_at(*apple().position[:2], 1.3)
         page.keyboard.down("w")
         page.wait_for_timeout(700)
         sheet.take("walking")
@@ -162,8 +163,8 @@ def play() -> tuple[Any, Any]:
         page.wait_for_selector("#map:not(.hidden)")
         page.wait_for_timeout(500)
         sheet.take("the map, once the message is confirmed")
-        person.walk_to(*_BY_COUNTER)
-        _face(person, _apple().position, "pick up the apple")
+        person.walk_to(*BY_COUNTER)
+        _face(person, apple().position, "pick up the apple")
         sheet.take("the apple is in reach, and is offered")
         page.evaluate("page.renderer.setPixelRatio(0.2)")  # leaves the processor to the other page
         desk = _experimenter(browser, server)
@@ -173,8 +174,8 @@ def play() -> tuple[Any, Any]:
         page.evaluate("page.keys.pitch = -0.8")
         page.wait_for_timeout(500)
         sheet.take("in hand")
-        person.walk_to(*_BY_FRIDGE)
-        _face(person, _FRIDGE, "open the fridge")
+        person.walk_to(*BY_FRIDGE)
+        _face(person, FRIDGE, "open the fridge")
         person.open_fridge()
         page.wait_for_selector("#offers :text('put the apple in the fridge')")
         page.wait_for_timeout(1000)

@@ -26,7 +26,7 @@ from typing import Any
 import cv2
 import numpy as np
 
-from benchmarks import page_looks, page_trial, readme_film
+from benchmarks import page_headset, page_looks, page_trial, readme_film
 from hthor import houses, jsonio, rules, tasks
 from hthor.eval.config import task_selection
 from hthor.eval.records.trial_record import TrialRecord
@@ -105,6 +105,7 @@ _OF_PAGES: dict[str, Callable[[Path], None]] = {
     LOOKS: page_looks.write,
     page_trial.TRIAL: page_trial.write,
     page_trial.EXPERIMENTER: page_trial.write,
+    page_headset.HEADSET: page_headset.write,
 }
 """Pictures of the page of `hthor live`, each with the function that writes it."""
 LADDER, _LADDER_OF = "savn_ladder.png", "hthor/agents/checkpoints/savn/eval.json"
@@ -261,7 +262,10 @@ def _code_of_live_pages(name: str) -> list[Path]:
     if name == LOOKS:
         drawing = (ROOT / "web" / "src" / part for part in ("eye.js", "house.js"))
         return [*code, *drawing, ROOT / "benchmarks" / "page_looks.py"]
-    own = (ROOT / "benchmarks" / f"{part}.py" for part in ("page_person", "page_trial"))
+    own = [ROOT / "benchmarks" / f"{part}.py" for part in ("page_person", "page_trial")]
+    if name == page_headset.HEADSET:
+        own += [ROOT / "benchmarks" / f"{part}.py" for part in ("page_headset", "page_wearer")]
+        own += sorted((ROOT / "web" / "src" / "headset").iterdir())
     return [*code, *sorted((ROOT / "web" / "src").glob("*.*")), *own]
 
 

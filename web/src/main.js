@@ -83,6 +83,7 @@ class Page {
   /** VR has begun or ended, or the house is hidden from the person in it, or no longer. */
   onHeadset() {
     this.worker.postMessage({ type: "headset", off: this.headset.off });
+    document.body.classList.toggle("in-vr", this.headset.session !== null);
     if (!this.headset.session) this.resize();
     else if (this.jpeg) this.headset.screens.takePicture(this.jpeg);
     this.show();

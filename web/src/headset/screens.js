@@ -17,12 +17,12 @@ const SENDER = "#b24a00";
  * @type {Record<string, [number, number, number, number]>}
  */
 const PLACES = {
-  task: [0.95, 0.24, 0, -24],
-  message: [0.52, 0.62, -27, -8],
-  map: [0.46, 0.52, 27, -8],
+  task: [0.95, 0.3, 0, -28],
+  message: [0.5, 0.5, -23, -9.5],
+  map: [0.46, 0.48, 23, -9.5],
   steps: [0.62, 0.66, 30, -8],
-  notice: [0.8, 0.12, 0, -14],
-  card: [0.95, 0.5, 0, -5],
+  notice: [0.8, 0.1, 0, -15],
+  card: [0.95, 0.46, 0, -12],
 };
 
 /**
@@ -80,7 +80,7 @@ export class Screens {
     const map = shown.map && { hints: shown.map.hints, number: this.maps };
     this.sheets.map.show(map, (sheet, what) => this.#map(sheet, what));
     this.sheets.steps.show(shown.steps, drawSteps);
-    this.sheets.notice.show(shown.notice, (sheet, words) => sheet.write(words, 40, SMALL_PX, { align: "center" }));
+    this.sheets.notice.show(shown.notice, (sheet, words) => sheet.write(words, 30, SMALL_PX, { align: "center" }));
     this.sheets.card.show(shown.card, drawCard);
   }
 
@@ -105,7 +105,7 @@ export class Screens {
     let top = sheet.write(sender, 24, LARGE_PX, { weight: 700, colour: SENDER }) + 6;
     if (pictured && this.picture) {
       const width = sheet.canvas.width - 52;
-      const height = Math.min(320, (width * this.picture.height) / this.picture.width);
+      const height = Math.min(200, (width * this.picture.height) / this.picture.width);
       const shown = (height * this.picture.width) / this.picture.height;
       sheet.pen.drawImage(this.picture, 26 + (width - shown) / 2, top, shown, height);
       top += height + 16;
@@ -136,7 +136,7 @@ export class Screens {
   /** @param {Sheet} sheet @param {any} what */
   #map(sheet, { hints }) {
     if (this.map) sheet.pen.drawImage(this.map, 23, 10, 460, 460);
-    sheet.hints(hints, 500, SMALL_PX);
+    sheet.hints(hints, 468, SMALL_PX);
   }
 }
 

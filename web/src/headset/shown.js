@@ -32,7 +32,9 @@ function task(page, hint) {
     time: practice ? "" : time,
     short: !page.now.phase && !practice && left <= 10,
     held: page.now.holding.replaceAll("_", " ").replaceAll("|", " "),
-    offers: page.offers.map((/** @type {[string, string]} */ [action, words]) => hint(action, words)),
+    offers: page.offers
+      .filter((/** @type {[string, string]} */ [action]) => action !== "drop") // which the side button does
+      .map((/** @type {[string, string]} */ [action, words]) => hint(action, words)),
   };
 }
 
