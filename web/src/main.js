@@ -67,6 +67,7 @@ class Page {
     /** Why time stands still. */ this.paused = "";
     /** What there is to try, in the practice. @type {any} */ this.steps = null;
     this.skipped = false;
+    this.later = null;
     /** The rating that is chosen with a headset. */ this.chosen = 4;
     /** What can be done here and now. @type {[string, string][]} */ this.offers = [];
     this.headset?.recentre();

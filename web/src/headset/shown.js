@@ -12,7 +12,7 @@ export function shownIn(page) {
   const plays = page.plays && !card.title;
   const { panel } = page;
   return {
-    task: page.begun && page.ended === null && page.house ? task(page, hint) : null,
+    task: page.begun && page.head && page.ended === null && page.house ? task(page, hint) : null,
     message: plays && panel ? message(panel, hint) : null,
     map: plays && page.shownMap ? { map: page.shownMap, hints: [hint("map", "hide")] } : null,
     steps: plays && page.steps ? steps(page.steps, controls) : null,
