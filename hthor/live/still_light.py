@@ -35,7 +35,8 @@ class _Heap(NamedTuple):
 def lit(surfaces: Sequence[Surface], light: BakedLight, most: int, *, whole: bool = False) -> list[Surface]:
     """The surfaces with their colours, and with more triangles where light needs them, up to about ``most``.
 
-    Without ``whole`` they lack the triangles that are inside of walls and other bodies. With it they are doors, which
+    Without ``whole`` they lack the triangles that are inside of walls and other bodies, and surfaces that have no others
+    are left out. With it they are doors, which
     are no darker than `_DOOR` anywhere: their inner sides are seen when they are open.
     """
     heap = _together(surfaces)
@@ -55,7 +56,8 @@ def lit(surfaces: Sequence[Surface], light: BakedLight, most: int, *, whole: boo
         more, unseen = _seen(light, heap, slice(first, None), through)
         shown, hidden = np.concatenate([shown, more]), np.concatenate([hidden, unseen])
     shown = hidden_corners.spread_light(shown, hidden, heap.rows[:, :3], heap.faces, heap.of)
-    return _apart(surfaces, heap, np.maximum(shown, _DOOR) if whole else shown)
+    found = _apart(surfaces, heap, np.maximum(shown, _DOOR) if whole else shown)
+    return [one for one in found if whole or len(one.faces)]
 
 
 def _seen(light: BakedLight, heap: _Heap, which: slice, through: Any) -> Any:
