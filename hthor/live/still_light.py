@@ -35,9 +35,9 @@ class _Heap(NamedTuple):
 def lit(surfaces: Sequence[Surface], light: BakedLight, most: int, *, whole: bool = False) -> list[Surface]:
     """The surfaces with their colours, and with more triangles where light needs them, up to about ``most``.
 
-    Without ``whole`` they lack the triangles that are inside of walls and other bodies, and surfaces that have no others
-    are left out. With it they are doors, which
-    are no darker than `_DOOR` anywhere: their inner sides are seen when they are open.
+    Without ``whole`` they lack the triangles that are inside of walls and other bodies, and surfaces without any others
+    are left out. With it they are doors, which are no darker than `_DOOR` anywhere: their inner sides are seen when they
+    are open.
     """
     heap = _together(surfaces)
     through = np.array([not one.opaque for one in surfaces])
