@@ -36,8 +36,8 @@ def lit(surfaces: Sequence[Surface], light: BakedLight, most: int, *, whole: boo
     """The surfaces with their colours, and with more triangles where light needs them, up to about ``most``.
 
     Without ``whole`` they lack the triangles that are inside of walls and other bodies, and surfaces without any others
-    are left out. With it they are doors, which are no darker than `_DOOR` anywhere: their inner sides are seen when they
-    are open.
+    are left out. With it they are doors, which are no darker than `_DOOR` anywhere: their inner sides are seen when
+    they are open.
     """
     heap = _together(surfaces)
     through = np.array([not one.opaque for one in surfaces])
