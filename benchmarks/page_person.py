@@ -49,14 +49,18 @@ class Person:
         """Walk there, and see whether that is where they are, once the server has answered; else walk again."""
         end = time.monotonic() + _PATIENCE_S
         while time.monotonic() < end:
-            self.page.evaluate(f"page.keys.yaw = Math.atan2({y} - page.motion.y, {x} - page.motion.x)")
-            self.page.keyboard.down("w")
-            self.page.evaluate(_WALK, [x, y])
-            self.page.keyboard.up("w")
+            self.go_straight(x, y)
             self.answered()
             if self.page.evaluate(f"Math.hypot(page.head.x - {x}, page.head.y - {y})") < _NEAR_M:
                 return
         raise AssertionError(f"the person does not come to {x}, {y}")
+
+    def go_straight(self, x: float, y: float) -> None:
+        """Walk until the page shows that the person is there, or has just passed it."""
+        self.page.evaluate(f"page.keys.yaw = Math.atan2({y} - page.motion.y, {x} - page.motion.x)")
+        self.page.keyboard.down("w")
+        self.page.evaluate(_WALK, [x, y])
+        self.page.keyboard.up("w")
 
     def answered(self) -> None:
         """Wait until the server has answered all that was steered so far."""

@@ -98,7 +98,7 @@ class LiveSeat:
         """The page is gone."""
         with self._lock:
             if self._page is page:
-                self._page, self._left_at, self._off_at = None, self._now(), None
+                self._page, self._left_at = None, self._now()
                 self._changed.notify_all()
 
     def steer(self, steering: Steering) -> None:

@@ -7,12 +7,12 @@ from pathlib import Path
 import pytest
 from live_browser import CHROMIUM
 from live_session import LiveSession
-from test_page import APPLE, opened, session
+from test_page import APPLE, check_played, opened, session
 
 from benchmarks.page_wearer import DEVICE, Wearer
 from hthor.live import server
 from hthor.types import HUMAN
-from hthor.types.events import Accepted, Declined, Displayed, Paused
+from hthor.types.events import Paused
 
 pytest.importorskip("starlette", reason="live sessions need an optional dependency: pip install 'hthor[live]'")
 pytest.importorskip("playwright", reason="pages are opened with an optional dependency: pip install 'hthor[browser]'")
@@ -34,7 +34,8 @@ def test_a_person_plays_a_delivery_and_a_search_with_a_headset(model: str, hand:
             search(person)
             person.until("page.ended !== null && page.rated")
         live.thread.join(60.0)
-        check(live)
+        check_played(live)
+        check_paused(live)
 
 
 def deliver(person: Wearer) -> None:
@@ -97,12 +98,6 @@ def rate(person: Wearer, value: int) -> None:
     person.press("accept")
 
 
-def check(live: LiveSession) -> None:
-    delivery, found = live.logs
-    assert delivery.met
-    assert found.met
-    assert [log.ratings for log in live.logs] == [{HUMAN: 6}, {HUMAN: 2}]
-    assert any(isinstance(event, Accepted) for event in delivery.events)
-    assert [event.reason for event in delivery.events if isinstance(event, Paused)] == ["the headset of human is off"]
-    assert any(isinstance(event, Declined) for event in found.events)
-    assert [event.on for event in delivery.events if isinstance(event, Displayed)][-2:] == [False, True]
+def check_paused(live: LiveSession) -> None:
+    reasons = [event.reason for event in live.logs[0].events if isinstance(event, Paused)]
+    assert reasons == ["the headset of human is off"]

@@ -1,8 +1,8 @@
 // What keys and mouse do. Every key is shown on screen, and can be changed.
 
 const STORE = "hthor-keys";
-const LOOK_PER_PIXEL = 0.0024; // [rad]
-const TILT_MOST = 1.35; // [rad]
+export const LOOK_PER_PIXEL = 0.0024; // [rad]
+export const TILT_MOST = 1.35; // [rad]
 
 /** Every action: its words, and its key unless the person chooses another. @type {Record<string, [string, string]>} */
 export const ACTIONS = {

@@ -8,11 +8,11 @@ import { shownIn } from "./headset/shown.js";
 import { House, outdoors } from "./house.js";
 import { Keys } from "./keys.js";
 import { OwnMotion } from "./motion.js";
-import { Panels } from "./panels.js";
+import { NOTICE_MS, Panels } from "./panels.js";
 
 const QUESTION = "How much do you trust your robot teammate?";
 const SCALE = 7;
-const NOTICE_MS = 2500;
+const SCALE_ENDS = "1: not at all   ·   7: completely";
 const SWITCH_MS = 200; // until the server offers what the other hand can do
 
 THREE.ColorManagement.enabled = false; // colours are computed as the pictures of hthor are
@@ -95,7 +95,7 @@ class Page {
     this.panels.reveal(this.begun && this.house !== null && this.ended === null);
     const { title, text, button, done, other, otherDone, help, rate } = this.card();
     this.headsetChoice.show(Boolean(button));
-    if (rate) this.panels.rating(title, done);
+    if (rate) this.panels.rating(title, text, rate, done);
     else this.panels.card(title ? { title, text, button, other } : null, done, otherDone);
     this.panels.steps(this.plays ? this.steps : null, () => this.skip());
     if (help) this.panels.help(this.trial.phases);
@@ -151,7 +151,7 @@ class Page {
       this.worker.postMessage({ type: "rate", trial, value });
       this.change({ rated: true });
     };
-    return { title: `${words} ${QUESTION}`, rate: true, done };
+    return { title: `${words} ${QUESTION}`, text: SCALE_ENDS, rate: SCALE, done };
   }
 
   /** Change the state, and what is shown with it. @param {object} state */
@@ -326,14 +326,12 @@ class Page {
       const still = !this.plays || this.now.busy; // as the world does with busy hands
       const drive = worn ? this.headset.rig.drive(worn.stick, speed, this.motion) : this.keys.drive(seconds, speed);
       if (still) drive.forward = drive.left = 0;
-      const before = { x: this.motion.x, y: this.motion.y };
       const number = this.motion.steer(drive, seconds);
-      if (worn) this.headset.rig.follow(this.motion.shown, this.motion, seconds, still ? 0 : this.motion.share);
-      this.motion.shown = { x: this.motion.x, y: this.motion.y };
+      if (worn) this.headset.rig.follow(this.motion, seconds, still ? 0 : this.motion.share);
       const hand = worn ? this.headset.hand : null;
       this.worker.postMessage({ type: "steer", number, drive, hand, frames: Math.round(this.fps) });
       this.panels.time(this.left, this.now.phase);
-      if (worn) this.headset.darken(Math.hypot(this.motion.x - before.x, this.motion.y - before.y) > 0.002, seconds);
+      if (worn) this.headset.darken(!still && Math.hypot(worn.stick.forward, worn.stick.left) > 0, seconds);
     }
     this.house?.step(seconds, this.inHand());
     if (worn) this.headset.screens.show(shownIn(this), this.headset.rig.head, seconds);

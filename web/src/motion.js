@@ -8,8 +8,6 @@ const MEMORY = 240;
 export class OwnMotion {
   constructor() {
     this.x = this.y = 0;
-    /** Where the person was in the last picture. */
-    this.shown = { x: 0, y: 0 };
     this.number = 0;
     /** How much of the commanded motion the house lets through, 0 to 1. */
     this.share = 1;
@@ -51,7 +49,6 @@ export class OwnMotion {
     const before = { x: this.x, y: this.y };
     if (this.base !== null) this.#measure(head);
     const first = this.base === null;
-    if (first) this.shown = { x: head.x, y: head.y };
     this.base = { x: head.x, y: head.y };
     this.sent = this.sent.filter((one) => one.number > head.steering);
     this.offX = this.offY = 0;

@@ -2,6 +2,10 @@
 
 import { ACTIONS, keyName } from "./keys.js";
 import { drawMap } from "./map.js";
+import { answers, countdown, nameOf, progress, stepsLeft } from "./words.js";
+
+/** How long a notice is shown. */
+export const NOTICE_MS = 4000;
 
 /** @param {string} id */
 const find = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
@@ -27,20 +31,20 @@ export class Panels {
   /** The task, and how far the session is. @param {any} trial */
   task(trial) {
     find("task").textContent = trial.instruction;
-    find("trial").textContent = trial.practice ? "Practice" : `${trial.trial + 1} of ${trial.trials}`;
+    find("trial").textContent = progress(trial);
     toggle("time", !trial.practice);
   }
 
   /** @param {number} seconds @param {string} phase */
   time(seconds, phase) {
-    const left = Math.max(0, Math.ceil(seconds));
-    find("time").textContent = phase ? phase : `${Math.floor(left / 60)}:${String(left % 60).padStart(2, "0")}`;
-    find("time").classList.toggle("short", !phase && left <= 10);
+    const { time, short } = countdown(seconds);
+    find("time").textContent = phase || time;
+    find("time").classList.toggle("short", !phase && short);
   }
 
   /** What is in hand. @param {string} name */
   holding(name) {
-    find("held").textContent = name ? `in hand: ${name.replaceAll("_", " ")}` : "hands free";
+    find("held").textContent = name ? `in hand: ${nameOf(name)}` : "hands free";
   }
 
   /** What can be done here. @param {[string, string][]} offers pairs of an action and its words */
@@ -54,7 +58,7 @@ export class Panels {
     if (panel === null) return;
     find("sender").textContent = panel.sender;
     find("words").textContent = panel.text;
-    const [yes, no] = panel.question ? ["yes", "no"] : ["confirm", "decline"];
+    const [yes, no] = answers(panel);
     find("answers").replaceChildren(
       this.#hint("accept", yes),
       this.#hint("decline", no),
@@ -88,8 +92,7 @@ export class Panels {
   steps(steps, skip) {
     toggle("steps", steps !== null);
     if (steps === null) return;
-    const left = steps.filter((step) => !step.done).length;
-    find("steps-left").textContent = left > 0 ? `Still to try: ${left}` : "All done. Please wait for the others.";
+    find("steps-left").textContent = stepsLeft(steps);
     find("steps-list").replaceChildren(
       ...steps.map(({ words, actions, done }) => {
         const row = document.createElement("li");
@@ -111,7 +114,7 @@ export class Panels {
     find("notice").textContent = words;
     toggle("notice", words !== "");
     clearTimeout(this.noticed);
-    if (words) this.noticed = setTimeout(() => toggle("notice", false), 4000);
+    if (words) this.noticed = setTimeout(() => toggle("notice", false), NOTICE_MS);
   }
 
   /**
@@ -140,10 +143,14 @@ export class Panels {
     if (card.button) button.focus();
   }
 
-  /** Ask for a rating from 1 to 7. @param {string} text @param {(value: number) => void} done */
-  rating(text, done) {
-    this.card({ title: text, text: "1: not at all   ·   7: completely" });
-    const buttons = Array.from({ length: 7 }, (_, k) => {
+  /**
+   * Ask for a rating.
+   * @param {string} title @param {string} text @param {number} scale its largest value; the smallest is 1
+   * @param {(value: number) => void} done
+   */
+  rating(title, text, scale, done) {
+    this.card({ title, text });
+    const buttons = Array.from({ length: scale }, (_, k) => {
       const button = document.createElement("button");
       button.textContent = String(k + 1);
       button.dataset.value = String(k + 1);

@@ -52,7 +52,7 @@ test("a message has its answers, and a question has other ones", () => {
 });
 
 test("a card takes the place of message and map, and a rating has seven values", () => {
-  const rating = { title: "Done!", rate: true, done: () => {} };
+  const rating = { title: "Done!", text: "", rate: 7, done: () => {} };
   const shown = shownIn(page({ plays: false, shownMap: {}, chosen: 6, card: () => rating }));
   assert.deepEqual([shown.message, shown.map], [null, null]);
   assert.deepEqual([shown.card.scale, shown.card.chosen], [7, 6]);

@@ -1,18 +1,20 @@
 // A headset that is not there: Meta's emulator of the Quest, with the keys and the mouse of the desk.
 
 import { XRDevice, metaQuest2, metaQuest3 } from "iwer";
+import { ACTIONS, LOOK_PER_PIXEL, TILT_MOST } from "../keys.js";
 
-const LOOK_PER_PIXEL = 0.0024; // [rad]
 const EYES_M = 1.6;
-const KEYS = {
-  KeyE: ["right", "squeeze"],
-  KeyF: ["right", "trigger"],
-  KeyY: ["right", "a-button"],
-  KeyN: ["right", "b-button"],
-  KeyM: ["left", "x-button"],
-  KeyP: ["left", "y-button"],
-  KeyR: ["right", "thumbstick"],
+/** The button that the key of an action at a desk presses. @type {Record<string, [string, string]>} */
+const BUTTONS = {
+  hand: ["right", "squeeze"],
+  door: ["right", "trigger"],
+  accept: ["right", "a-button"],
+  decline: ["right", "b-button"],
+  map: ["left", "x-button"],
+  panel: ["left", "y-button"],
+  ready: ["right", "thumbstick"],
 };
+const KEYS = Object.fromEntries(Object.entries(BUTTONS).map(([action, button]) => [ACTIONS[action][1], button]));
 
 /** Put an emulated headset where the browser would have its own. @param {string} name "quest2" or "quest3" */
 export function emulate(name) {
@@ -38,7 +40,7 @@ export function steerByKeys(device, view) {
     const down = event.type === "keydown";
     if (down) held.add(event.code);
     else held.delete(event.code);
-    const button = /** @type {Record<string, string[]>} */ (KEYS)[event.code];
+    const button = KEYS[event.code];
     if (button) device.controllers[button[0]].updateButtonValue(button[1], down ? 1 : 0);
     stick();
   };
@@ -47,7 +49,7 @@ export function steerByKeys(device, view) {
   view.addEventListener("mousemove", (event) => {
     if (document.pointerLockElement !== view) return;
     yaw -= LOOK_PER_PIXEL * event.movementX;
-    pitch = Math.max(-1.35, Math.min(1.35, pitch - LOOK_PER_PIXEL * event.movementY));
+    pitch = Math.max(-TILT_MOST, Math.min(TILT_MOST, pitch - LOOK_PER_PIXEL * event.movementY));
     const [sy, cy, sp, cp] = [Math.sin(yaw / 2), Math.cos(yaw / 2), Math.sin(pitch / 2), Math.cos(pitch / 2)];
     device.quaternion.set(cy * sp, sy * cp, -sy * sp, cy * cp);
   });

@@ -9,7 +9,7 @@ import { vignette } from "./vignette.js";
 
 /** The reference spaces in which a room can be told, best first. Only in the first the floor is known. */
 const SPACES = /** @type {const} */ (["local-floor", "local", "viewer"]);
-const HAND_COLOUR = { left: 0x4a6fa5, right: 0x4a6fa5 };
+const HAND_COLOUR = 0x4a6fa5;
 
 /** Whether this browser has a headset. */
 export async function hasHeadset() {
@@ -55,7 +55,7 @@ export class Headset {
     this.camera.add(this.shade);
     this.rig.room.add(this.camera);
     this.screens = new Screens();
-    this.hands = { left: handMesh(HAND_COLOUR.left), right: handMesh(HAND_COLOUR.right) };
+    this.hands = { left: handMesh(), right: handMesh() };
     this.rig.room.add(this.hands.left, this.hands.right);
     this.group.add(this.rig.group, this.screens.group);
     this.group.visible = true;
@@ -157,7 +157,7 @@ export class Headset {
     return { number, position, turn: now.multiply(this.grip.turn).toArray() };
   }
 
-  /** Darken the edge of the picture while the person is moved. @param {boolean} moves @param {number} seconds */
+  /** Darken the edge of the picture while the person is moved by stick. @param {boolean} moves @param {number} seconds */
   darken(moves, seconds) {
     const goal = moves && this.options.vignette ? 1 : 0;
     const { uniforms } = /** @type {THREE.ShaderMaterial} */ (this.shade.material);
@@ -187,10 +187,10 @@ async function firstSpace(session) {
   return "viewer"; // which every session has
 }
 
-/** A hand: a fist, and a pointer along which it acts. @param {number} colour */
-function handMesh(colour) {
+/** A hand: a fist. */
+function handMesh() {
   const made = new THREE.Group();
-  const fist = new THREE.Mesh(new THREE.SphereGeometry(0.04, 16, 12), new THREE.MeshBasicMaterial({ color: colour }));
+  const fist = new THREE.Mesh(new THREE.SphereGeometry(0.04, 16, 12), new THREE.MeshBasicMaterial({ color: HAND_COLOUR }));
   fist.scale.set(0.8, 0.8, 1.2);
   made.add(fist);
   made.visible = false;

@@ -17,7 +17,7 @@ export class HeadsetChoice {
   constructor(headset, onReady) {
     this.headset = headset;
     this.options = { ...USUAL, ...stored(), ...asked() };
-    this.there = this.open = false;
+    this.there = false;
     /** The emulated headset. @type {any} */
     this.device = null;
     find("enter-vr").onclick = () => this.#enter();

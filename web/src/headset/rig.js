@@ -20,6 +20,8 @@ export class Rig {
     this.head = { x: 0, y: 0, z: 0, yaw: 0, pitch: 0 };
     /** The velocity [m/s] with which the body follows a step in the room. */
     this.step = { x: 0, y: 0 };
+    /** Where the body was in the last picture [m]. */
+    this.body = { x: 0, y: 0 };
     this.pose = new THREE.Matrix4();
   }
 
@@ -52,6 +54,7 @@ export class Rig {
     this.turn(yaw - this.head.yaw);
     this.group.position.x += x - this.head.x;
     this.group.position.y += y - this.head.y;
+    this.body = { x, y };
     this.look(this.pose);
   }
 
@@ -82,15 +85,16 @@ export class Rig {
 
   /**
    * Take the room along with the body, less what the body only followed.
-   * @param {{x: number, y: number}} before @param {{x: number, y: number}} after where the body was and is
-   * @param {number} seconds between them @param {number} share of the steering that the house let through, 0 to 1
+   * @param {{x: number, y: number}} body where it is now [m] @param {number} seconds since the last picture
+   * @param {number} share of the steering that the house let through, 0 to 1
    */
-  follow(before, after, seconds, share) {
+  follow({ x, y }, seconds, share) {
     const { position } = this.group;
-    position.x += after.x - before.x - share * seconds * this.step.x;
-    position.y += after.y - before.y - share * seconds * this.step.y;
+    position.x += x - this.body.x - share * seconds * this.step.x;
+    position.y += y - this.body.y - share * seconds * this.step.y;
+    this.body = { x, y };
     this.look(this.pose);
-    const [dx, dy] = [this.head.x - after.x, this.head.y - after.y];
+    const [dx, dy] = [this.head.x - x, this.head.y - y];
     const apart = Math.hypot(dx, dy);
     if (apart > APART_M) {
       position.x -= dx * (1 - APART_M / apart);

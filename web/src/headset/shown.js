@@ -1,5 +1,7 @@
 // What the sheets before the eyes of a person with a headset show, from the state of the page.
 
+import { answers, countdown, nameOf, progress, stepsLeft } from "../words.js";
+
 /**
  * @param {any} page
  * @returns {import("./screens.js").Shown}
@@ -23,15 +25,14 @@ export function shownIn(page) {
 
 /** @param {any} page @param {(action: string, words: string) => [string, string]} hint */
 function task(page, hint) {
-  const left = Math.max(0, Math.ceil(page.left));
-  const time = page.now.phase || `${Math.floor(left / 60)}:${String(left % 60).padStart(2, "0")}`;
-  const { practice, trial, trials, instruction } = page.trial;
+  const { time, short } = countdown(page.left);
+  const { practice, instruction } = page.trial;
   return {
-    trial: practice ? "Practice" : `${trial + 1} of ${trials}`,
+    trial: progress(page.trial),
     instruction,
-    time: practice ? "" : time,
-    short: !page.now.phase && !practice && left <= 10,
-    held: page.now.holding.replaceAll("_", " ").replaceAll("|", " "),
+    time: practice ? "" : page.now.phase || time,
+    short: !page.now.phase && !practice && short,
+    held: nameOf(page.now.holding),
     offers: page.offers
       .filter((/** @type {[string, string]} */ [action]) => action !== "drop") // which the side button does
       .map((/** @type {[string, string]} */ [action, words]) => hint(action, words)),
@@ -40,16 +41,15 @@ function task(page, hint) {
 
 /** @param {any} panel @param {(action: string, words: string) => [string, string]} hint */
 function message(panel, hint) {
-  const [yes, no] = panel.question ? ["yes", "no"] : ["confirm", "decline"];
+  const [yes, no] = answers(panel);
   const hints = [hint("accept", yes), hint("decline", no), hint("panel", "hide")];
   return { message: panel.message, sender: panel.sender, text: panel.text, pictured: panel.picture, hints };
 }
 
 /** @param {any[]} all @param {import("./controls.js").Controls} controls */
 function steps(all, controls) {
-  const left = all.filter((step) => !step.done).length;
   return {
-    left: left > 0 ? `Still to try: ${left}` : "All done. Please wait for the others.",
+    left: stepsLeft(all),
     steps: all.map(({ words, actions, done }) => {
       const names = actions.map((/** @type {string} */ action) => controls.nameOf(action)).filter(Boolean);
       return { words: names.length > 0 ? `${words} (${names.join(", ")})` : words, done };
@@ -61,7 +61,7 @@ function steps(all, controls) {
 function question({ title, text, button, other, rate }, chosen, hint) {
   if (rate) {
     const hints = [/** @type {[string, string]} */ (["stick", "choose"]), hint("accept", "answer")];
-    return { title, text: "1: not at all   ·   7: completely", hints, scale: 7, chosen };
+    return { title, text, hints, scale: rate, chosen };
   }
   const hints = [...(button ? [hint("accept", button)] : []), ...(other ? [hint("decline", other)] : [])];
   return { title, text, hints, scale: 0, chosen: 0 };
