@@ -113,9 +113,9 @@ class Chaos:
             self._note(process)
 
     def fill(self, room: int) -> None:
-        """Run with a disk that has room for so many more bytes."""
-        size = self._log.stat().st_size if self._log.exists() else 0
-        limit = (size + room, size + room)
+        """Run with a disk that has room for so many more bytes than the whole lines of the log."""
+        lines = self._log.read_bytes() if self._log.exists() else b""
+        limit = (lines.rfind(b"\n") + 1 + room,) * 2  # a torn line makes way, so that its bytes are no room
         process = self._start(preexec=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, limit))
         self._note(process)
         self.report.full += 1
@@ -148,8 +148,10 @@ class Chaos:
                 process = self._start()
             if process.poll() is not None:
                 self._note(process)
-                process = None
-                idle, played = 0 if self.played() > played else idle + 1, self.played()
+                idle = 0 if self.played() > played else idle + 1
+                if process.returncode == 0:
+                    self._cut(trials)  # it was faster than what should have disturbed it
+                process, played = None, self.played()
                 if idle == _IDLE_MAX:
                     raise RuntimeError(f"the command ended {idle} times without a new trial: {self.report.ended[-1:]}")
             elif self.played() >= trials and family.children(process.pid):
@@ -176,6 +178,11 @@ class Chaos:
         if lines := self._log.read_bytes().splitlines(keepends=True):
             os.truncate(self._log, self._log.stat().st_size - self._chance.randint(1, len(lines[-1]) - 1))
             self.report.torn += 1
+
+    def _cut(self, trials: int) -> None:
+        """Leave the log with so many trials."""
+        lines = self._log.read_bytes().splitlines(keepends=True)
+        os.truncate(self._log, sum(map(len, lines[:trials])))
 
     def _note(self, process: subprocess.Popen[str]) -> None:
         """Wait for a command's end, and keep its last words when it failed."""
