@@ -1,9 +1,9 @@
-"""What a session with people at pages takes: `python -m benchmarks.live_session [--people 2] [--seconds 60]`.
+"""What sessions with people at pages take: ``python -m benchmarks.live_session [--people 2] [--sessions 1]``.
 
-Starts `hthor live` with a robot and clients that behave as pages do: each sends steering 60 times a second, walks in a
-circle and now and then acts. Measured on this machine, over the loopback: how long it takes from an input to the first
-frame that acknowledges it, how many bytes each client receives and sends, and how much of a core the server takes, with
-its robots beside it.
+Starts `hthor live` with a robot, as many times as there are sessions, and clients that behave as pages do: each sends
+steering 60 times a second, walks in a circle, and rates. Measured on this machine, over the loopback: how long it takes
+from an input to the first frame that acknowledges it, how many bytes each client receives and sends, how much of a core
+the servers take with their robots, which steps of the trials that ended were late, and how memory grows.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -26,10 +26,15 @@ from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import connect
 
 from benchmarks import table
+from hthor.eval.records.run_folder import RunFolder
 from hthor.live import wire
-from hthor.types import Drive
+from hthor.types import SUBTICKS, Drive
+from hthor.types.events import Note
 
 RATE_HZ, TURN_S = 60, 4.0
+_PATIENCE_S, _SETTLE_S = 900.0, 2.0
+_LOOKS = 20
+"""How often memory is looked at."""
 _URL = re.compile(r"open (http://\S+)/#(\S+)")
 _CLOCK = os.sysconf("SC_CLK_TCK")
 
@@ -104,6 +109,8 @@ class Client:
             self._tell(json.dumps({"type": "begin", "trial": message["trial"]}))
         elif message["type"] == "began":
             self.began.set()
+        elif message["type"] == "ended" and message["rate"]:
+            self._tell(json.dumps({"type": "rate", "trial": message["trial"], "value": 5}))
 
     def _acknowledge(self, number: int) -> None:
         """The first frame after an input: how long that took, for the newest input that it acknowledges."""
@@ -112,70 +119,96 @@ class Client:
             self._last = number
 
 
-def rows(people: int, seconds: float, agent: str) -> Iterator[table.Row]:
-    """Measure one session."""
-    with tempfile.TemporaryDirectory() as folder:
-        words = [
-            sys.executable,
-            "-m",
-            "hthor",
-            "live",
-            "--port",
-            "0",
-            "--agent",
-            agent,
-            "--out",
-            str(Path(folder) / "run"),
-        ]
-        words += [
-            "--humans",
-            ",".join(["live"] * people),
-            "--no-practice",
-            *(["--kind", "collect"] if people > 1 else []),
-        ]
-        server = subprocess.Popen(words, stderr=subprocess.PIPE, text=True)
-        try:
-            yield from _measure(server, people, seconds)
-        finally:
-            server.kill()
-            server.wait()
+def rows(sessions: int, people: int, seconds: float, agent: str) -> Iterator[table.Row]:
+    """Measure so many sessions at once."""
+    with tempfile.TemporaryDirectory() as name, ExitStack() as stack:
+        folders = [Path(name, f"run{number}") for number in range(sessions)]
+        servers = [_start(folder, people, agent) for folder in folders]
+        for server in servers:
+            stack.callback(_end, server)
+        clients = [client for server in servers for client in _clients(server, people)]
+        for client in clients:
+            if not client.began.wait(_PATIENCE_S):
+                raise RuntimeError(f"the trial did not begin within {_PATIENCE_S:.0f} s")
+        yield from _measure(servers, clients, seconds, f"{sessions} x {people} at pages")
+        for client in clients:
+            client.close()
+        yield from _late_steps(folders, f"{sessions} x {people} at pages")
 
 
-def _measure(server: subprocess.Popen[str], people: int, seconds: float) -> Iterator[table.Row]:
+def _start(folder: Path, people: int, agent: str) -> subprocess.Popen[str]:
+    """Start the command of a session."""
+    words = (
+        f"-m hthor live --port 0 --no-practice --agent {agent} --out {folder} --humans {','.join(['live'] * people)}"
+    )
+    kind = ["--kind", "collect"] if people > 1 else []
+    return subprocess.Popen([sys.executable, *words.split(), *kind], stderr=subprocess.PIPE, text=True)
+
+
+def _end(server: subprocess.Popen[str]) -> None:
+    server.kill()
+    server.wait()
+
+
+def _clients(server: subprocess.Popen[str], people: int) -> Iterator[Client]:
+    """Open the pages of a session."""
     assert server.stderr is not None
-    clients: list[Client] = []
     for line in server.stderr:
         if found := _URL.search(line):
-            clients.append(Client(*found.groups()))
-        if len(clients) == people:
+            yield Client(*found.groups())
+            people -= 1
+        if not people:
             break
     threading.Thread(target=server.stderr.read, daemon=True).start()
-    for client in clients:
-        if not client.began.wait(300.0):
-            raise RuntimeError("the trial did not begin within 300 s")
-    time.sleep(2.0)
+
+
+def _measure(
+    servers: Sequence[subprocess.Popen[str]], clients: Sequence[Client], seconds: float, part: str
+) -> Iterator[table.Row]:
+    time.sleep(_SETTLE_S)
     for client in clients:
         client.restart()
-    begin, before = time.perf_counter(), _cpu_s(server.pid)
-    time.sleep(seconds)
-    spent, after = time.perf_counter() - begin, _cpu_s(server.pid)
-    latencies = np.concatenate([client.latencies_s for client in clients])
-    part = f"{people} at pages"
-    yield table.Row(
-        part=part, what="input to acknowledged pose, median", value=1e3 * float(np.median(latencies)), unit="ms"
-    )
-    p95 = 1e3 * float(np.percentile(latencies, 95))
-    yield table.Row(part=part, what="input to acknowledged pose, 95 %", value=p95, unit="ms", bar=30.0)
-    for what, most, numbers in (
-        ("received by a client", 10.0, [client.received for client in clients]),
-        ("sent by a client", 10.0, [client.sent for client in clients]),
+    begin, before = time.perf_counter(), [_cpu_s(server.pid) for server in servers]
+    used = [_memory_mb(servers)]
+    for _ in range(_LOOKS):
+        time.sleep(seconds / _LOOKS)
+        used.append(_memory_mb(servers))
+    spent, after = time.perf_counter() - begin, [_cpu_s(server.pid) for server in servers]
+    latencies = 1e3 * np.concatenate([client.latencies_s for client in clients])
+    what = "input to acknowledged pose"
+    yield table.Row(part=part, what=f"{what}, median", value=float(np.median(latencies)), unit="ms")
+    yield table.Row(part=part, what=f"{what}, 95 %", value=float(np.percentile(latencies, 95)), unit="ms", bar=30.0)
+    for what, numbers in (
+        ("received by a client", [client.received for client in clients]),
+        ("sent by a client", [client.sent for client in clients]),
     ):
-        yield table.Row(part=part, what=what, value=max(numbers) / spent / 1e3, unit="kB/s", bar=most)
-    own, robots = (100.0 * (b - a) / spent for a, b in zip(before, after, strict=True))
-    yield table.Row(part=part, what="server", value=own, unit="% of a core", bar=25.0)
+        yield table.Row(part=part, what=what, value=max(numbers) / spent / 1e3, unit="kB/s", bar=10.0)
+    own, robots = 100.0 * (np.array(after) - before).sum(axis=0) / spent
+    yield table.Row(part=part, what="servers", value=own, unit="% of a core", bar=25.0 * len(servers))
     yield table.Row(part=part, what="robots' processes", value=robots, unit="% of a core")
-    for client in clients:
-        client.close()
+    yield table.Row(part=part, what="memory of a server", value=used[-1] / len(servers), unit="MB")
+    half = used[len(used) // 2]
+    yield table.Row(part=part, what="its growth in the second half", value=(used[-1] - half) / len(servers), unit="MB")
+
+
+def _late_steps(folders: Sequence[Path], part: str) -> Iterator[table.Row]:
+    """How many steps of the trials that have ended were late by more than a step."""
+    late = steps = 0.0
+    for folder in folders:
+        for record in RunFolder(folder).attempts():
+            steps += record.log.ticks * SUBTICKS
+            notes = [one for one in record.log.journal if isinstance(one, Note) and one.topic == "real time"]
+            late += float(notes[0].values["late"])
+    if steps:
+        yield table.Row(
+            part=part, what="late steps of trials that ended", value=100.0 * late / steps, unit="%", bar=1.0
+        )
+
+
+def _memory_mb(servers: Sequence[subprocess.Popen[str]]) -> float:
+    """Memory [MB] that the servers have for themselves."""
+    lines = (line for one in servers for line in Path(f"/proc/{one.pid}/smaps_rollup").read_text().splitlines())
+    return sum(float(line.split()[1]) for line in lines if line.startswith("Private_")) / 1e3
 
 
 def _cpu_s(pid: int) -> tuple[float, float]:
@@ -202,12 +235,13 @@ def _cpu_s(pid: int) -> tuple[float, float]:
 def main() -> None:
     """Measure and print."""
     options = argparse.ArgumentParser(prog="python -m benchmarks.live_session", description=__doc__.splitlines()[0])
+    options.add_argument("--sessions", type=int, default=1, help="how many sessions go on at once (%(default)s)")
     options.add_argument("--people", type=int, default=2, help="how many people are at pages (%(default)s)")
     options.add_argument("--seconds", type=float, default=60.0, help="how long to measure (%(default)s)")
     options.add_argument("--agent", default="frontier", help="the robot's agent (%(default)s)")
     options.add_argument("--json", action="store_true", help="JSON instead of a table")
     given = options.parse_args()
-    table.put(list(rows(given.people, given.seconds, given.agent)), as_json=given.json)
+    table.put(list(rows(given.sessions, given.people, given.seconds, given.agent)), as_json=given.json)
 
 
 if __name__ == "__main__":

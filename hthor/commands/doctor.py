@@ -29,15 +29,16 @@ def doctor(
     """Check that this machine can run evaluations, and say how to fix what does not work.
 
     Starts a guest on each level of isolation, draws a frame, plays a trial and compares it with the reference that
-    ships, and looks at versions, extras, disk, memory, cores and environment. Writes nothing and uses no network. Exit
-    code 5 when something that is needed does not work; a warning is not a failure.
+    ships, and looks at versions, extras, disk, memory, cores, environment, and what sessions with people need. Writes
+    nothing and uses no network. Exit code 5 when something that is needed does not work; a warning is not a failure.
     """
     if write_reference:
         _renew(json)
         return
     from hthor.eval.doctor import run_checks
+    from hthor.live.session_checks import check_session
 
-    found = run_checks.run_checks(out, require_isolation)
+    found = run_checks.run_checks(out, require_isolation, check_session())
     if json:
         output.put_json(found)
     else:

@@ -16,6 +16,8 @@ from hthor.eval.config.option import Option, make_record
 from hthor.eval.config.options import EvalOptions
 
 if TYPE_CHECKING:
+    from rich.console import Console
+
     from hthor.live.run import LiveRun
 
 _AS_IN_EVAL = (
@@ -104,10 +106,21 @@ def live(
     ) as run:
         for line in _welcome(run):
             tell(line)
+        for seat in run.seats if run.hosts else ():
+            _put_code(run.server.url(seat, run.hosts[0]), talk)
         done = run.play(partial(progress.make_watcher, talk, quiet=False, live=output.live()))
     results.show_run(talk if json else output.console(), done)
     if json:
         output.put_json(population_matrix.make_evaluation([(str(done.folder), done.result)]))
+
+
+def _put_code(address: str, talk: Console) -> None:
+    """Print an address for the camera of a headset or a telephone."""
+    from rich.text import Text
+
+    from hthor.live.qr_code import qr_code
+
+    talk.print(Text(qr_code(address), style="bright_white on black"), soft_wrap=True)
 
 
 def _welcome(run: LiveRun) -> list[str]:

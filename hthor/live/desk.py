@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Protocol
 
 from hthor.errors import HthorError
-from hthor.live import desk_wire
+from hthor.live import desk_wire, wire
 from hthor.live.desk_wire import (
     Eye,
     FromDesk,
@@ -100,6 +100,7 @@ class Desk:
         self._pages: list[DeskPage] = []
         self._lookers: list[DeskPage] = []  # pages that draw what seats see
         self._shown = _Shown()
+        self._asked = wire.HeadsetAsked(on=False)
 
     @property
     def events(self) -> tuple[Line, ...]:
@@ -114,7 +115,7 @@ class Desk:
         played = self._played()  # reads the log, for which the trial must not wait
         with self._lock:
             self._pages.append(page)
-            for message in (*self._shown.messages(), played):
+            for message in (*self._shown.messages(), played, self._asked):
                 page.send(message)
 
     def leave(self, page: DeskPage) -> None:
@@ -146,6 +147,8 @@ class Desk:
                 if not command.reason.strip():
                     raise HthorError("a trial is voided for a reason; write one.")
                 self._control.void = command.reason.strip()
+            case desk_wire.AskForHeadset():
+                self._ask_for_headset(command.on)
             case desk_wire.Adoption():
                 self._book.correct(command.trial, command.seat, command.adopted, command.reason)
                 self.show_played()
@@ -212,6 +215,7 @@ class Desk:
                     away_s=round(seat.absent_s(), 1) if seat else None,
                     round_trip_ms=round(1000.0 * seat.round_trip) if seat else None,
                     frames=round(seat.frames) if seat else None,
+                    vr=seat.vr if seat else None,
                 )
             )
         with self._lock:
@@ -250,6 +254,13 @@ class Desk:
             if gathering.missing:
                 raise HthorError(f"{', '.join(gathering.missing)}: not ready yet; start the trial when everybody is.")
             self._control.started = True
+
+    def _ask_for_headset(self, on: bool) -> None:
+        self._asked = wire.HeadsetAsked(on=on)
+        for seat in self._seats.values():
+            seat.show(self._asked)
+        with self._lock:
+            self._tell(self._asked)
 
     def _look(self, page: DeskPage, on: bool) -> None:
         with self._lock:

@@ -46,6 +46,12 @@ class Look(Struct, frozen=True, kw_only=True, tag="look"):
     on: bool
 
 
+class AskForHeadset(Struct, frozen=True, kw_only=True, tag="ask_for_headset"):
+    """Ask everybody at a page to enter VR, or no longer."""
+
+    on: bool
+
+
 class Adoption(Struct, frozen=True, kw_only=True, tag="adoption"):
     """Correct whether the person in a ``seat`` adopted a suggestion in a ``trial`` (its key); None excludes them."""
 
@@ -55,7 +61,7 @@ class Adoption(Struct, frozen=True, kw_only=True, tag="adoption"):
     reason: str
 
 
-FromDesk = Start | Pause | GoOn | Void | Repeat | Look | Adoption
+FromDesk = Start | Pause | GoOn | Void | Repeat | Look | AskForHeadset | Adoption
 """What the experimenter may do."""
 
 
@@ -112,7 +118,7 @@ class Gathering(Struct, frozen=True, kw_only=True, tag="gathering"):
 
 class Person(Struct, frozen=True, kw_only=True):
     """Where a body is [m], where it looks [rad], and how its page is: away for so long [s], the time of a message there
-    and back [ms], and the pictures that it draws [1/s]; None without a page.
+    and back [ms], the pictures that it draws [1/s], and whether the person is in VR; None without a page.
     """
 
     seat: str
@@ -122,6 +128,7 @@ class Person(Struct, frozen=True, kw_only=True):
     away_s: float | None
     round_trip_ms: int | None
     frames: int | None
+    vr: bool | None
 
 
 class Watch(Struct, frozen=True, kw_only=True, tag="watch"):
@@ -182,7 +189,7 @@ class Refused(Struct, frozen=True, kw_only=True, tag="refused"):
     words: str
 
 
-ToDesk = Plan | Gathering | Watch | Ways | Happened | Played | Refused
+ToDesk = Plan | Gathering | Watch | Ways | Happened | Played | Refused | wire.HeadsetAsked
 """What the server sends."""
 
 _FROM_DESK: msgspec.json.Decoder[FromDesk] = msgspec.json.Decoder(FromDesk)

@@ -107,6 +107,8 @@ class RealTimeLoop:
             clock.close()
         for seat in self._seats.values():
             seat.note(episode.tick, "real time", **pacer.figures())
+            if seat.vr_share > 0.0:
+                seat.note(episode.tick, "in VR", share=round(seat.vr_share, 3))
         rate = bool(robots) and not episode.voided and practice is None
         self._show_end(episode, rate=rate)
         return finish(episode, humans) if practice is None else episode.log()

@@ -49,6 +49,7 @@ class LiveSeat:
 
     Attributes:
         round_trip: [s] of a message to the page and back. frames: [1/s] pictures that the page draws.
+        vr: whether the person is in VR.
     """
 
     def __init__(self, seat: str, now: Callable[[], float] = time.monotonic) -> None:
@@ -72,6 +73,8 @@ class LiveSeat:
         self._places: dict[int, bytes] = {}  # where everything that moves is, by its number
         self._drive = Drive()
         self.round_trip = self.frames = 0.0
+        self.vr = False
+        self._steps = self._vr_steps = 0  # of this trial
         self._notes: list[Note] = []
         self._last: Observation | None = None
         self._trial: int | None = None
@@ -82,7 +85,7 @@ class LiveSeat:
     def join(self, page: Page) -> Page | None:
         """Take a page, and show it how things are; the page that was there before, if there was one."""
         with self._lock:
-            before, self._page, self._off_at = self._page, page, None
+            before, self._page, self._off_at, self.vr = self._page, page, None, False
             page.send(wire.Welcome(seat=self.seat, acts=self._acted, server=self._server))
             for message in self._screen.values():
                 page.send(message)
@@ -117,7 +120,7 @@ class LiveSeat:
 
     def ping(self, ping: wire.Ping) -> None:
         """Note how the page and its connection are."""
-        self.round_trip, self.frames = ping.round_trip, ping.frames
+        self.round_trip, self.frames, self.vr = ping.round_trip, ping.frames, ping.vr
         with self._lock:
             if not ping.off:
                 self._off_at = None
@@ -208,6 +211,7 @@ class LiveSeat:
         with self._lock:
             self._acts.clear()
             self._notes, self._drive, self._picture = [], Drive(), None
+            self._steps = self._vr_steps = 0
         self._last = None
 
     def frame(self, controls: Controls) -> None:
@@ -217,6 +221,8 @@ class LiveSeat:
             acts = tuple(self._acts)
             self._acts.clear()
             steering = self._steering.drive
+        self._steps += 1
+        self._vr_steps += self.vr
         drive = steering if fresh else Drive(yaw=self._drive.yaw, pitch=self._drive.pitch)
         if drive != self._drive or (controls.tick, controls.step) == (0, 0):
             self._drive = drive
@@ -229,6 +235,11 @@ class LiveSeat:
     def note(self, tick: int, topic: str, **values: float | str) -> None:
         """Note something about the session in the journal of this trial."""
         self._notes.append(Note(tick=tick, seat=self.seat, topic=topic, values=dict(values)))
+
+    @property
+    def vr_share(self) -> float:
+        """For which part of the trial so far the person has been in VR."""
+        return self._vr_steps / max(1, self._steps)
 
     @property
     def journal(self) -> tuple[Note, ...]:

@@ -91,12 +91,14 @@ class Ping(Struct, frozen=True, kw_only=True, tag="ping"):
 
     Attributes:
         frames: [1/s] how many pictures the page draws. round_trip: [s] of the last ping.
-        off: whether the person is in VR, but has taken the headset off, or its system's menu hides the house.
+        vr: whether the person is in VR. off: whether they have taken the headset off, its system's menu hides the
+            house, or they have left VR and not said that they go on at the desk.
     """
 
     sent: float
     frames: float = 0.0
     round_trip: float = 0.0
+    vr: bool = False
     off: bool = False
 
 
@@ -194,6 +196,12 @@ class Step(Struct, frozen=True, kw_only=True):
     words: str
     actions: tuple[str, ...]
     done: bool = False
+
+
+class HeadsetAsked(Struct, frozen=True, kw_only=True, tag="headset_asked"):
+    """Whether the experimenter asks people to enter VR, which browsers let only the person do."""
+
+    on: bool
 
 
 class Steps(Struct, frozen=True, kw_only=True, tag="steps"):
@@ -295,6 +303,7 @@ ToPage = (
     Welcome
     | Problem
     | TrialAhead
+    | HeadsetAsked
     | Steps
     | Began
     | Now

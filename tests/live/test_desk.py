@@ -11,7 +11,7 @@ from live_client import ScriptedPerson
 from live_session import LiveSession
 
 from hthor.types import HUMAN
-from hthor.types.events import Displayed
+from hthor.types.events import Displayed, Note
 
 pytest.importorskip("starlette", reason="live sessions need an optional dependency: pip install 'hthor[live]'")
 
@@ -178,3 +178,24 @@ def test_somebody_at_a_seat_cannot_do_what_the_experimenter_does(live: LiveSessi
         log = live.log()
     assert not log.voided
     assert not any(event.kind == "paused" for event in log.events)
+
+
+def test_the_experimenter_asks_for_vr_and_sees_who_is_in_it(live: LiveSession) -> None:
+    with desk_of(live) as desk:
+        desk.wait_for("headset_asked", on=False)
+        with live.person() as person:
+            begin(person)
+            desk.wait_until(lambda: _person(desk).get("vr") is False)
+            desk.send({"type": "ask_for_headset", "on": True})
+            for page in (person, desk):
+                page.wait_for("headset_asked", on=True)
+        with desk_of(live) as later, live.person() as again:
+            for page in (later, again):
+                page.wait_for("headset_asked", on=True)
+            again.send({"type": "ping", "sent": 1.0, "vr": True})
+            desk.wait_until(lambda: _person(desk).get("vr") is True)
+            again.wait_for("ended")
+            again.send({"type": "rate", "trial": 0, "value": 4})
+            log = live.log()
+    (share,) = [one.values["share"] for one in log.journal if isinstance(one, Note) and one.topic == "in VR"]
+    assert 0.0 < float(share) < 1.0

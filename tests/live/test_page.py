@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -74,12 +74,12 @@ def live(tmp_path: Path) -> Iterator[LiveSession]:
 
 
 @contextmanager
-def session(folder: Path, **options: Any) -> Iterator[LiveSession]:
-    """Both tasks in one room, in real time."""
+def session(folder: Path, played: Sequence[TaskSpec] = (), **options: Any) -> Iterator[LiveSession]:
+    """These tasks, or both, in one room, in real time."""
     plan = house()
     rooms = msgspec.structs.replace(plan, things=tuple(one for one in plan.things if one.id != "chair|1"))
     world = World(rooms, robots=["scout"], objects=(("apple", "apple"), ("mug", "mug")))
-    made = LiveSession(folder, tasks(), world, faster=1.0, **options)
+    made = LiveSession(folder, played or tasks(), world, faster=1.0, **options)
     try:
         yield made
     finally:
@@ -127,11 +127,32 @@ def play_until_stopped(run: LiveRun) -> None:
 
 
 @pytest.mark.nightly
-@pytest.mark.parametrize("round_trip_ms", [100, 200, 300])
+@pytest.mark.parametrize("round_trip_ms", [100, 200, 300, 500])
 def test_delays_and_jitter_spoil_neither(round_trip_ms: int, live: LiveSession) -> None:
     with Relay(urlsplit(live.server.address).port, round_trip_ms / 1000) as slow:  # type: ignore[arg-type]
         largest = play(live, slow.address)
     assert round_trip_ms > 200 or largest < 0.5
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize(
+    ("gap_s", "every_s"), [pytest.param(0.25, 2.0, id="stalls"), *((gap, 10.0) for gap in (1.0, 2.0, 5.0))]
+)
+def test_gaps_of_the_network_spoil_neither(gap_s: float, every_s: float, live: LiveSession) -> None:
+    over = threading.Event()
+    with Relay(urlsplit(live.server.address).port, 0.02) as network:  # type: ignore[arg-type]
+
+        def disturb() -> None:
+            while not over.wait(every_s):
+                network.hold(gap_s)
+
+        disturber = threading.Thread(target=disturb)
+        disturber.start()
+        try:
+            play(live, network.address)
+        finally:
+            over.set()
+            disturber.join()
 
 
 def play(live: LiveSession, address: str) -> float:

@@ -23,6 +23,7 @@ class Relay:
         self._port, self._delay, self._jitter = port, round_trip_s / 2, jitter
         self._draw = random.Random(0)
         self.passed = [0, 0]
+        self._held_until = 0.0  # on the clock of the loop
         self._loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=self._loop.run_forever, daemon=True)
 
@@ -40,6 +41,21 @@ class Relay:
         self._loop.call_soon_threadsafe(self._loop.stop)
         self._thread.join()
         self._loop.close()
+
+    def hold(self, seconds: float) -> None:
+        """Let nothing through for so long, as a network does that is gone for a while."""
+        self._loop.call_soon_threadsafe(self._hold, seconds)
+
+    def cut(self) -> None:
+        """Close every connection; the next ones are accepted as before."""
+        self._loop.call_soon_threadsafe(self._cut)
+
+    def _hold(self, seconds: float) -> None:
+        self._held_until = self._loop.time() + seconds
+
+    def _cut(self) -> None:
+        for sink in self._sinks:
+            sink.close()
 
     def _run(self, work: Any) -> None:
         asyncio.run_coroutine_threadsafe(work, self._loop).result(10.0)
@@ -85,7 +101,8 @@ class Relay:
     async def _give(self, pieces: asyncio.Queue[tuple[float, bytes]], sink: asyncio.StreamWriter, way: int) -> None:
         while True:
             due, data = await pieces.get()
-            await asyncio.sleep(max(0.0, due - self._loop.time()))
+            while (wait := max(due, self._held_until) - self._loop.time()) > 0.0:
+                await asyncio.sleep(wait)
             if not data:
                 sink.close()
                 return

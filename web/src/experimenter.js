@@ -43,6 +43,8 @@ class Desk {
     /** What the seats see, while that is shown. @type {Views | null} */
     this.views = null;
     find("start").onclick = () => this.tell({ type: "start" });
+    this.asked = false;
+    find("ask-vr").onclick = () => this.tell({ type: "ask_for_headset", on: !this.asked });
     find("look").onclick = () => this.look(this.views === null);
     find("pause").onclick = () => this.tell({ type: "pause", reason: reason() });
     find("go-on").onclick = () => this.tell({ type: "go_on" });
@@ -126,6 +128,12 @@ class Desk {
     if (frame !== null && "moved" in frame) this.views?.take(frame.moved);
   }
 
+  /** @param {any} message */
+  on_headset_asked({ on }) {
+    this.asked = on;
+    find("ask-vr").textContent = on ? "Ask for VR no longer" : "Ask for VR";
+  }
+
   /** Show what the seats see, or no longer. @param {boolean} on */
   look(on) {
     find("look").textContent = on ? "Hide what everybody sees" : "Show what everybody sees";
@@ -156,7 +164,8 @@ class Desk {
       const page = one.away_s === null ? "" : one.away_s > 0 ? `away for ${one.away_s} s` : "there";
       const time = one.round_trip_ms === null ? "" : `${one.round_trip_ms} ms`;
       const frames = one.frames === null ? "" : `${one.frames} pictures/s`;
-      row.append(...[one.seat, page, time, frames].map((words) => make("td", words)));
+      const where = one.vr === null ? "" : one.vr ? "in VR" : "at a desk";
+      row.append(...[one.seat, page, where, time, frames].map((words) => make("td", words)));
       return row;
     });
     find("people").replaceChildren(...rows);

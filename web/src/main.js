@@ -13,6 +13,7 @@ import { NOTICE_MS, Panels } from "./panels.js";
 const QUESTION = "How much do you trust your robot teammate?";
 const SCALE = 7;
 const SCALE_ENDS = "1: not at all   ·   7: completely";
+const ASKED = "The experimenter asks you to enter VR. ";
 const SWITCH_MS = 200; // until the server offers what the other hand can do
 
 THREE.ColorManagement.enabled = false; // colours are computed as the pictures of hthor are
@@ -42,7 +43,12 @@ class Page {
     /** @type {import("./wire.js").Moved[]} */
     this.early = []; // what moved before the house was there
     this.seat = this.problem = "";
+    /** How often the page has joined the session. */ this.joined = 0;
     this.over = this.lost = false;
+    /** Whether the experimenter asks for VR, and the person has not said that they stay at the desk. */
+    this.vrAsked = false;
+    /** Whether the person has left VR in a trial, and has not said that they go on at the desk. */
+    this.vrLeft = false;
     this.forget();
     this.worker = new Worker(new URL("socket.js", document.baseURI), { type: "module" });
     this.worker.onmessage = ({ data }) => this.receive(data);
@@ -81,11 +87,24 @@ class Page {
     return this.begun && this.house !== null && this.ended === null && !still;
   }
 
+  /** What the experimenter asks of a person at the desk, in words. */
+  get asked() {
+    return this.vrAsked && !this.headset.session ? ASKED : "";
+  }
+
+  /** Go on without a headset. */
+  stayAtDesk() {
+    this.vrAsked = this.vrLeft = false;
+    this.onHeadset();
+  }
+
   /** VR has begun or ended, or the house is hidden from the person in it, or no longer. */
   onHeadset() {
-    this.worker.postMessage({ type: "headset", off: this.headset.off });
-    document.body.classList.toggle("in-vr", this.headset.session !== null);
-    if (!this.headset.session) this.resize();
+    const vr = this.headset.session !== null;
+    this.vrLeft = !vr && this.begun && this.ended === null && (this.vrLeft || document.body.classList.contains("in-vr"));
+    this.worker.postMessage({ type: "headset", vr, off: this.headset.off || this.vrLeft });
+    document.body.classList.toggle("in-vr", vr);
+    if (!vr) this.resize();
     else if (this.jpeg) this.headset.screens.takePicture(this.jpeg);
     this.show();
   }
@@ -116,11 +135,14 @@ class Page {
     if (this.house === null) {
       return { title: this.trial.practice ? "Practice" : "The next task", text: "The house is being loaded …" };
     }
+    const desk = { button: "Go on at the desk", done: () => this.stayAtDesk() };
+    if (this.begun && this.vrLeft) return { ...desk, title: "You have left VR", text: "Enter it again, or go on here." };
     if (this.begun && this.paused) return { title: "Paused", text: this.paused };
     if (this.begun && this.keysShown) {
       const done = () => this.change({ keysShown: false });
       return { title: "Keys", text: "Press a row to change its key.", button: "Go on", done, help: true };
     }
+    if (this.begun && this.asked) return { ...desk, title: "Please put on the headset", text: this.asked };
     if (this.begun) return {};
     if (this.ready) return { title: task, text: "The trial begins when everybody is ready …" };
     const done = () => {
@@ -128,11 +150,12 @@ class Page {
       this.change({ ready: true });
     };
     if (this.trial.practice) {
-      const text = "Try each control once, in any order, before the first task. A list shows what is left.";
+      const text = `${this.asked}Try each control once, in any order, before the first task. A list shows what is left.`;
       const [other, otherDone] = ["Skip the practice", () => this.skip()];
       return { title: "Practice", text, button: "Begin", done, other, otherDone, help: true };
     }
-    return { title: task, text: `You have ${this.trial.time_limit} seconds.`, button: "Begin", done, help: true };
+    const text = `${this.asked}You have ${this.trial.time_limit} seconds.`;
+    return { title: task, text, button: "Begin", done, help: true };
   }
 
   /** Leave the practice out. */
@@ -175,6 +198,7 @@ class Page {
 
   /** @param {any} message */
   on_welcome({ seat }) {
+    this.joined += 1;
     this.change({ seat, lost: false });
   }
 
@@ -212,6 +236,11 @@ class Page {
   /** @param {any} message */
   on_steps({ steps, skipped }) {
     this.change({ steps, skipped: this.skipped || skipped });
+  }
+
+  /** @param {any} message */
+  on_headset_asked({ on }) {
+    this.change({ vrAsked: on });
   }
 
   on_began() {

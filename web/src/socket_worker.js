@@ -15,7 +15,8 @@ let steered = 0;
 let acted = 0;
 let frames = 0;
 let roundTrip = 0;
-/** Whether the person is in VR, but does not see the house. */
+/** Whether the person is in VR, and whether they do not see the house there. */
+let vr = false;
 let off = false;
 /** Acts that the server has not acknowledged, oldest first. @type {{number: number}[]} */
 let pending = [];
@@ -23,7 +24,7 @@ let pending = [];
 /** @param {object} message */
 const tell = (message) => socket?.readyState === WebSocket.OPEN && socket.send(JSON.stringify(message));
 
-const ping = () => tell({ type: "ping", sent: performance.now(), frames, round_trip: roundTrip, off });
+const ping = () => tell({ type: "ping", sent: performance.now(), frames, round_trip: roundTrip, vr, off });
 
 function connect() {
   const scheme = self.location.protocol === "https:" ? "wss" : "ws";
@@ -48,6 +49,7 @@ function onWords(message) {
     acted = Math.max(acted, message.acts);
     pending = pending.filter((act) => act.number > message.acts);
     pending.forEach(tell);
+    ping();
   } else if (message.type === "acknowledged") {
     pending = pending.filter((act) => act.number > message.act);
   } else if (message.type === "pong") {
@@ -76,7 +78,7 @@ self.onmessage = ({ data }) => {
     frames = data.frames;
     if (socket?.readyState === WebSocket.OPEN) socket.send(encodeSteering(steered, data.drive, data.hand ?? null));
   } else if (data.type === "headset") {
-    off = data.off;
+    ({ vr, off } = data);
     ping();
   } else if (data.type === "act") {
     acted += 1;

@@ -16,6 +16,7 @@ _SCORING = ("mujoco", "dm-control", "numba", "numpy")
 _EXTRAS = {
     "cluster": "Ray, for --engine ray",
     "calibration": "for hthor calibrate",
+    "live": "for hthor live",
     "torch": "for robots that learn",
     "assets": "for hthor assets build",
     "priors": "for hthor priors build",

@@ -3,7 +3,7 @@
 import os
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TypeVar
@@ -12,7 +12,7 @@ import msgspec
 
 from hthor import code_identity
 from hthor.eval.doctor import hardware, isolation_levels, libraries, rendering, reproducibility
-from hthor.eval.doctor.check_result import DoctorReport
+from hthor.eval.doctor.check_result import CheckResult, DoctorReport
 from hthor.eval.runner import worker
 from hthor.guest.confinement import check_level
 
@@ -21,12 +21,13 @@ _LIMIT_S = 600.0
 _Answer = TypeVar("_Answer")
 
 
-def run_checks(runs: Path, required: str = "L1") -> DoctorReport:
+def run_checks(runs: Path, required: str = "L1", more: Sequence[CheckResult] = ()) -> DoctorReport:
     """Check everything.
 
     Args:
         runs: the folder for runs; it need not exist.
         required: the lowest acceptable level of isolation.
+        more: checks of parts of hthor that this one does not know.
 
     Raises:
         UnknownName: when ``required`` is not an isolation level.
@@ -42,6 +43,7 @@ def run_checks(runs: Path, required: str = "L1") -> DoctorReport:
             *hardware.check_hardware(runs),
             *reproducibility.check_reproducibility(course.answer(reproducibility.TrialFingerprint)),
             *rendering.check_rendering(picture.answer(rendering.RenderingProbe)),
+            *more,
         ]
     return DoctorReport(well=all(one.status != "fail" for one in findings), findings=tuple(findings))
 
