@@ -3,6 +3,11 @@
 // `hthor live --agent socket` prints the address. The robot looks round, goes on where there is room, and sends people
 // a message with the place of the target when it sees it. See docs/wire.md.
 
+if (typeof WebSocket === "undefined") {
+  console.error(`This needs Node.js 22 or newer, which has WebSockets; this is ${process.version}.`);
+  process.exit(2);
+}
+
 function pack(value) {
   const parts = [];
   const head = (code, size) => parts.push(Uint8Array.of(code, size >> 24, size >> 16, size >> 8, size));

@@ -29,7 +29,7 @@ def shown(arguments: Sequence[str], groups: Collection[str] = ()) -> Iterator[No
     Args:
         groups: names of command groups, whose commands have two words.
     """
-    if "--quiet" in arguments or "serve" in arguments[:2] or not arguments:
+    if "--quiet" in arguments or "serve" in arguments[:2] or arguments[:1] in ([], ["live"]):  # they wait for people
         yield
         return
     words = arguments[: 2 if arguments[0] in groups else 1]

@@ -24,6 +24,7 @@ from hthor.live.desk_wire import (
     Plan,
     PlayedTrial,
     ToDesk,
+    TrialOver,
     Watch,
     Ways,
 )
@@ -80,6 +81,7 @@ class _Shown:
     events: list[Line] = field(default_factory=list)
     ways: dict[str, list[Vec2]] = field(default_factory=dict)
     watch: Watch | None = None
+    end: TrialOver | None = None
     places: dict[int, bytes] = field(default_factory=dict)
     moved: dict[int, bytes] = field(default_factory=dict)
 
@@ -87,7 +89,14 @@ class _Shown:
         """What a page that joins has missed."""
         if self.plan is None:
             return []
-        so_far = (self.plan, self.gathering, Happened(events=tuple(self.events)), Ways(ways=self.ways), self.watch)
+        so_far = (
+            self.plan,
+            self.gathering,
+            Happened(events=tuple(self.events)),
+            Ways(ways=self.ways),
+            self.watch,
+            self.end,
+        )
         return [message for message in so_far if message is not None]
 
 
@@ -144,9 +153,7 @@ class Desk:
                 self._book.repeat(command.trial, command.reason)
                 self.show_played()
             case desk_wire.Void():
-                if not command.reason.strip():
-                    raise HthorError("a trial is voided for a reason; write one.")
-                self._control.void = command.reason.strip()
+                self._void(command.reason.strip())
             case desk_wire.AskForHeadset():
                 self._ask_for_headset(command.on)
             case desk_wire.Adoption():
@@ -175,7 +182,7 @@ class Desk:
                 time_limit=trial.task.time_limit,
                 seats=tuple(episode.seats),
                 rooms=rooms,
-                starts=self._control.experimenter_starts,
+                starts=self._control.experimenter_starts and trial.index != wire.PRACTICE,
                 file=file,
                 eyes=tuple(
                     Eye(seat=seat, height=bodies[seat].eye, own=own[seat], fov=self._fov(seat, bodies[seat]))
@@ -191,16 +198,21 @@ class Desk:
         ready = tuple(name for name, seat in self._seats.items() if seat.is_ready)
         missing = tuple(name for name in self._seats if name not in ready)
         with self._lock:
-            begun = not missing and (self._control.started or not self._control.experimenter_starts)
+            waits = self._shown.plan is not None and self._shown.plan.starts
+            begun = not missing and (self._control.started or not waits)
             gathering = Gathering(ready=ready, missing=missing, begun=begun)
             if gathering != self._shown.gathering:
                 self._shown.gathering = gathering
                 self._tell(gathering)
         return begun
 
-    def watch(self, episode: Episode, pacer: Pacer) -> None:
-        """Show where everybody is."""
-        if episode.tick % _EVERY_TICKS and not self._control.paused:
+    def watch(self, episode: Episode, pacer: Pacer | None = None, paused: str = "") -> None:
+        """Show where everybody is, and how their pages are.
+
+        Args:
+            pacer: of the trial, once it has begun. paused: why time stands still, if it does.
+        """
+        if episode.tick % _EVERY_TICKS and not paused:
             return
         poses = {seat: episode.world.pose(seat) for seat in episode.seats}
         people = []
@@ -224,9 +236,15 @@ class Desk:
                 if way[-1:] != [(one.x, one.y)]:
                     way.append((one.x, one.y))
             self._shown.watch = Watch(
-                tick=episode.tick, paused=self._control.paused, factor=pacer.factor, people=tuple(people)
+                tick=episode.tick, paused=paused, factor=pacer.factor if pacer else 1.0, people=tuple(people)
             )
             self._tell(self._shown.watch)
+
+    def end(self, *, met: bool, voided: str) -> None:
+        """Show that the trial is over."""
+        with self._lock:
+            self._shown.end = TrialOver(met=met, voided=voided)
+            self._tell(self._shown.end)
 
     def show_frame(self, tick: int, step: int, moved: Mapping[int, bytes]) -> None:
         """Show pages that look what has moved since the last frame, ten times a second."""
@@ -254,6 +272,15 @@ class Desk:
             if gathering.missing:
                 raise HthorError(f"{', '.join(gathering.missing)}: not ready yet; start the trial when everybody is.")
             self._control.started = True
+
+    def _void(self, reason: str) -> None:
+        if not reason:
+            raise HthorError("a trial is voided for a reason; write one.")
+        with self._lock:
+            gathering = self._shown.gathering
+            if gathering is None or not gathering.begun or self._shown.end is not None:
+                raise HthorError("no trial is going on; one that is over is voided in the list of trials.")
+        self._control.void = reason
 
     def _ask_for_headset(self, on: bool) -> None:
         self._asked = wire.HeadsetAsked(on=on)

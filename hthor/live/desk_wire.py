@@ -140,6 +140,13 @@ class Watch(Struct, frozen=True, kw_only=True, tag="watch"):
     people: tuple[Person, ...]
 
 
+class TrialOver(Struct, frozen=True, kw_only=True, tag="trial_over"):
+    """The trial is over: whether its goal was met, and why it does not count, if so. The next one is prepared."""
+
+    met: bool
+    voided: str
+
+
 class Line(Struct, frozen=True, kw_only=True):
     """An event of the trial: its tick, seat and kind, and a sentence that says what happened."""
 
@@ -189,7 +196,7 @@ class Refused(Struct, frozen=True, kw_only=True, tag="refused"):
     words: str
 
 
-ToDesk = Plan | Gathering | Watch | Ways | Happened | Played | Refused | wire.HeadsetAsked
+ToDesk = Plan | Gathering | Watch | TrialOver | Ways | Happened | Played | Refused | wire.HeadsetAsked
 """What the server sends."""
 
 _FROM_DESK: msgspec.json.Decoder[FromDesk] = msgspec.json.Decoder(FromDesk)

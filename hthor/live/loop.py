@@ -91,9 +91,9 @@ class RealTimeLoop:
             while not episode.done:
                 if self._unfinished is not None and practice is None and episode.tick % _KEPT_EVERY_TICKS == 0:
                     self._unfinished.keep(episode, humans)
-                if self._hold(episode, practice):
+                if (held := self._hold(episode, practice)) is not None:
                     pacer.restart()
-                    self._desk.watch(episode, pacer)
+                    self._desk.watch(episode, pacer, held)
                     continue
                 ask(episode, humans, robots, clock, frames)
                 take_answers(episode, clock)
@@ -133,11 +133,12 @@ class RealTimeLoop:
             practice.show()
             episode.attach(practice.watch)
         while not self._desk.gather():
+            self._desk.watch(episode)
             if self._control.draining:
                 raise SessionStopped
             self._control.wait(_TURN_S)
         for seat in self._seats.values():
-            seat.show(wire.Began(trial=trial.index))
+            seat.start(trial.index)
 
     def _scenery(self, world: TrialWorld) -> Scenery | None:
         """What pages draw of a world, as it is now."""
@@ -149,8 +150,8 @@ class RealTimeLoop:
         scenery.restart()
         return scenery
 
-    def _hold(self, episode: Episode, practice: Practice | None) -> bool:
-        """Whether time stands still: the experimenter has paused the trial, or somebody's page is gone."""
+    def _hold(self, episode: Episode, practice: Practice | None) -> str | None:
+        """Why time stands still, as when the experimenter has paused the trial, or somebody's page is gone; or None."""
         control = self._control
         away = {name: seat.absent_s() for name, seat in self._seats.items()}
         if control.stopped or (control.draining and (practice is not None or max(away.values()) > ABSENT_S)):
@@ -162,9 +163,9 @@ class RealTimeLoop:
                 episode.resume()
             episode.void(ends or f"{', '.join(gone)} did not come back")
             control.void = ""
-            return True
+            return episode.voided
         lost = [name for name, seconds in away.items() if seconds > (0.0 if episode.paused else ABSENT_S)]
-        reason = control.paused or "; ".join(self._absence(name) for name in lost)
+        reason = control.paused or "; ".join(self._seats[name].absence for name in lost)
         if bool(reason) != episode.paused:
             if reason:
                 episode.pause(reason)
@@ -172,12 +173,10 @@ class RealTimeLoop:
                 episode.resume()
             for seat in self._seats.values():
                 seat.show(wire.Paused(reason=reason))
-        if reason:
-            control.wait(_TURN_S)
-        return bool(reason)
-
-    def _absence(self, name: str) -> str:
-        return f"the headset of {name} is off" if self._seats[name].headset_off else f"the page of {name} is gone"
+        if not reason:
+            return None
+        control.wait(_TURN_S)
+        return reason
 
     def _show_bodies(self, episode: Episode, scenery: Scenery | None) -> None:
         moved = scenery.moved() if scenery is not None else {}
@@ -185,7 +184,12 @@ class RealTimeLoop:
         for name, seat in self._seats.items():
             seat.show_frame(episode.tick, episode.step, episode.world.pose(name), moved)
 
+    def show_played(self) -> None:
+        """Show the experimenter which trials are in the log."""
+        self._desk.show_played()
+
     def _show_end(self, episode: Episode, *, rate: bool) -> None:
+        self._desk.end(met=episode.met, voided=episode.voided)
         for seat in self._seats.values():
             seat.show(
                 wire.Ended(trial=episode.trial.index, met=episode.met, voided=episode.voided, rate=rate),

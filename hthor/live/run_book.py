@@ -69,12 +69,17 @@ class RunBook:
     def _correct(self, options: CorrectionOptions) -> None:
         if self._path is None:
             raise HthorError("no trial of this session has begun.")
+        if not options.reason.strip():
+            raise HthorError("a correction needs a reason; write one.")
         corrections.correct(self._path, options, locked=True)
 
 
 def _line(folder: RunFolder, record: ScoredTrial) -> PlayedTrial:
     made = folder.corrections.of(record.key)
-    found = record.metrics.by_seat("adoption_by")
+    people = [human.seat for human in record.spec.humans]
+    shares = record.metrics.by_seat("adoption_by")
+    if len(people) == 1 and (share := record.metrics["adoption"]) is not None:
+        shares = {people[0]: share}  # values by person are kept only for several
     return PlayedTrial(
         key=record.key,
         task=record.spec.task.id,
@@ -83,6 +88,6 @@ def _line(folder: RunFolder, record: ScoredTrial) -> PlayedTrial:
         met=record.met,
         seconds=round(record.ticks * rules.TICK_S, 1),
         voided=record.log.voided,
-        adopted={human.seat: bool(found[human.seat]) if human.seat in found else None for human in record.spec.humans},
+        adopted={seat: bool(shares[seat]) if seat in shares else None for seat in people},
         corrections=tuple(f"{one.number}: {one.reason}" for one in made),
     )

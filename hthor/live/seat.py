@@ -25,6 +25,8 @@ STALE_S = 0.25
 """[s] Somebody whose page has sent no steering for so long stands still. Our choice."""
 AWAY_S = 60.0
 """[s] Somebody whose page has been gone for so long has left the trial. Our choice."""
+HANGS_S = 3.0
+"""[s] Somebody whose page has sent no steering for so long in a trial sees nothing of it. Our choice."""
 _TURN_S = 0.25
 """[s] How often the trial, while it waits for a rating, looks whether the page is still there. Our choice."""
 _OF_A_TRIAL = (wire.Steps, wire.Began, wire.Now, wire.Choices, wire.Panel, wire.Map, wire.Paused, wire.Ended)
@@ -62,6 +64,7 @@ class LiveSeat:
         self._steering = Steering(0, Drive())
         self._steered_at = -1.0
         self._off_at: float | None = None  # since when the headset has been off
+        self._began_at: float | None = None  # when the trial that is going on began
         self._acts: deque[Act] = deque()
         self._acted = 0  # the number of the last act that was taken
         self._ready = False  # for the trial that was opened last
@@ -94,6 +97,7 @@ class LiveSeat:
             if self._head is not None:
                 page.show(self._head, self._places)
             self._steered_at = -1.0
+            self._began_at = None if self._began_at is None else self._now()
             self._changed.notify_all()
         return before
 
@@ -165,25 +169,44 @@ class LiveSeat:
                 self._page.show(self._head, moved)
 
     def absent_s(self) -> float:
-        """[s] For how long no page has been there, or the headset has been off; 0 while there is somebody."""
+        """[s] For how long nobody has seen the trial: no page is there, the headset is off, or the page draws nothing.
+
+        0 while there is somebody. A page steers in every picture that it draws.
+        """
         with self._lock:
             if self._page is None:
                 return self._now() - self._left_at
-            return 0.0 if self._off_at is None else self._now() - self._off_at
+            if self._off_at is not None:
+                return self._now() - self._off_at
+            if self._began_at is None:
+                return 0.0
+            silent = self._now() - max(self._began_at, self._steered_at)
+            return silent if silent > HANGS_S else 0.0
 
     @property
-    def headset_off(self) -> bool:
-        """Whether the person's page is there, but their headset is off."""
+    def absence(self) -> str:
+        """Why nobody sees the trial, in words, if that is so."""
         with self._lock:
-            return self._page is not None and self._off_at is not None
+            if self._page is None:
+                return f"the page of {self.seat} is gone"
+            if self._off_at is not None:
+                return f"the headset of {self.seat} is off"
+            return f"the page of {self.seat} draws no pictures"
 
     def open(self, ahead: wire.TrialAhead) -> None:
         """Show the person the next trial."""
         with self._lock:
             self._trial, self._ready, self._skips, self._rating = ahead.trial, False, False, None
+            self._began_at = None
             self._head, self._places = None, {}
         self._body = next(body for body in ahead.bodies if body.seat == self.seat)
         self.show(ahead, instead_of=_OF_A_TRIAL)
+
+    def start(self, trial: int) -> None:
+        """The trial that was opened last begins."""
+        with self._lock:
+            self._began_at = self._now()
+        self.show(wire.Began(trial=trial))
 
     @property
     def is_ready(self) -> bool:

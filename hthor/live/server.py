@@ -210,6 +210,7 @@ class LiveServer:
             timeout_graceful_shutdown=1,
             ssl_certfile=None if self._certificate is None else str(self._certificate.path),
         )
+        logging.getLogger("uvicorn.error").addFilter(_is_news)
         self._server = uvicorn.Server(config)
         serve = self._server.serve
         self._thread = threading.Thread(target=lambda: asyncio.run(serve(sockets=[listener])), name="server")
@@ -384,6 +385,11 @@ async def _refuse(socket: WebSocket, words: str) -> None:
     with contextlib.suppress(Exception):
         await socket.send_text(wire.encode(wire.Problem(words=words)))
         await socket.close(1008)
+
+
+def _is_news(record: logging.LogRecord) -> bool:
+    """Whether a line of uvicorn's log is worth reading: pages that are open when the session ends are cut off."""
+    return "timeout graceful shutdown exceeded" not in record.getMessage()
 
 
 def _short(text: str) -> str:

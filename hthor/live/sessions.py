@@ -104,6 +104,7 @@ class LiveSessions:
             outcome = run_trial(self._runner, participants, attempts.numbered(trial, number))
             yield outcome
             self._unfinished.forget()  # now that the record is in the log
+            self._loop.show_played()
             if not outcome.record.log.voided:
                 return
             number += 1

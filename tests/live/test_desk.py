@@ -87,6 +87,7 @@ def test_a_trial_waits_for_the_experimenter(tmp_path: Path) -> None:
                 person.wait_for("trial")
                 person.send({"type": "begin", "trial": 0})
                 desk.wait_for("gathering", missing=[], ready=[HUMAN])
+                desk.wait_until(lambda: _person(desk).get("away_s") == 0.0)
                 assert person.last("began") is None
                 with desk_of(live) as later:
                     later.wait_for("gathering", missing=[], ready=[HUMAN])
@@ -95,6 +96,9 @@ def test_a_trial_waits_for_the_experimenter(tmp_path: Path) -> None:
                 person.wait_for("ended")
                 person.send({"type": "rate", "trial": 0, "value": 4})
                 assert live.log().ticks == 10
+            desk.wait_for("trial_over", voided="")
+            desk.send({"type": "void", "reason": "too late"})
+            desk.wait_for("refused", words="no trial is going on; one that is over is voided in the list of trials.")
             desk.received.clear()
             desk.send({"type": "start"})
             assert "no trial waits" in desk.wait_for("refused")["words"]

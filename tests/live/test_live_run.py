@@ -13,6 +13,7 @@ from live_client import ScriptedPerson
 from live_session import AGENT
 
 from hthor.errors import HthorError
+from hthor.eval.config import cli_command
 from hthor.eval.config.options import EvalOptions
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.replay import session_history
@@ -111,6 +112,23 @@ def test_a_run_with_a_person_is_played_and_scored(tmp_path: Path, no_looks: None
         assert again.same, "everybody's inputs give the trial again, without the agent's file"
     seen = camera_frames.film_trial(folder.path, record, {40}, RunFiles(), seats=(HUMAN,), height=48)
     assert seen.views()[40][HUMAN].shape[0] == 48
+    check_corrections(folder)
+    again_words = cli_command.resume_command(folder.path, run.scheduled.config)
+    assert again_words.startswith("hthor live --agent ")
+    assert "--clock" not in again_words
+
+
+def check_corrections(folder: RunFolder) -> None:
+    """What the experimenter's page shows of an adoption is what is recorded."""
+    book = RunBook()
+    book.open(folder)
+    (first, _) = book.played()
+    assert first.adopted == {HUMAN: True}
+    with pytest.raises(HthorError, match=r"needs a reason; write one"):
+        book.correct(first.key, HUMAN, True, " ")
+    for adopted in (False, None):
+        book.correct(first.key, HUMAN, adopted, "pressed the wrong button")
+        assert book.played()[0].adopted == {HUMAN: adopted}
 
 
 def test_a_trial_that_the_experimenter_voids_afterwards_is_repeated_when_the_others_are_over(

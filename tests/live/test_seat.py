@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hthor.live import wire
-from hthor.live.seat import STALE_S, LiveSeat
+from hthor.live.seat import HANGS_S, STALE_S, LiveSeat
 from hthor.live.wire import Act, FrameHead, Steering, ToPage
 from hthor.types import HUMAN, Action, Drive, Drop, Observation, Pose
 
@@ -109,7 +109,7 @@ def test_nobody_is_ready_for_a_trial_that_is_repeated_because_they_were_for_the_
 def test_a_page_that_joins_later_gets_what_the_screen_shows_and_where_everything_is() -> None:
     seat = LiveSeat(HUMAN, Clock())
     seat.open(AHEAD)
-    seat.show(wire.Began(trial=0))
+    seat.start(0)
     seat.show_frame(0, 1, Pose(x=1.0, y=2.0), {3: b"a", 4: b"b"})
     seat.show_frame(0, 2, Pose(x=1.5, y=2.0), {4: b"c"})
     screen = Screen()
@@ -131,13 +131,32 @@ def test_somebody_whose_headset_is_off_is_absent_until_it_is_on_again_or_another
     for clock.time in (1.0, 2.0):
         seat.ping(wire.Ping(sent=0.0, off=True))
     clock.time = 4.0
-    assert (seat.absent_s(), seat.headset_off) == (3.0, True)
+    assert (seat.absent_s(), seat.absence) == (3.0, "the headset of human is off")
     seat.ping(wire.Ping(sent=0.0))
-    assert (seat.absent_s(), seat.headset_off) == (0.0, False)
+    assert seat.absent_s() == 0.0
     seat.ping(wire.Ping(sent=0.0, off=True))
     seat.join(second)
     assert seat.absent_s() == 0.0
     seat.ping(wire.Ping(sent=0.0, off=True))
     seat.leave(second)
     clock.time = 9.0
-    assert (seat.absent_s(), seat.headset_off) == (5.0, False)
+    assert (seat.absent_s(), seat.absence) == (5.0, "the page of human is gone")
+
+
+def test_a_page_that_draws_nothing_in_a_trial_is_absent_until_it_does() -> None:
+    clock = Clock()
+    seat, page = LiveSeat(HUMAN, clock), Screen()
+    seat.open(AHEAD)
+    seat.join(page)
+    clock.time = 100.0
+    assert seat.absent_s() == 0.0, "the trial has not begun"
+    seat.start(0)
+    clock.time += HANGS_S
+    assert seat.absent_s() == 0.0, "it may still load something"
+    clock.time += 0.5
+    assert (seat.absent_s(), seat.absence) == (HANGS_S + 0.5, "the page of human draws no pictures")
+    seat.steer(Steering(1, Drive()))
+    assert seat.absent_s() == 0.0
+    clock.time += 2 * HANGS_S
+    seat.join(Screen())
+    assert seat.absent_s() == 0.0, "another page has just come"

@@ -38,6 +38,7 @@ class Desk {
   constructor() {
     /** @type {any} */ this.plan = null;
     this.practice = false;
+    this.begun = false;
     /** Where everybody has been. @type {Map<string, number[][]>} */
     this.trails = new Map();
     /** What the seats see, while that is shown. @type {Views | null} */
@@ -111,6 +112,7 @@ class Desk {
   /** @param {any} gathering */
   on_gathering({ ready, missing, begun }) {
     const waits = `waiting for ${missing.join(", ")}${ready.length > 0 ? `; ready: ${ready.join(", ")}` : ""}`;
+    this.begun = begun;
     find("state").textContent = begun ? "the trial begins" : missing.length > 0 ? waits : "everybody is ready";
     const start = /** @type {HTMLButtonElement} */ (find("start"));
     start.classList.toggle("hidden", begun || !this.plan.starts);
@@ -155,7 +157,7 @@ class Desk {
     const left = this.plan.time_limit - tick / TICKS_PER_S;
     const time = this.practice ? "people practise" : `${left.toFixed(0)} s left`;
     const speed = factor < 0.98 ? `, real-time factor ${factor.toFixed(2)}` : "";
-    find("state").textContent = paused ? `paused: ${paused}` : `${time}${speed}`;
+    if (this.begun) find("state").textContent = paused ? `paused: ${paused}` : `${time}${speed}`;
     find("state").classList.toggle("paused", paused !== "");
     for (const one of people) this.trails.get(one.seat)?.push([one.x, one.y]);
     this.draw(people);
@@ -169,6 +171,13 @@ class Desk {
       return row;
     });
     find("people").replaceChildren(...rows);
+  }
+
+  /** @param {any} over */
+  on_trial_over({ met, voided }) {
+    const how = this.practice ? "the practice is over" : voided ? "the trial was voided" : `the trial is over, ${met ? "" : "not "}done`;
+    find("state").textContent = `${how}; people rate, and the next one is prepared …`;
+    find("state").classList.remove("paused");
   }
 
   /** @param {any} message */
@@ -193,7 +202,7 @@ class Desk {
       const last = make("td", "");
       if (!trial.voided) last.append(this.repeat(trial));
       row.append(last);
-      row.title = trial.corrections.join("\n");
+      trial.corrections.forEach((/** @type {string} */ words) => row.children[0].append(make("small", words)));
       return row;
     });
     find("trials").replaceChildren(head, ...rows);

@@ -45,6 +45,8 @@ export class Keys {
     this.held = new Set();
     /** @type {Record<string, string>} */
     this.codes = { ...Object.fromEntries(Object.entries(ACTIONS).map(([name, [, code]]) => [name, code])), ...load() };
+    /** What a digit does, while somebody is asked for one. @type {((value: number) => void) | null} */
+    this.digits = null;
     /** The action whose key is being chosen, with what to do then. @type {[string, () => void] | null} */
     this.choosing = null;
     addEventListener("keydown", (event) => this.#down(event, onPress));
@@ -85,6 +87,8 @@ export class Keys {
       done();
       return;
     }
+    const digit = /^(?:Digit|Numpad)([0-9])$/.exec(event.code);
+    if (digit && this.digits && !event.repeat) return this.digits(Number(digit[1]));
     const action = Object.keys(this.codes).find((name) => this.codes[name] === event.code);
     if (action === undefined) return;
     event.preventDefault();

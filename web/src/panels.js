@@ -139,6 +139,7 @@ export class Panels {
     other.textContent = card.other ?? "";
     other.onclick = () => otherDone?.();
     toggle("scale", false);
+    this.keys.digits = null;
     find("help").replaceChildren();
     if (card.button) button.focus();
   }
@@ -158,6 +159,7 @@ export class Panels {
       return button;
     });
     find("scale").replaceChildren(...buttons);
+    this.keys.digits = (value) => value >= 1 && value <= scale && done(value);
     toggle("scale", true);
   }
 

@@ -24,8 +24,14 @@ _ALWAYS = ("humans", "suite", "seed", "participants")
 
 def resume_command(folder: Path, config: RunConfig, out: Path | None = None) -> str:
     """The shell command that finishes a run or a shard; it writes to ``out``, by default the run's folder."""
-    options = options_of(config, folder, out or folder)
-    return shlex.join(["hthor", "eval", *option.command_words(options, always=_ALWAYS)])
+    return _command(options_of(config, folder, out or folder))
+
+
+def _command(options: EvalOptions) -> str:
+    command = "eval"
+    if any("live" in word.split(",") for word in options.humans):  # people at pages, whose clock is that of the wall
+        command, options = "live", msgspec.structs.replace(options, clock=EvalOptions().clock)
+    return shlex.join(["hthor", command, *option.command_words(options, always=_ALWAYS)])
 
 
 def options_of(config: RunConfig, folder: Path, out: Path | None) -> EvalOptions:
@@ -132,4 +138,4 @@ def baseline_command(config: RunConfig) -> str:
         seat="", robot="", agent=AgentRef(name=NO_ROBOT_AGENT, source=f"{BUILT_IN_AGENTS}{NO_ROBOT_AGENT}", sha256="")
     )
     alone = msgspec.structs.replace(config, robots=(absent,), clock=msgspec.UNSET)
-    return shlex.join(["hthor", "eval", *option.command_words(options_of(alone, Path(), None), always=_ALWAYS)])
+    return _command(options_of(alone, Path(), None))
