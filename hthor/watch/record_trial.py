@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from hthor.eval.replay.session_history import RunFiles
     from hthor.guest import AgentInputs
     from hthor.live.house_file import HouseFile
-    from hthor.types import TrialSpec
+    from hthor.types import Camera, TrialSpec, Vec2
     from hthor.types.events import Event
 
 _UNSHOWN = (Thought, Progress)
@@ -134,7 +135,14 @@ def _seats(spec: TrialSpec, world: RecordedWorld) -> tuple[Seat, ...]:
                 eye=body.eye,
                 height=body.height,
                 own=world.scene.seats[seat],
-                fov=None if seat in live else body.fov,
+                fov=None if seat in live else _fov(world.camera(seat)),
             )
         )
     return tuple(found)
+
+
+def _fov(camera: Camera) -> Vec2:
+    """[rad] The field of view, horizontal and vertical, of a seat's own camera, or of the one that the run gave it."""
+    (width, height), matrix = camera.size, camera.matrix
+    wide, high = (2.0 * math.atan(side / 2.0 / matrix[k, k]) for k, side in enumerate((width, height)))
+    return round(wide, 6), round(high, 6)

@@ -138,6 +138,8 @@ class Watch {
 
   resize() {
     this.renderer.setSize(innerWidth, innerHeight, false);
+    const below = find("top").getBoundingClientRect().bottom + GAP_PX;
+    document.documentElement.style.setProperty("--below-top", `${below}px`);
     this.stale = true;
   }
 
