@@ -55,16 +55,21 @@ def record_trial(folder: Path, record: ScoredTrial, files: RunFiles, given: Agen
         RunError, HthorError: if it cannot be played again, see `hthor.eval.replay.repeated_trial.repeat_trial`.
     """
     world = repeated_trial.repeat_trial(folder, record, files, RecordedWorld, given)
+    return finish(folder.resolve().name, record, world)
+
+
+def finish(run: str, record: ScoredTrial, world: RecordedWorld) -> RecordedTrial:
+    """What was recorded of a trial of the ``run`` with this name that has just been played in a world."""
     activity.say(f"computing the light of the house {record.spec.task.house}")
-    return RecordedTrial(_recording(folder, record, world), house_file.house_file(world.scene, world.house))
+    return RecordedTrial(_recording(run, record, world), house_file.house_file(world.scene, world.house))
 
 
-def _recording(folder: Path, record: ScoredTrial, world: RecordedWorld) -> Recording:
+def _recording(run: str, record: ScoredTrial, world: RecordedWorld) -> Recording:
     spec, events, house = record.spec, record.events, world.house
     sent = [event for event in events if isinstance(event, Sent)]
     pictures = {number: recording.picture(to_jpeg(one)) for number, one in world.pictures(sent).items()}
     return Recording(
-        run=folder.resolve().name,
+        run=run,
         key=record.key,
         task=spec.task.id,
         instruction=spec.task.instruction,

@@ -51,6 +51,11 @@ def repeat_trial(
         world = watch(stage.world(spec))
         done = session_runner.run_trial(stage, company, spec, world).record
         if _course(run.corrected(done)) != _course(wanted):
+            if wanted.log.voided:
+                raise RunError(
+                    f"{folder}: trial {wanted.key} was voided while it was played, which cannot be repeated; "
+                    "'hthor replay' draws the trial from its log alone."
+                )
             raise RunError(
                 f"{folder}: trial {wanted.key} did not repeat as it was logged, so its views would show another "
                 "trial. The agent is not deterministic, or the machine is different; 'hthor replay' draws the trial "
