@@ -1,9 +1,9 @@
 """What somebody with an emulated headset did, picture by picture: ``python -m benchmarks.headset_recording``.
 
-A script plays the delivery of `benchmarks.page_headset` in a browser. Kept are, for every picture of the page, where head
-and hands were in the room, which buttons and sticks were pressed, and where the body was; beside them what the page made
-of it: the steering, the hand and the actions. A test repeats them without a browser (``web/tests/recorded.test.js``).
-Make the recordings again after a deliberate change of what the page makes of a headset.
+A script plays the delivery of `benchmarks.page_headset` in a browser. Kept are, for every picture of the page, where
+head and hands were in the room, which buttons and sticks were pressed, and where the body was; beside them what the
+page made of it: the steering, the hand and the actions. A test repeats them without a browser, in
+``web/tests/recorded.test.js``. Make the recordings again after a deliberate change of what the page makes of a headset.
 """
 
 from __future__ import annotations

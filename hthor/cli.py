@@ -27,6 +27,7 @@ from hthor.commands import (
     score,
     suite,
     train,
+    watch,
 )
 from hthor.commands.agent import agent, serve
 from hthor.commands.eval import evaluate
@@ -53,6 +54,7 @@ app.command("correct")(correct.correct)
 app.command("compare")(compare.compare)
 app.command("power")(compare.power)
 app.command("replay")(replay.replay)
+app.command("watch")(watch.watch)
 app.command("report")(report.report)
 app.command("case")(report.case)
 app.command("calibrate")(calibrate.calibrate)

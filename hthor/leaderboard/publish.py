@@ -1,5 +1,6 @@
 """Builds the list, the schema and the page from the entries, and recomputes entries after changes of scoring."""
 
+from collections.abc import Iterable
 from pathlib import Path
 
 import msgspec
@@ -38,8 +39,14 @@ def board_files(board: Path) -> dict[str, bytes]:
     return {
         files.LIST: jsonio.pretty(found),
         files.SCHEMA: jsonio.pretty(schema.json_schema()),
-        files.PAGE: page.render(found).encode(),
+        files.PAGE: page.render(found, watch_pages(board, entries)).encode(),
     }
+
+
+def watch_pages(board: Path, entries: Iterable[Entry]) -> dict[str, str]:
+    """The addresses of the pages that `hthor watch` wrote for entries, by their ids, relative to the board's page."""
+    named = {entry.id: f"watch/{entry.id}/index.html" for entry in entries}
+    return {name: page for name, page in named.items() if (board / page).is_file()}
 
 
 def differences(board: Path) -> list[Problem]:

@@ -1,6 +1,7 @@
 """The house of a trial as a glTF file, with the light of its lamps in the colours of its corners.
 
-What never moves is one node, whose primitives are merged by texture. Each part that moves (a thing, a door, a body or a
+What never moves is one node, whose primitives are merged by texture; ceilings and their lamps, which hide rooms from
+above, are another. Each part that moves (a thing, a door, a body or a
 head) is a node of its own, called by its number, as `SceneParts.poses` counts them; it has the colours of its
 materials, and the page lights it by the grid of probes that the scene's ``extras`` hold. Doors and drawers, which are
 ``lit``, have the light that they have while they are shut.
@@ -84,7 +85,11 @@ def _make(scene: SceneParts, house: HouseSpec) -> bytes:
     moving = sum(len(part.mesh.faces) for part in scene.parts if part.puppet not in (STATIC, *own))
     still = [one.refined(_FLOOR_EDGE_M if one.owner.startswith(_FLOOR) else _EDGE_M) for one in still]
     shown = still_light.lit(still, light, _MOST_TRIANGLES - _MORE_ON_DOORS - moving)
-    nodes = [file.node(name="still", mesh=_mesh(file, book, shown))]
+    high = [one for one in shown if one.owner.startswith(_CEILING)]
+    low = [one for one in shown if not one.owner.startswith(_CEILING)]
+    nodes = [file.node(name="still", mesh=_mesh(file, book, low))]
+    if high:
+        nodes.append(file.node(name="ceilings", mesh=_mesh(file, book, high), extras={"ceiling": True}))
     doors = _doors(scene, light)
     for number in range(len(scene.moving)):
         parts = doors.get(number) or _creased(_parts(scene, number))

@@ -16,7 +16,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hthor.eval.statistics.intervals import NOTHING, Estimate
-from hthor.leaderboard import board_check
+from hthor.leaderboard import board_check, publish
 from hthor.leaderboard.entries import files
 from hthor.leaderboard.entries.entry import Agent, Entry, Group, Harness
 from hthor.leaderboard.entries.verification import Fresh, KeeperRecords
@@ -94,6 +94,19 @@ def test_drawings_are_whole_and_sections_counted(whole: Path):
         assert all(one.find("g/circle") is not None and one.find("line/line") is None for one in marks)
         numbers = [int(one) for one in re.findall(r"<h2><span>(\d+)</span>", text)]
         assert numbers == list(range(1, len(numbers) + 1))
+
+
+def test_an_entry_links_the_page_that_shows_one_of_its_trials_if_there_is_one(whole: Path, tmp_path: Path):
+    board = tmp_path / "board"
+    shutil.copytree(whole, board)
+    ids = [path.stem for path in files.entry_paths(board)]
+    assert b"watch a trial" not in publish.board_files(board)[files.PAGE]
+    shown = board / "watch" / ids[0] / "index.html"
+    shown.parent.mkdir(parents=True)
+    shown.touch()
+    page_ = publish.board_files(board)[files.PAGE].decode()
+    assert page_.count("watch a trial") == 1
+    assert f'<a href="watch/{ids[0]}/index.html">watch a trial</a>' in page_
 
 
 def test_labels_that_are_not_the_same_in_all_entries_do_not_stop_the_page(whole: Path):

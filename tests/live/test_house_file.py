@@ -69,11 +69,15 @@ def file(world: World, tmp_path_factory: pytest.TempPathFactory) -> HouseFile:
 
 def test_the_file_holds_the_house_and_everything_that_moves(world: World, file: HouseFile) -> None:
     read = Glb(file)
-    still, *moving = read.meshes
-    assert still["name"] == "still"
+    still, ceilings, *moving = read.meshes
+    assert (still["name"], ceilings["name"]) == ("still", "ceilings")
     assert {node["extras"]["owner"] for node in moving} >= {"human", "robot", "apple"}
     assert [node["extras"]["part"] for node in moving] == sorted(node["extras"]["part"] for node in moving)
-    places = np.concatenate([read.values(one["attributes"]["POSITION"]) for one in read.primitives(still)])
+    places, high = (
+        np.concatenate([read.values(one["attributes"]["POSITION"]) for one in read.primitives(node)])
+        for node in (still, ceilings)
+    )
+    assert high[:, 2].min() > 0.8 * world.house.height, "nothing else hides with them"
     x0, y0, x1, y1 = world.top_view_bounds
     assert places[:, :2].min(0) == pytest.approx((x0, y0), abs=0.5)
     assert places[:, :2].max(0) == pytest.approx((x1, y1), abs=0.5)
@@ -89,7 +93,7 @@ def test_the_file_holds_the_house_and_everything_that_moves(world: World, file: 
 def test_colours_are_neither_black_nor_white(file: HouseFile) -> None:
     read = Glb(file)
     bright = np.concatenate(
-        [read.values(one["attributes"]["COLOR_0"]).max(1) for one in read.primitives(read.meshes[0])]
+        [read.values(one["attributes"]["COLOR_0"]).max(1) for node in read.meshes[:2] for one in read.primitives(node)]
     )
     assert 40 < np.median(bright) < 200
     assert bright.min() < 30 < 170 < bright.max()

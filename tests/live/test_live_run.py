@@ -15,6 +15,7 @@ from live_session import AGENT
 from hthor.errors import HthorError
 from hthor.eval.config import cli_command
 from hthor.eval.config.options import EvalOptions
+from hthor.eval.records import find
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.replay import session_history
 from hthor.eval.replay.session_history import RunFiles
@@ -26,6 +27,7 @@ from hthor.live.run_book import RunBook
 from hthor.report.page import camera_frames
 from hthor.trials.sessions import Session
 from hthor.types import HUMAN, TrialSpec
+from hthor.watch import record_trial
 
 pytest.importorskip("starlette", reason="live sessions need an optional dependency: pip install 'hthor[live]'")
 
@@ -112,6 +114,9 @@ def test_a_run_with_a_person_is_played_and_scored(tmp_path: Path, no_looks: None
         assert again.same, "everybody's inputs give the trial again, without the agent's file"
     seen = camera_frames.film_trial(folder.path, record, {40}, RunFiles(), seats=(HUMAN,), height=48)
     assert seen.views()[40][HUMAN].shape[0] == 48
+    watched = record_trial.record_trial(folder.path, folder.played()[1], RunFiles()).recording
+    assert [(seat.name, seat.fov is None) for seat in watched.seats] == [("live", True), ("scout, teller", False)]
+    assert watched.screens[HUMAN][-1].map == (0,)
     check_corrections(folder)
     again_words = cli_command.resume_command(folder.path, run.scheduled.config)
     assert again_words.startswith("hthor live --agent ")
@@ -158,6 +163,8 @@ def test_a_trial_that_the_experimenter_voids_afterwards_is_repeated_when_the_oth
     book = RunBook()
     book.open(folder)
     assert book.due(0) == (), "nothing is left to play"
+    watched = record_trial.record_trial(folder.path, find.find_trial(folder, "0@0"), RunFiles()).recording
+    assert watched.outcome[0] == "void: the doorbell rang"
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ import { GLTFLoader } from "three/addons/loaders/GLTFLoader.js";
 const SIDE_PX = 256;
 const STILL = -1;
 const NONE = -2;
+const CEILING = -3;
 const LIT = -1; // the light of a part whose colours have it already
 const AMBIENT = 0.39; // the light from all sides, as in the baked light
 const FILL = [0.35, 0.55, -0.6];
@@ -21,6 +22,7 @@ in float layer;
 in float part;
 uniform sampler2D poses;
 uniform vec2 hidden;
+uniform float roofed;
 out vec3 mapped;
 out vec4 shade;
 
@@ -43,7 +45,8 @@ void main() {
   shade = vec4(lit / most, tint.a); // no brighter than the texture, as in OpenGL
   mapped = vec3(uv, layer);
   gl_Position = projectionMatrix * modelViewMatrix * vec4(place, 1.0);
-  if (part >= 0.0 && (part == hidden.x || part == hidden.y)) gl_Position = vec4(0.0, 0.0, -2.0, 1.0); // outside
+  bool gone = part >= 0.0 ? part == hidden.x || part == hidden.y : roofed < 0.5 && part == ${CEILING.toFixed(1)};
+  if (gone) gl_Position = vec4(0.0, 0.0, -2.0, 1.0); // outside
 }`;
 
 const FRAGMENT = /* glsl */ `
@@ -67,6 +70,11 @@ export class House {
   static async load(url, own) {
     const file = await new GLTFLoader().loadAsync(url);
     return new House(file, new Set(own));
+  }
+
+  /** The house of a file that is there already. @param {ArrayBuffer} data */
+  static async parse(data) {
+    return new House(await new GLTFLoader().parseAsync(data, ""), new Set());
   }
 
   /** @param {any} file @param {Set<number>} own */
@@ -100,10 +108,13 @@ export class House {
     });
     this.pictures = pictures.texture();
     this.hidden = new THREE.Vector2(NONE, NONE);
+    /** Whether ceilings are drawn, 1 or 0. */
+    this.roofed = { value: 1 };
     const uniforms = {
       poses: { value: this.texture },
       pictures: { value: this.pictures },
       hidden: { value: this.hidden },
+      roofed: this.roofed,
     };
     const solid = { glslVersion: THREE.GLSL3, vertexShader: VERTEX, fragmentShader: FRAGMENT, uniforms };
     const glass = { ...solid, transparent: true, depthWrite: false, side: THREE.DoubleSide };
@@ -150,6 +161,12 @@ export class House {
       this.places.set(number, { position, turn });
       this.moving.add(number);
     }
+  }
+
+  /** Put parts where they are, at once. @param {import("./wire.js").Moved[]} moved */
+  put(moved) {
+    for (const place of moved) this.#follow(place.number, place, 1);
+    this.texture.needsUpdate = true;
   }
 
   /**
@@ -199,8 +216,9 @@ export class House {
 /** The number of the part that a mesh belongs to, and whether it has its light. @param {any} node */
 function aboutPart(node) {
   for (let one = node; one !== null; one = one.parent) {
-    const { part, lit } = one.userData;
+    const { part, lit, ceiling } = one.userData;
     if (part !== undefined) return { part, lit };
+    if (ceiling) return { part: CEILING, lit: true };
   }
   return { part: STILL, lit: true };
 }

@@ -38,6 +38,8 @@ def find_trial(folder: RunFolder, name: str) -> ScoredTrial:
     by_key = [record for record in tried if name and record.key.startswith(name)]
     if by_key:
         return _only(by_key, name)
+    if not records:
+        _ = folder.config  # says so if this is no run's folder at all
     ids = sorted({record.spec.task.id for record in records})
     near = difflib.get_close_matches(name, ids, n=_SHOWN, cutoff=0.4) or ids[:_SHOWN]
     more = (

@@ -39,7 +39,7 @@ def enter(runner: TrialRunner, session: Session, folder: RunFolder) -> Participa
     first = session.trials[0]
     if not is_live(first):
         return runner.enter(session)
-    records = {record.key: record for record in folder.played()}
+    records = {record.key: record for record in folder.attempts()}
     logged = [records[trial_record.key(spec)] for spec in session.trials]
     if failed := next((one for one in logged if one.faults), None):
         raise RunError(

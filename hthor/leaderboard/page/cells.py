@@ -54,8 +54,8 @@ def rank(one: Row, metric: str = "sr") -> Cell:
     )
 
 
-def agent(one: Row) -> Cell:
-    """The agent's name, and below it its authors and its privileges."""
+def agent(one: Row, watch: str = "") -> Cell:
+    """The agent's name, and below it its authors and its privileges; ``watch`` is the address of a trial in 3-D."""
     about = one.agent
     name = link(about.url, one.name)
     parts = [one.team if one.team != one.name else "", about.licence]
@@ -65,7 +65,8 @@ def agent(one: Row) -> Cell:
         parts.append(f"the same agent as {one.same_as}")
     small = " · ".join(part for part in parts if part)
     version: list[Piece] = [" ", tag("span", about.version, class_="soft")] if about.version else []
-    return Cell(join([name, *version, *([_small(small)] if small else [])]))
+    seen = [tag("small", tag("a", "watch a trial", href=watch))] if watch else []
+    return Cell(join([name, *version, *([_small(small)] if small else []), *seen]))
 
 
 def share(one: Estimate) -> Cell:

@@ -1,5 +1,7 @@
 """The leaderboard as one page that loads nothing: no network, and a script that only sorts tables."""
 
+from collections.abc import Mapping
+
 from hthor.eval.metrics.metric import SECONDS
 from hthor.leaderboard.page import cells
 from hthor.leaderboard.page.cells import Cell
@@ -90,11 +92,17 @@ _HEAD: tuple[tuple[str, int], ...] = (
 )
 
 
-def render(found: Board) -> str:
-    """The page; the same list gives the same bytes."""
+def render(found: Board, watched: Mapping[str, str] | None = None) -> str:
+    """The page; the same list gives the same bytes.
+
+    Args:
+        watched: by the ids of entries, addresses of pages that show a trial in 3-D, relative to this page.
+    """
     ranked = any(row.ranks for one in found.sections for row in one.rows)
     body = [
-        _section(number, one, several=sum(_trials(one) == _trials(other) for other in found.sections) > 1)
+        _section(
+            number, one, watched or {}, several=sum(_trials(one) == _trials(other) for other in found.sections) > 1
+        )
         for number, one in enumerate(found.sections, 1)
     ]
     title = "hthor leaderboard"
@@ -122,7 +130,7 @@ def _trials(one: Section) -> tuple[object, ...]:
     return one.suite, one.humans, one.humans_sha256, one.seed, one.mode, one.code, one.rules
 
 
-def _section(number: int, one: Section, *, several: bool) -> Markup:
+def _section(number: int, one: Section, watched: Mapping[str, str], *, several: bool) -> Markup:
     suite = one.suite
     ranked = one.standing == "ranked"
     title = f"{suite.name}: {one.trials} tasks, {one.people} {one.humans} people"
@@ -142,25 +150,25 @@ def _section(number: int, one: Section, *, several: bool) -> Markup:
         tag("dl", *(part for name, value in facts.items() for part in (tag("dt", name), tag("dd", value)))),
         m.NOTHING if one.calibrated else tag("p", _UNFITTED, class_="note"),
         tag("p", _SCORED, class_="note") if several else m.NOTHING,
-        _ranking(one),
+        _ranking(one, watched),
         tag("p", said, class_="soft") if said else m.NOTHING,
         cells.fold("By difficulty and kind of task", _splits(one)),
         cells.fold("What was run", _origins(one)),
     )
 
 
-def _ranking(one: Section) -> Markup:
+def _ranking(one: Section, watched: Mapping[str, str]) -> Markup:
     on = cells.common_scale(row.sr for row in one.rows)
     head: list[tuple[Piece, int]] = [(title or cells.draw_axis(on), way) for title, way in _HEAD]
-    lines = [("ref" if row.reference else "", _cells(row, on)) for row in one.rows]
+    lines = [("ref" if row.reference else "", _cells(row, on, watched.get(row.id, ""))) for row in one.rows]
     return cells.table(head, lines, words=(0, 1, 3, 12, 13))
 
 
-def _cells(row: Row, on: cells.Scale) -> list[Cell]:
+def _cells(row: Row, on: cells.Scale, watch: str) -> list[Cell]:
     colour = _COLOURS.get(row.name, "ink") if row.reference else "ink"
     return [
         cells.rank(row),
-        cells.agent(row),
+        cells.agent(row, watch),
         cells.share(row.sr),
         Cell(cells.draw_interval(row.sr, on, colour)),
         cells.fresh(row),

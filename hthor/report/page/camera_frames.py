@@ -7,21 +7,14 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-import msgspec
 from msgspec import Struct
 
 from hthor import activity
 from hthor.comms import display
-from hthor.errors import RunError
-from hthor.eval.records import trial_record
-from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
-from hthor.eval.replay import recorded_session, session_history
+from hthor.eval.replay import repeated_trial
 from hthor.eval.replay.session_history import RunFiles
-from hthor.eval.runner import session_runner
-from hthor.guest import AgentInputs, GuestConfig
-from hthor.trials import TrialRunner
-from hthor.trials.sessions import Session
+from hthor.guest import AgentInputs
 from hthor.types import TaskSpec
 from hthor.types.events import Event, Sent
 
@@ -151,23 +144,11 @@ def film_trial(
     Raises:
         RunError, HthorError: see `render_frames`.
     """
-    spec, run = wanted.spec, RunFolder(folder)
-    session = Session(number=spec.session, trials=session_history.session_before(run, wanted))
-    guests = GuestConfig(hidden=(str(folder.resolve()),), inputs=given or AgentInputs())
-    stage = TrialRunner(session_history.replay_sources(run, spec, files, guests))
-    with recorded_session.enter(stage, session, run) as company:
-        for number, trial in enumerate(session.trials, 1):
-            activity.say(f"playing {folder.name} again, trial {number} of {len(session.trials)}")
-            world = CameraFrames(stage.world(trial), ticks if trial == spec else (), profile, seats, height)
-            done = session_runner.run_trial(stage, company, trial, world).record
-        if _course(run.corrected(done)) != _course(wanted):
-            raise RunError(
-                f"{folder}: trial {wanted.key} did not repeat as it was logged, so its views would show another "
-                "trial. The agent is not deterministic, or the machine is different; 'hthor replay' draws the trial "
-                "from its log alone."
-            )
-        activity.say(f"drawing what was seen in {folder.name}")
-        return world
+    world = repeated_trial.repeat_trial(
+        folder, wanted, files, lambda world: CameraFrames(world, ticks, profile, seats, height), given
+    )
+    activity.say(f"drawing what was seen in {folder.name}")
+    return world
 
 
 def _on_panels(record: TrialRecord, ticks: Collection[int]) -> Iterator[Sent]:
@@ -184,9 +165,3 @@ def _averaged(picture: Any) -> Any:
     high, wide, _ = picture.shape
     parts = picture.reshape(high // _FINER, _FINER, wide // _FINER, _FINER, 3).astype("float32")
     return parts.mean(axis=(1, 3)).round().astype("uint8")
-
-
-def _course(done: TrialRecord) -> bytes:
-    """Everything that happened, without the texts of faults, which agents write."""
-    plain = tuple(msgspec.structs.replace(fault, detail="") for fault in done.faults)
-    return trial_record.encode(msgspec.structs.replace(recorded_session.without_pauses(done), faults=plain))

@@ -1,0 +1,1 @@
+"""A logged trial in three dimensions, on a page that needs no server: `hthor watch`."""
