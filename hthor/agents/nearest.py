@@ -39,7 +39,7 @@ class Agent:
     aside.
     """
 
-    privileges = ("ideal_detector",)
+    privileges: tuple[str, ...] = ("ideal_detector",)
 
     def begin(self, briefing: Briefing) -> None:
         """Begin with an empty map."""

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import shlex
+from collections.abc import Callable, Mapping
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import msgspec
 import typer
 from msgspec import structs
 
+from hthor.commands import person_table
 from hthor.commands.eval import results
 from hthor.commands.options import Json, takes_options
 from hthor.console import output
@@ -85,13 +89,23 @@ def live(
             help="Whether people try each control once, in a room of its own, before a session's first trial.",
         ),
     ] = True,
+    calibrate: Annotated[
+        bool,
+        typer.Option(
+            "--calibrate",
+            help="A prescribed session of about ten minutes that measures each person: three walks, three searches "
+            "and three deliveries, with a robot that is right about half of the time. At the end it says how far the "
+            "person is from the population, as 'hthor humans profile' does.",
+        ),
+    ] = False,
     json: Json = False,
     **given: object,
 ) -> None:
     """Take part yourself: serve a page for each person, and play a session of trials with whoever opens it.
 
     Running the same command again goes on with the first trial that is missing. The run is a run like any other:
-    'hthor score', 'report', 'compare' and 'replay' read it.
+    'hthor score', 'report', 'compare' and 'replay' read it. When the session is over, each person is shown a page with
+    their trials, which is also in the run's folder 'people'.
     """
     from hthor.eval.comparison import population_matrix
     from hthor.eval.runner import progress
@@ -100,9 +114,20 @@ def live(
     talk = output.console(talk=True)
     chosen = make_record(LiveOptions, given)
     options = EvalOptions(**{name: getattr(chosen, name) for name in _AS_IN_EVAL})
+    sections: Callable[[Path], Mapping[int, str]] = _nothing_more
+    if calibrate:
+        from hthor.calibration.person import person_files, protocol
+
+        options, sections = protocol.prescribed(options), person_files.sections
     tell = partial(output.say, to=talk)
     with LiveRun(
-        options, port=port, lan=lan, experimenter_starts=experimenter_starts, practice=practice, tell=tell
+        options,
+        port=port,
+        lan=lan,
+        experimenter_starts=experimenter_starts,
+        practice=practice,
+        tell=tell,
+        sections=sections,
     ) as run:
         for line in _welcome(run):
             tell(line)
@@ -110,6 +135,8 @@ def live(
             _put_code(run.server.url(seat, run.hosts[0]), talk)
         done = run.play(partial(progress.make_watcher, talk, quiet=False, live=output.live()))
     results.show_run(talk if json else output.console(), done)
+    if calibrate and not json:
+        _put_profiles(done.folder.path)
     if json:
         output.put_json(population_matrix.make_evaluation([(str(done.folder), done.result)]))
 
@@ -121,6 +148,23 @@ def _put_code(address: str, talk: Console) -> None:
     from hthor.live.qr_code import qr_code
 
     talk.print(Text(qr_code(address), style="bright_white on black"), soft_wrap=True)
+
+
+def _nothing_more(_: Path) -> Mapping[int, str]:
+    """No sections for people's own pages besides their trials."""
+    return {}
+
+
+def _put_profiles(folder: Path) -> None:
+    """Write how far each person is from the population, and which files say it."""
+    from hthor.calibration.person.profile import profiles
+    from hthor.report.person import person_page
+
+    for one in profiles(folder):
+        person_table.put_profile(one)
+    quoted = shlex.quote(str(folder))
+    output.put_line(f"files: {quoted}/{person_page.FOLDER}/, a page and the numbers of each person")
+    output.put_line(f"next:  hthor calibrate --target {quoted}")
 
 
 def _welcome(run: LiveRun) -> list[str]:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import functools
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from pathlib import Path
 
 import msgspec
 
@@ -32,11 +33,12 @@ from hthor.live.server import DESK, LiveServer
 from hthor.live.sessions import LiveSessions
 from hthor.live.tokens import SessionTokens
 from hthor.live.unfinished import UnfinishedTrial
+from hthor.report.person import person_page
 from hthor.trials import robot_team
 from hthor.trials.human_team import HumanTeam
 
-_FAREWELL_S = 1.0
-"""[s] For the pages to hear that the session is over. Our choice."""
+_FAREWELL_S, _FETCH_S = 1.0, 15.0
+"""[s] For the pages to hear that the session is over, and to fetch what it says of each person. Our choice."""
 
 
 class LiveRun:
@@ -49,6 +51,8 @@ class LiveRun:
         experimenter_starts: whether each trial waits for the experimenter.
         practice: whether each session begins with a practice, see `hthor.live.practice`.
         tell: called with a sentence before something that takes a while, and with the addresses of robots' programs.
+        sections: called with the run's folder when the session is over: more for each person's own page, as HTML, by
+            the person's number.
         now, sleep: as of `hthor.live.loop.RealTimeLoop`.
 
     Attributes:
@@ -74,6 +78,7 @@ class LiveRun:
         experimenter_starts: bool = False,
         practice: bool = False,
         tell: Callable[[str], None] = lambda _: None,
+        sections: Callable[[Path], Mapping[int, str]] = lambda _: {},
         now: Callable[[], float] = time.perf_counter,
         sleep: Callable[[float], None] = time.sleep,
     ) -> None:
@@ -96,7 +101,7 @@ class LiveRun:
         self.hosts: tuple[str, ...] = ()
         self.certificate: Certificate | None = None
         self.server = self._make_server(port, tokens, lan=lan)
-        self._options, self._tell = options, tell
+        self._options, self._tell, self._sections = options, tell, sections
         self._now, self._sleep, self._page, self._practice = now, sleep, page, practice
 
     def __enter__(self) -> LiveRun:
@@ -143,11 +148,28 @@ class LiveRun:
         live = msgspec.structs.replace(run, engine=LiveEngine(self.control), runner=sessions)
         self._void_unfinished(run.folder, unfinished)
         (done,) = experiment.run_experiment(msgspec.structs.replace(self._resolved, runs=(live,)), make_watcher)
-        for seat in self.seats.values():
-            seat.show(wire.Over(trials=sum(len(one.trials) for one in run.sessions)))
-        time.sleep(_FAREWELL_S)
+        self._part(run)
         self._session_tokens.forget()
         return done
+
+    def _part(self, run: ScheduledRun) -> None:
+        """Tell everybody that the session is over, and give each person of the last one their own page."""
+        over = wire.Over(trials=sum(len(one.trials) for one in run.sessions), making=True)
+        for seat in self.seats.values():
+            seat.show(over)
+        pages: dict[str, str] = {}
+        try:
+            written = person_page.write_pages(RunFolder(run.folder.path), self._sections(run.folder.path))
+            for human in run.sessions[-1].trials[0].humans:
+                if human.seat in self.seats and human.participant in written:
+                    pages[human.seat] = self.server.own_pages.publish(written[human.participant].read_bytes())
+        except HthorError as error:
+            self._tell(f"the people's own pages were not made: {error}")
+        for name, seat in self.seats.items():
+            seat.show(msgspec.structs.replace(over, page=pages.get(name, ""), making=False))
+        time.sleep(_FAREWELL_S)
+        if all(seat.absent_s() == 0.0 for seat in self.seats.values()):
+            self.server.own_pages.wait(_FETCH_S if self._page else 0.0)
 
     def _void_unfinished(self, folder: RunFolder, unfinished: UnfinishedTrial) -> None:
         """Add the trial in which the last command was killed to the log, as an attempt that does not count."""

@@ -16,9 +16,10 @@ from typing import TYPE_CHECKING, Any
 
 from hthor.errors import HthorError, MissingExtra
 from hthor.guest.protocol.wire import MOST_BYTES
-from hthor.live import desk_wire, wire
+from hthor.live import desk_wire, own_pages, wire
 from hthor.live.desk import Desk
 from hthor.live.desk_wire import ToDesk
+from hthor.live.own_pages import OwnPages
 from hthor.live.robot_programs import RobotPrograms
 from hthor.live.seat import LiveSeat
 from hthor.live.wire import Malformed, ToPage
@@ -121,7 +122,7 @@ class LiveServer:
         robots: the robots whose programs connect.
 
     Attributes:
-        tokens: the token of each seat.
+        tokens: the token of each seat. own_pages: what people get at the end.
     """
 
     def __init__(
@@ -145,6 +146,7 @@ class LiveServer:
         self._scheme, self._usual_port = ("http", "80") if certificate is None else ("https", "443")
         self._page_files = {path.name: path for path in sorted(FOLDER.glob("*.*"))}
         self._houses: dict[str, bytes] = {}
+        self.own_pages = OwnPages()
         self._server: Any = None
         self._thread: threading.Thread | None = None
 
@@ -244,7 +246,17 @@ class LiveServer:
             kept = {**_HEADERS, "Cache-Control": "private, max-age=31536000, immutable", "Content-Encoding": "gzip"}
             return Response(data, media_type="model/gltf-binary", headers=kept)
 
+        async def own_page(request: Request) -> Response:
+            is_ours = self._is_ours(request.headers.get("host", ""))
+            page = self.own_pages.take(request.path_params["key"]) if is_ours else None
+            if page is None:
+                return PlainTextResponse("Not found.", status_code=404, headers=_HEADERS)
+            return Response(
+                page, media_type="text/html", headers={**_HEADERS, "Content-Security-Policy": own_pages.POLICY}
+            )
+
         pages = [Route("/", page_file), Route("/{name}", page_file), Route("/house/{key}.glb", house)]
+        pages.append(Route("/people/{key}.html", own_page))
         sockets = [WebSocketRoute("/live", self._connect), WebSocketRoute("/robot", self._connect_robot)]
         return Starlette(routes=[*pages, *sockets])
 

@@ -288,9 +288,15 @@ class Ended(Struct, frozen=True, kw_only=True, tag="ended"):
 
 
 class Over(Struct, frozen=True, kw_only=True, tag="over"):
-    """The session is over."""
+    """The session is over.
+
+    Attributes:
+        page: the address of the person's own page on this server; empty for none. making: whether it is being made.
+    """
 
     trials: int
+    page: str = ""
+    making: bool = False
 
 
 class Pong(Struct, frozen=True, kw_only=True, tag="pong"):

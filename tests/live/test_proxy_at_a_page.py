@@ -2,25 +2,16 @@
 
 from __future__ import annotations
 
-import math
 import threading
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any
 
-import msgspec
 import pytest
-from live_client import ScriptedPerson
 from live_session import Book
-from msgspec import Struct
+from proxy_at_page import Course, Follower, Turns, attend, in_batch
 
-from hthor import rules
-from hthor.episode import Episode, EpisodeLog, Frames, TrialWorld, begin, take_answers
-from hthor.episode.clocks import make_clock
-from hthor.episode.play import ask, finish
+from hthor.episode import EpisodeLog
 from hthor.guest import GuestPool
-from hthor.humans.model import HumanModel
-from hthor.live import wire
 from hthor.live.control import SessionControl
 from hthor.live.desk import Desk
 from hthor.live.loop import RealTimeLoop
@@ -28,132 +19,10 @@ from hthor.live.seat import LiveSeat
 from hthor.live.server import LiveServer
 from hthor.live.sessions import welcome
 from hthor.trials import TrialRunner, form_team, make_sessions, make_sources
-from hthor.types import HUMAN, SUBTICKS, Action, Drive, Mind, Move, Pose, Rotate, TrialSpec, Wait
+from hthor.types import HUMAN
 from hthor.types.events import Accepted, Declined
 
 pytest.importorskip("starlette", reason="live sessions need an optional dependency: pip install 'hthor[live]'")
-
-STEP_S = rules.TICK_S / SUBTICKS
-
-
-class Spied:
-    """A human model whose actions are noted."""
-
-    def __init__(self, model: Any) -> None:
-        self._model = model
-        self.actions: list[tuple[int, Action]] = []
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._model, name)
-
-    def act(self, observation: Any) -> Action:
-        action: Action = self._model.act(observation)
-        self.actions.append((observation.tick, action))
-        return action
-
-
-class Course(Struct):
-    """Where somebody was and looked in every tick of a trial, and what they did with hands and words, by tick."""
-
-    poses: list[Pose]
-    acts: list[tuple[int, dict[str, Any]]]
-
-    def at(self, tick: int, share: float) -> Pose:
-        """Where they were between a tick and the next."""
-        before, after = (self.poses[min(one, len(self.poses) - 1)] for one in (tick, tick + 1))
-        turn = math.remainder(after.gaze - before.gaze, math.tau)
-        return Pose(
-            x=before.x + share * (after.x - before.x),
-            y=before.y + share * (after.y - before.y),
-            yaw=before.gaze + share * turn,
-            pitch=after.pitch,
-        )
-
-
-def _act(action: Action) -> dict[str, Any]:
-    """The part of an action that is an act of a page."""
-    moves = isinstance(action.motion, Move | Rotate | Wait | Drive)
-    parts = {"motion": None if moves else action.motion, "say": action.say, "signals": action.signals}
-    return {name: msgspec.to_builtins(part) for name, part in parts.items() if part}
-
-
-class Follower(ScriptedPerson):
-    """Does in every frame what a course says; the server waits for it, so that no time is lost."""
-
-    def __init__(self, address: str, token: str, trial: int, course: Course) -> None:
-        super().__init__(address, token, steers=False)
-        self._trial, self._course = trial, course
-        self._left = list(course.acts)
-
-    def see(self, head: wire.FrameHead) -> None:
-        """Steer to where the course is after the next step, and act in the tick before an action is due."""
-        began = self.last("began")
-        if began is None or began["trial"] != self._trial:  # a frame of the trial before
-            return
-        while self._left and self._left[0][0] <= head.tick + 1:
-            self.act(**self._left.pop(0)[1])
-        goal = self._course.at(head.tick, (head.step + 1) / SUBTICKS)
-        dx, dy = (goal.x - head.x) / STEP_S, (goal.y - head.y) / STEP_S
-        cos, sin = math.cos(goal.yaw), math.sin(goal.yaw)
-        drive = Drive(forward=cos * dx + sin * dy, left=cos * dy - sin * dx, yaw=goal.yaw, pitch=goal.pitch)
-        self.socket.send(wire.encode_steering(wire.Steering(head.tick * SUBTICKS + head.step + 1, drive)))
-
-
-class Turns:
-    """The time of a session that waits in every step for the answer of the page."""
-
-    def __init__(self, seat: LiveSeat) -> None:
-        self._steps, self._steered = 0, 0
-        self._news = threading.Condition()
-        self._take, seat.steer = seat.steer, self._steer  # type: ignore[method-assign]
-
-    def restart(self) -> None:
-        self._steps = self._steered = 0
-
-    def now(self) -> float:
-        return self._steps * STEP_S
-
-    def sleep(self, _: float) -> None:
-        self._steps += 1
-        with self._news:
-            assert self._news.wait_for(lambda: self._steered > self._steps, 60.0)
-
-    def _steer(self, steering: wire.Steering) -> None:
-        self._take(steering)
-        with self._news:
-            self._steered = steering.number
-            self._news.notify_all()
-
-
-def in_batch(agent: str, session: int, trials: int) -> list[tuple[EpisodeLog, Course]]:
-    """The first trials of a session of the smoke suite by its simulated person, and what they did."""
-    team = form_team(["scout"], [agent])
-    courses: list[Course] = []
-
-    def loop(
-        trial: TrialSpec, world: TrialWorld, humans: Mapping[str, HumanModel], robots: Mapping[str, Mind]
-    ) -> EpisodeLog:
-        """As `hthor.episode.play`, and notes what the person does."""
-        spied = Spied(humans[HUMAN])
-        people, episode, clock = {HUMAN: spied}, Episode(trial, world, (HUMAN, *robots)), make_clock(trial)
-        episode.reset()
-        frames, poses = Frames(episode, people), []
-        begin(episode, people, robots, clock)
-        while not episode.done:
-            poses.append(world.pose(HUMAN))
-            ask(episode, people, robots, clock, frames)
-            take_answers(episode, clock)
-            frames.play()
-            episode.advance()
-        poses.append(world.pose(HUMAN))
-        courses.append(Course(poses, [(tick, act) for tick, action in spied.actions if (act := _act(action))]))
-        return finish(episode, people)
-
-    runner = TrialRunner(make_sources(team), GuestPool(), loop=loop)
-    (chosen,) = (one for one in make_sessions("smoke", agent=team, humans="proxy") if one.number == session)
-    with runner.enter(chosen) as participants:
-        logs = [runner.run(participants, trial).log for trial in chosen.trials[:trials]]
-    return list(zip(logs, courses, strict=True))
 
 
 @contextmanager
@@ -180,17 +49,9 @@ def at_a_page(agent: str, session: int, courses: list[Course]) -> list[EpisodeLo
         for trial, course in zip(chosen.trials, courses, strict=False):
             turns.restart()
             with Follower(server.address, server.tokens[HUMAN], trial.index, course) as person:
-                threading.Thread(target=_attend, args=(person, trial.index)).start()
+                threading.Thread(target=attend, args=(person, trial.index)).start()
                 logs.append(runner.run(participants, trial).log)
     return logs
-
-
-def _attend(person: Follower, trial: int) -> None:
-    """Begin and rate a trial."""
-    person.wait_for("trial", trial=trial)
-    person.send({"type": "begin", "trial": trial})
-    person.wait_for("ended", 3600.0, trial=trial)
-    person.send({"type": "rate", "trial": trial, "value": 4})
 
 
 ALL = pytest.mark.nightly

@@ -8,6 +8,7 @@ import { shownIn } from "./headset/shown.js";
 import { House, outdoors } from "./house.js";
 import { Keys } from "./keys.js";
 import { OwnMotion } from "./motion.js";
+import { showOwnPage } from "./own_page.js";
 import { NOTICE_MS, Panels } from "./panels.js";
 
 const QUESTION = "How much do you trust your robot teammate?";
@@ -49,6 +50,7 @@ class Page {
     this.vrAsked = false;
     /** Whether the person has left VR in a trial, and has not said that they go on at the desk. */
     this.vrLeft = false;
+    this.farewell = "";
     this.forget();
     this.worker = new Worker(new URL("socket.js", document.baseURI), { type: "module" });
     this.worker.onmessage = ({ data }) => this.receive(data);
@@ -124,7 +126,7 @@ class Page {
   /** The card over the house; without a title there is none. @returns {any} */
   card() {
     if (this.problem) return { title: "This page cannot take part", text: this.problem };
-    if (this.over) return { title: "The session is over", text: "Thank you for taking part. You can close this page." };
+    if (this.over) return { title: "The session is over", text: this.farewell };
     if (this.lost) {
       return { title: "The connection is gone", text: "The page connects again by itself. Time stands still." };
     }
@@ -324,8 +326,11 @@ class Page {
     this.change({ ended });
   }
 
-  on_over() {
-    this.change({ over: true });
+  /** @param {any} message */
+  on_over({ page, making }) {
+    const next = making ? "A page about your session is being made for you …" : "You can close this page.";
+    this.change({ over: true, farewell: `Thank you for taking part. ${next}` });
+    if (page) showOwnPage(page);
   }
 
   /** @param {string} action */

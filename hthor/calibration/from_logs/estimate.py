@@ -51,7 +51,7 @@ NEEDS: dict[str, tuple[int, str]] = {
     "sigma": (12, "people"),
 }
 """Amount of data that each estimate needs for an error of about 15 %, by experience."""
-_CAPPED = 0.985
+CAPPED = 0.985
 """Share of the device's limit from which a measurement is a lower bound: without the limit it might be larger."""
 _LEAST_SE = 1e-3
 
@@ -134,9 +134,7 @@ class EstimateCollector:
 
     def capped(self, rows: Sequence[tuple[float, TrialFeatures, float]]) -> Sample:
         """A sample of (value, trial, greatest value that the device allows); values near it are lower bounds."""
-        return timing_models.make_sample(
-            [(y, one.person, one.index, int(y >= _CAPPED * most)) for y, one, most in rows]
-        )
+        return timing_models.make_sample([(y, one.person, one.index, int(y >= CAPPED * most)) for y, one, most in rows])
 
     def median(self, name: str, values: Sequence[float], method: str, *, least: float) -> None:
         """Estimate a number that is the same for everybody by the median, because some measurements are wrong.

@@ -75,7 +75,7 @@ def estimate_manipulation(collector: EstimateCollector) -> None:
     prior, effect = collector.beliefs["t_manip"].term(), parameter("t_manip").effect
     fit = timing_models.fit_log_normal(data, prior, effect, noise=0.35, practice=-1, learn=practice)
     collector.add(("t_manip",), fit, len(data.y), "attempt to outcome, mixed model")
-    ended = [attempt for _, attempt in attempts if not attempt.cut]
+    ended = [attempt for _, attempt in attempts if not attempt.cut and not attempt.seen]
     collector.share("p_fail", sum(attempt.missed for attempt in ended), len(ended), "misses among attempts")
 
 

@@ -9,12 +9,13 @@ from msgspec import UNSET, Struct
 
 from hthor import log_corrections, log_format, rules
 from hthor.calibration.from_logs import one_person
-from hthor.calibration.from_logs.features import display_use, locomotion, messages
+from hthor.calibration.from_logs.features import display_use, hands, locomotion, messages
 from hthor.calibration.from_logs.features.display_use import Follow
 from hthor.calibration.from_logs.features.locomotion import Walk
 from hthor.calibration.from_logs.features.messages import Offer, Reading
 from hthor.calibration.from_logs.models.search_models import Choice, Exposure
 from hthor.calibration.from_logs.models.trust_model import Experience
+from hthor.comms.claims import is_false
 from hthor.errors import RunError
 from hthor.eval.records import attempts, corrected_log, trial_record
 from hthor.eval.records.trial_record import TrialRecord
@@ -117,11 +118,15 @@ def _record(file: Path, number: int, line: bytes, skipped: Counter[str]) -> Tria
 
 
 class Attempt(Struct, frozen=True, kw_only=True):
-    """One manipulation attempt: its duration [s], whether it ``missed``, and whether it was ``cut`` short."""
+    """One manipulation attempt: its duration [s], whether it ``missed``, and whether it was ``cut`` short.
+
+    ``seen``: measured from outside, as `hthor.calibration.from_logs.features.hands` does, so that misses are not known.
+    """
 
     seconds: float
     missed: bool
     cut: bool
+    seen: bool = False
 
 
 class TrialFeatures(Struct, frozen=True, kw_only=True):
@@ -180,21 +185,51 @@ def _reduced(trial: Trial) -> TrialFeatures:
 
 
 def _experience(record: TrialRecord) -> Experience:
-    offers = [entry for entry in record.journal if isinstance(entry, events.Offer)]
-    accepted = [offer.tick for offer in offers if offer.relevant and offer.answer == "accept"]
-    misled = [entry.tick for entry in record.journal if isinstance(entry, events.Misled)]
+    if _has(record, events.Offer) or not _has(record, events.Inputs):
+        offers = [entry for entry in record.journal if isinstance(entry, events.Offer)]
+        accepted = [offer.tick for offer in offers if offer.relevant and offer.answer == "accept"]
+        misled = sum(isinstance(entry, events.Misled) for entry in record.journal)
+    else:
+        accepted, misled = _followed(record)
     helped = accepted[0] * rules.TICK_S if accepted and not misled else math.nan
     return Experience(
         offered=any(isinstance(event, events.Shown) for event in record.events),
         helped=helped,
-        misled=len(misled),
+        misled=misled,
         met=record.met,
         rating=record.ratings[HUMAN] or 0,
     )
 
 
+def _followed(record: TrialRecord) -> tuple[list[int], int]:
+    """When messages were accepted by a person without a journal of offers, and how many of these misled them.
+
+    Somebody was misled who was near the place of a wrong message before they accepted the next.
+    """
+    sent = {event.message: event for event in record.events if isinstance(event, events.Sent)}
+    accepted = [event for event in record.events if isinstance(event, events.Accepted) and event.message in sent]
+    misled = 0
+    for number, event in enumerate(accepted):
+        end = accepted[number + 1].tick if number + 1 < len(accepted) else record.ticks
+        claim = sent[event.message]
+        if is_false(claim) and claim.position is not None:
+            misled += next(display_use.arrival(record, event.tick, claim), end) < end
+    return [event.tick for event in accepted], misled
+
+
+def _has(record: TrialRecord, kind: type[events.JournalEntry]) -> bool:
+    """Whether the journal has an entry of a kind."""
+    return any(isinstance(entry, kind) for entry in record.journal)
+
+
 def manipulation_attempts(record: TrialRecord) -> tuple[Attempt, ...]:
-    """The attempts of a trial in order; an attempt without outcome was cut short by walking on or by the end."""
+    """The attempts of a trial in order; an attempt without outcome was cut short by walking on or by the end.
+
+    People at pages have no journal of attempts: theirs are measured from outside.
+    """
+    if any(isinstance(entry, events.Inputs) for entry in record.journal) and not _has(record, events.Attempt):
+        times = hands.handling_times(record)
+        return tuple(Attempt(seconds=seconds, missed=False, cut=False, seen=True) for seconds in times)
     walked = [
         tick
         for entry in record.journal

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from hthor.commands.humans import validate
+from hthor.commands.humans import profile, validate
 from hthor.commands.options import Json
 from hthor.console import formats, output
 from hthor.console.formats import Format, Shape
@@ -99,6 +99,7 @@ def sample(
 
 
 app.command("validate")(validate.validate)
+app.command("profile")(profile.profile)
 
 
 def _everybody() -> list[dict[str, Any]]:

@@ -22,6 +22,7 @@ from hthor.types import WALKERS, Goal, HouseSpec
 SCENES = ("alder", "birch", "cedar", "elder", "hazel", "juniper", "linden", "maple", "rowan", "willow")
 """The ten scenes of the benchmark."""
 FIND, MOVE = "object_goal_navigation", "mobile_manipulation"
+WALK = "visual_language_navigation"
 ROBOTS = 4
 """Number of robots' start poses in every task; the first is for the first robot."""
 
@@ -137,6 +138,35 @@ def by_level(kind: str, *hands: tuple[tuple[Level, float], ...]) -> Callable[[Su
     return orders
 
 
+def together(
+    *parts: Callable[[SuiteSpec, HouseSpec], list[TaskOrder]],
+) -> Callable[[SuiteSpec, HouseSpec], list[TaskOrder]]:
+    """The orders of several functions for each house, one after the other."""
+
+    def orders(spec: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
+        return [order for part in parts for order in part(spec, house)]
+
+    return orders
+
+
+def errands(share: float, destination: str) -> Callable[[SuiteSpec, HouseSpec], list[TaskOrder]]:
+    """Orders for one search and one delivery to the ``destination`` per house; ``share`` as in `TaskOrder`."""
+
+    def orders(spec: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
+        found = []
+        for name in (FIND, MOVE):
+            kind: TaskKind = plugins.load("task kind", name)
+            goals = [goal for goal in kind.goals(house) if goal.destination in ("", destination)]
+            if not goals:
+                raise HthorError(f"house '{house.id}' has nothing for a task of kind '{name}' for '{destination}'")
+            task = f"{spec.name}/{house.id}/{kind.short}"
+            goal = goals[seeds.choice([1.0] * len(goals), spec.root, task, "goal")]
+            found.append(TaskOrder(name=task, kind=name, share=share, goal=goal))
+        return found
+
+    return orders
+
+
 def each_triplet(spec: SuiteSpec, house: HouseSpec) -> list[TaskOrder]:
     """A search for each target with each triplet that is possible in the house."""
     kinds = scene_graph.kinds_present(house)
@@ -235,7 +265,15 @@ SUITE_SPECS = {
             version=1,
             root=20240616,
             houses=SCENES,
-            orders=by_target("visual_language_navigation", *WALKERS),
+            orders=by_target(WALK, *WALKERS),
+        ),
+        SuiteSpec(
+            name="calibration",
+            version=1,
+            root=20240617,
+            houses=("alder", "hazel", "juniper"),
+            orders=together(by_target(WALK, "person_1"), errands(0.2, "fridge")),
+            candidates=4,
         ),
     )
 }

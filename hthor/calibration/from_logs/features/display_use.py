@@ -79,10 +79,10 @@ def _end(record: TrialRecord, begin: int, message: Sent) -> int:
     stops = [event.tick for event in record.events if event.seat == HUMAN and isinstance(event, (Accepted, Picked))]
     glimpses = [entry for entry in record.journal if isinstance(entry, Exposure) and entry.object == message.object]
     seen = [max(begin, entry.tick) for entry in glimpses if entry.noticed]  # what was seen before needs no way
-    return min([tick for tick in (*stops, *_near(record, begin, message)) if tick > begin] + seen + [record.ticks])
+    return min([tick for tick in (*stops, *arrival(record, begin, message)) if tick > begin] + seen + [record.ticks])
 
 
-def _near(record: TrialRecord, begin: int, message: Sent) -> Iterator[int]:
+def arrival(record: TrialRecord, begin: int, message: Sent) -> Iterator[int]:
     """The tick from which the person was near the place of a message, if they came there."""
     path, every, place = record.paths[HUMAN], rules.LOG_EVERY_TICKS, message.position
     for number in range(begin // every + 1, len(path)):

@@ -61,6 +61,13 @@ def make_trust_data(sessions: Sequence[Sequence[Experience]], person: Array) -> 
     return TrustData(person=person, **arrays)
 
 
+def repeat_session(data: TrustData, times: int) -> TrustData:
+    """The first session so many times, as if people with other trust at first had had the same experiences."""
+    names = ("offered", "helped", "misled", "met", "rating", "there")
+    arrays = {name: np.repeat(getattr(data, name)[:1], times, axis=0) for name in names}
+    return TrustData(person=np.arange(times), **arrays)
+
+
 def mean_trust(data: TrustData, values: Mapping[str, float], effects: Array) -> tuple[Array, Array]:
     """Mean trust (S, T) at the beginning of each trial, and after it; ``effects`` (S,) are added to mu0's logit."""
     fixed, n0 = Parameters(), math.exp(values["n0"])
