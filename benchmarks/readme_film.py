@@ -82,7 +82,12 @@ class _Cameras(CameraFrames):
 
 def write_film(path: Path, session: Session) -> None:
     """Write the film of the last trial of a session as an animated WebP that begins anew for ever."""
-    frames, lasts = _joined(Film(session).frames())
+    write_frames(path, Film(session).frames())
+
+
+def write_frames(path: Path, shown: Sequence[Any]) -> None:
+    """Write frames of `FRAME_S` each, (H, W, 3) uint8 in the order of colours of OpenCV, as an animated WebP."""
+    frames, lasts = _joined(shown)
     first, *others = (Image.fromarray(cv2.cvtColor(frame, cv2.COLOR_BGR2RGB)) for frame in frames)
     first.save(
         path,

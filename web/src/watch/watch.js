@@ -149,7 +149,8 @@ class Watch {
     const edge = (/** @type {string} */ id) => find(id).getBoundingClientRect();
     const narrow = wide < NARROW_PX;
     const left = narrow ? 0 : edge("left").right + GAP_PX;
-    const right = narrow ? wide : document.body.classList.contains("no-list") ? wide - GAP_PX : edge("right").left - GAP_PX;
+    const bare = document.body.classList.contains("no-list") && this.recording.messages.length === 0;
+    const right = narrow ? wide : bare ? wide - GAP_PX : edge("right").left - GAP_PX;
     return { wide, high, clear: { left, right, low: high - edge("bottom").top + GAP_PX, high: high - edge("top").bottom - GAP_PX } };
   }
 
