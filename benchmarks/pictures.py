@@ -115,8 +115,6 @@ _LADDER_CODE = (
     "hthor/report/html/matplotlib_svg.py",
     "hthor/report/page/figures/run_styles.py",
 )
-_FILMING = ("report/drawing", "report/drawing/film", "report/drawing/overviews", "report/drawing/person_display")
-"""Folders with the code that draws a film, besides `benchmarks.readme_film` itself."""
 
 
 def names() -> list[str]:
@@ -248,17 +246,23 @@ def _code_of_pages() -> list[Path]:
 
 
 def _code_of_films() -> list[Path]:
-    """The files that decide how a film looks."""
-    folders = [path for folder in _FILMING for path in sorted((ROOT / "hthor" / folder).glob("*.py"))]
-    more = ("hthor/report/page/camera_frames.py", "hthor/comms/map_picture.py", *_OVERVIEWS)
-    return [ROOT / "benchmarks" / "readme_film.py", *folders, *(ROOT / path for path in more)]
+    """The files that decide how a film looks: those of the page that shows it, and the light of its house."""
+    page = [ROOT / "web" / "src" / f"{part}.js" for part in ("eye", "house", "map")]
+    page += sorted((ROOT / "web" / "src" / "watch").iterdir())
+    own = [ROOT / "benchmarks" / "readme_film.py", *sorted((ROOT / "hthor" / "watch").glob("*.py"))]
+    return [*own, *page, *_code_of_light()]
+
+
+def _code_of_light() -> list[Path]:
+    """The files that decide how pages draw a house."""
+    light = (f"hthor/live/{part}.py" for part in ("glb", "hidden_corners", "house_file", "still_light", "surfaces"))
+    scene = sorted((ROOT / "hthor" / "world" / "rendering" / "scene").glob("*.py"))
+    return [*(ROOT / path for path in light), *scene, ROOT / "benchmarks" / "page_browser.py"]
 
 
 def _code_of_live_pages(name: str) -> list[Path]:
     """The files that decide how the page of `hthor live` looks: how it draws, its light, and all else that is on it."""
-    light = (f"hthor/live/{part}.py" for part in ("glb", "hidden_corners", "house_file", "still_light", "surfaces"))
-    scene = sorted((ROOT / "hthor" / "world" / "rendering" / "scene").glob("*.py"))
-    code = [*(ROOT / path for path in light), *scene, ROOT / "benchmarks" / "page_browser.py"]
+    code = _code_of_light()
     if name == LOOKS:
         drawing = (ROOT / "web" / "src" / part for part in ("eye.js", "house.js"))
         return [*code, *drawing, ROOT / "benchmarks" / "page_looks.py"]

@@ -326,7 +326,8 @@ def test_a_film_is_out_of_date_when_the_code_that_draws_it_changes(monkeypatch: 
 
     monkeypatch.setattr(pictures, "_code_sha256", changed)
     assert pictures.origin("trial.webp") != before
-    assert {"readme_film.py", "display_pictures.py", "framing.py", "ray_renderer.py"} <= {path.name for path in hashed}
+    drawing = {"readme_film.py", "record_trial.py", "watch.js", "house.js", "still_light.py"}
+    assert drawing <= {path.name for path in hashed}
 
 
 def test_a_picture_that_shows_something_else_is_named_for_eyes() -> None:
