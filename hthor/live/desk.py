@@ -23,6 +23,7 @@ from hthor.live.desk_wire import (
     Person,
     Plan,
     PlayedTrial,
+    SessionOver,
     ToDesk,
     Watch,
     Ways,
@@ -80,6 +81,7 @@ class _Shown:
     events: list[Line] = field(default_factory=list)
     ways: dict[str, list[Vec2]] = field(default_factory=dict)
     watch: Watch | None = None
+    over: SessionOver | None = None
     places: dict[int, bytes] = field(default_factory=dict)
     moved: dict[int, bytes] = field(default_factory=dict)
 
@@ -87,7 +89,14 @@ class _Shown:
         """What a page that joins has missed."""
         if self.plan is None:
             return []
-        so_far = (self.plan, self.gathering, Happened(events=tuple(self.events)), Ways(ways=self.ways), self.watch)
+        so_far = (
+            self.plan,
+            self.gathering,
+            Happened(events=tuple(self.events)),
+            Ways(ways=self.ways),
+            self.watch,
+            self.over,
+        )
         return [message for message in so_far if message is not None]
 
 
@@ -241,6 +250,12 @@ class Desk:
         played = self._played()
         with self._lock:
             self._tell(played)
+
+    def show_over(self, over: SessionOver) -> None:
+        """Show that the session is over, and where the people's own pages are."""
+        with self._lock:
+            self._shown.over = over
+            self._tell(over)
 
     def _start(self) -> None:
         with self._lock:
