@@ -23,6 +23,7 @@ from hthor.live.desk_wire import (
     Person,
     Plan,
     PlayedTrial,
+    SessionOver,
     ToDesk,
     TrialOver,
     Watch,
@@ -82,6 +83,7 @@ class _Shown:
     ways: dict[str, list[Vec2]] = field(default_factory=dict)
     watch: Watch | None = None
     end: TrialOver | None = None
+    over: SessionOver | None = None
     places: dict[int, bytes] = field(default_factory=dict)
     moved: dict[int, bytes] = field(default_factory=dict)
 
@@ -96,6 +98,7 @@ class _Shown:
             Ways(ways=self.ways),
             self.watch,
             self.end,
+            self.over,
         )
         return [message for message in so_far if message is not None]
 
@@ -263,6 +266,12 @@ class Desk:
         played = self._played()
         with self._lock:
             self._tell(played)
+
+    def show_over(self, over: SessionOver) -> None:
+        """Show that the session is over, and where the people's own pages are."""
+        with self._lock:
+            self._shown.over = over
+            self._tell(over)
 
     def _start(self) -> None:
         with self._lock:

@@ -196,7 +196,14 @@ class Refused(Struct, frozen=True, kw_only=True, tag="refused"):
     words: str
 
 
-ToDesk = Plan | Gathering | Watch | TrialOver | Ways | Happened | Played | Refused | wire.HeadsetAsked
+class SessionOver(Struct, frozen=True, kw_only=True, tag="session_over"):
+    """The session is over; ``pages`` are the files of people's own pages in the run's ``folder``, by their seat."""
+
+    folder: str
+    pages: dict[str, str]
+
+
+ToDesk = Plan | Gathering | Watch | TrialOver | Ways | Happened | Played | SessionOver | Refused | wire.HeadsetAsked
 """What the server sends."""
 
 _FROM_DESK: msgspec.json.Decoder[FromDesk] = msgspec.json.Decoder(FromDesk)

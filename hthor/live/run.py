@@ -24,6 +24,7 @@ from hthor.live import local_network, wire
 from hthor.live.certificate import Certificate, certificate
 from hthor.live.control import SessionControl, SessionStopped
 from hthor.live.desk import Desk
+from hthor.live.desk_wire import SessionOver
 from hthor.live.engine import LiveEngine
 from hthor.live.loop import RealTimeLoop
 from hthor.live.robot_programs import RobotPrograms
@@ -158,15 +159,19 @@ class LiveRun:
         for seat in self.seats.values():
             seat.show(over)
         pages: dict[str, str] = {}
+        files: dict[str, str] = {}
         try:
             written = person_page.write_pages(RunFolder(run.folder.path), self._sections(run.folder.path))
             for human in run.sessions[-1].trials[0].humans:
                 if human.seat in self.seats and human.participant in written:
-                    pages[human.seat] = self.server.own_pages.publish(written[human.participant].read_bytes())
+                    page = written[human.participant]
+                    files[human.seat] = f"{page.parent.name}/{page.name}"
+                    pages[human.seat] = self.server.own_pages.publish(page.read_bytes())
         except HthorError as error:
             self._tell(f"the people's own pages were not made: {error}")
         for name, seat in self.seats.items():
             seat.show(msgspec.structs.replace(over, page=pages.get(name, ""), making=False))
+        self.desk.show_over(SessionOver(folder=str(run.folder.path), pages=files))
         time.sleep(_FAREWELL_S)
         if all(seat.absent_s() == 0.0 for seat in self.seats.values()):
             self.server.own_pages.wait(_FETCH_S if self._page else 0.0)

@@ -74,7 +74,10 @@ def test_a_session_at_a_page_is_a_run_like_any_other(teller: Path, tmp_path: Pat
         somebody(playwright, command) as page,
     ):
         page.wait_for_selector("#title:text('The session is over')", timeout=300_000)
+        own = page.frame_locator("#own-page-frame")
+        own.locator("h3").last.wait_for(timeout=60_000)
         command.finish()
+        assert own.locator("h3").count() == 3, "a person's own page stays when the server is gone"
     assert [record.log.ratings for record in RunFolder(run).played()] == [{"human": 5}] * 3
     assert json.loads(_hthor("score", str(run), "--json"))["counts"]["trials"] == 3
     _hthor("replay", str(run), "2", "--out", str(tmp_path / "replay.png"))

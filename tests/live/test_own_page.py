@@ -37,7 +37,10 @@ def fetch(address: str, path: str, **headers: str) -> tuple[int, Any, str]:
 def test_everybody_gets_their_own_page_at_an_address_that_only_they_know(
     tmp_path: Path, no_looks: None, short: None
 ) -> None:
-    with make_run(tmp_path / "run", agent=("frontier",)) as run:
+    with (
+        make_run(tmp_path / "run", agent=("frontier",)) as run,
+        ScriptedPerson(run.server.address, run.server.desk_url.partition("#")[2], steers=False) as desk,
+    ):
         playing = threading.Thread(target=lambda: run.play(lambda _: Silent()))
         playing.start()
         with ScriptedPerson(run.server.address, run.server.tokens[HUMAN]) as person:
@@ -53,6 +56,7 @@ def test_everybody_gets_their_own_page_at_an_address_that_only_they_know(
             assert headers["Content-Security-Policy"] == own_pages.POLICY
             assert "Your session" in page
             assert "6 of 7" in page
+            assert desk.wait_for("session_over")["pages"] == {HUMAN: "people/participant-0.html"}
             assert fetch(run.server.address, "/people/0.html")[0] == 404
             assert fetch(run.server.address, over["page"], Host="elsewhere.example")[0] == 404
         playing.join(60.0)

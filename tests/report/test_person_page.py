@@ -18,7 +18,7 @@ from hthor.types import HUMAN, HumanSeat
 TRIAL = fakes.run_of(10, name="small")[1][0].trials[0]
 OTHER = "human2"
 AT = (3.0, 2.0, 0.8)
-COURSE = [
+COURSE: list[tuple[str, int, str, dict[str, Any]]] = [
     (
         "robot",
         40,

@@ -145,7 +145,7 @@ def in_batch(agent: str, session: int, trials: int, suite: str = "smoke") -> lis
     return list(zip(logs, courses, strict=True))
 
 
-def attend(person: Follower, trial: int, rating: int = 4) -> None:
+def attend(person: ScriptedPerson, trial: int, rating: int = 4) -> None:
     """Begin and rate a trial."""
     person.wait_for("trial", trial=trial)
     person.send({"type": "begin", "trial": trial})

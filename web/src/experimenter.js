@@ -120,6 +120,14 @@ class Desk {
   }
 
   /** @param {any} message */
+  on_session_over({ folder, pages }) {
+    const files = Object.entries(pages).map(([seat, file]) => `${seat}: ${file}`);
+    const words = files.length > 0 ? ` The people's own pages, in ${folder}: ${files.join(", ")}` : "";
+    find("task").textContent = `The session is over.${words}`;
+    find("state").textContent = "";
+  }
+
+  /** @param {any} message */
   on_ways({ ways }) {
     for (const [seat, way] of Object.entries(ways)) this.trails.set(seat, [.../** @type {any} */ (way)]);
   }

@@ -54,7 +54,7 @@ function onWords(message) {
     pending = pending.filter((act) => act.number > message.act);
   } else if (message.type === "pong") {
     roundTrip = (performance.now() - message.sent) / 1000;
-  } else if (message.type === "problem" || message.type === "over") {
+  } else if (message.type === "problem" || (message.type === "over" && !message.making)) {
     const closed = socket;
     socket = null; // do not connect again
     closed?.close();
