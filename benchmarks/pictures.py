@@ -61,8 +61,8 @@ LOOK_BELOW = 0.98
 """Pictures that are less similar than this to those that they replace are named for a person to look at."""
 _OVERVIEWS = tuple(f"hthor/world/rendering/{part}.py" for part in ("ray_renderer", "shading", "viewpoint"))
 _SUFFIXES = (".png", ".jpg", ".webp")
-BY_HAND = ("robots.png", "loose_things.jpg")
-"""Pictures that need a stage and a camera of their own."""
+BY_HAND = ("robots.png", "loose_things.jpg", "live_own_page.jpg")
+"""Pictures that need a stage and a camera of their own, or a session of ten minutes."""
 AGENTS, SUITE, CASE = ("none", "frontier", "oracle"), "smoke", "smoke/birch/manipulation-01"
 """Of which runs the pictures of a report and of a case are, and of which task the case is."""
 _BROWSER = "chromium"
