@@ -15,11 +15,12 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.page_headset import deliver
+from benchmarks.page_wearer import DEVICE, Wearer
 
 FOLDER = Path("web/tests/recordings")
 HEADSETS = (("quest2", "right", False), ("quest3", "left", True))
 """Model, the hand that answers, and whether the person sits."""
-_DIGITS = 4
+_DIGITS, _REST_MS = 4, 400
 
 _RECORD = """() => {
   page.recorded = [];
@@ -68,9 +69,21 @@ def record(model: str, hand: str, *, seated: bool) -> dict[str, Any]:
         page = person.page
         page.evaluate(_RECORD)
         options, space = page.evaluate("[page.headset.options, page.headset.space]")
+        next(moments)
+        _step_and_stroll(person)
         for _ in moments:
             pass
         return {"options": options, "space": space, "pictures": list(_changes(page.evaluate("page.recorded")))}
+
+
+def _step_and_stroll(person: Wearer) -> None:
+    """Take some steps in the room and back, and walk a little with the stick half-way."""
+    for place in (0.1, 0.2, 0.3, 0.15, 0.0):
+        person.page.evaluate(f"{DEVICE}.position.x = {place}")
+        person.page.wait_for_timeout(_REST_MS)
+    for tilt in (-0.5, 0.0):
+        person.page.evaluate(f"{DEVICE}.controllers.{person.stick}.updateAxes('thumbstick', 0, {tilt})")
+        person.page.wait_for_timeout(_REST_MS)
 
 
 def _changes(pictures: list[dict[str, Any]]) -> Iterator[dict[str, Any]]:

@@ -7,6 +7,7 @@ from contextvars import ContextVar
 
 _Listener = Callable[[str], None]
 _listener: ContextVar[_Listener | None] = ContextVar("listener", default=None)
+_waiter: ContextVar[Callable[[], None] | None] = ContextVar("waiter", default=None)
 _reader: ContextVar[_Listener | None] = ContextVar("reader", default=None)
 
 
@@ -14,6 +15,12 @@ def say(words: str) -> None:
     """Report the current step, such as "playing trial 3 of 10"."""
     if (listener := _listener.get()) is not None:
         listener(words)
+
+
+def wait_for_people() -> None:
+    """Report that from now on nothing is computed but what people ask for, so nobody wonders whether it still works."""
+    if (waiter := _waiter.get()) is not None:
+        waiter()
 
 
 def note(words: str) -> None:
@@ -28,13 +35,14 @@ def note(words: str) -> None:
 
 
 @contextmanager
-def heard_by(listener: _Listener) -> Iterator[None]:
-    """Report all steps within the block to ``listener``."""
-    before = _listener.set(listener)
+def heard_by(listener: _Listener, waiter: Callable[[], None] | None = None) -> Iterator[None]:
+    """Report all steps within the block to ``listener``, and to ``waiter`` when it waits for people."""
+    before, waited = _listener.set(listener), _waiter.set(waiter)
     try:
         yield
     finally:
         _listener.reset(before)
+        _waiter.reset(waited)
 
 
 @contextmanager

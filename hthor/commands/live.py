@@ -12,6 +12,7 @@ import msgspec
 import typer
 from msgspec import structs
 
+from hthor import activity
 from hthor.commands import person_table
 from hthor.commands.eval import results
 from hthor.commands.options import Json, takes_options
@@ -120,6 +121,7 @@ def live(
 
         options, sections = protocol.prescribed(options), person_files.sections
     tell = partial(output.say, to=talk)
+    activity.wait_for_people()
     with LiveRun(
         options,
         port=port,

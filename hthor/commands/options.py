@@ -82,6 +82,9 @@ Trial = Annotated[
         "has several attempts; 12@0 is the first at trial 12.",
     ),
 ]
+AgentFiles = Annotated[
+    list[str] | None, typer.Option(help="The file of an agent that is not built in.", show_default=False)
+]
 RobotFiles = Annotated[
     list[str] | None, typer.Option(help="The file of your own robot, if the run used one.", show_default=False)
 ]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
-from hthor.commands.options import AgentArgs, HumansFile, KindFile, Readable, RobotFiles, Run, Trial
+from hthor.commands.options import AgentArgs, AgentFiles, HumansFile, KindFile, Readable, RobotFiles, Run, Trial
 from hthor.console import output
 from hthor.errors import HthorError
 
@@ -54,10 +54,7 @@ def replay(
             help="With --eyes, render with textures and shadows; needs OpenGL, and the pixels depend on it.",
         ),
     ] = False,
-    agent: Annotated[
-        list[str] | None,
-        typer.Option(help="The file of an agent that is not built in.", show_default=False),
-    ] = None,
+    agent: AgentFiles = None,
     agent_args: AgentArgs = None,
     readable: Readable = None,
     robot: RobotFiles = None,

@@ -8,7 +8,8 @@ from typing import Annotated
 
 import typer
 
-from hthor.commands.options import AgentArgs, HumansFile, Json, KindFile, Readable, RobotFiles, Run, Trial
+from hthor import activity
+from hthor.commands.options import AgentArgs, AgentFiles, HumansFile, Json, KindFile, Readable, RobotFiles, Run, Trial
 from hthor.console import output
 
 
@@ -24,10 +25,7 @@ def watch(
         ),
     ] = None,
     port: Annotated[int, typer.Option(min=0, max=65535, help="The port of the page; 0 for any that is free.")] = 0,
-    agent: Annotated[
-        list[str] | None,
-        typer.Option(help="The file of an agent that is not built in.", show_default=False),
-    ] = None,
+    agent: AgentFiles = None,
     agent_args: AgentArgs = None,
     readable: Readable = None,
     robot: RobotFiles = None,
@@ -45,9 +43,10 @@ def watch(
     from hthor.eval.records.run_folder import RunFolder
     from hthor.eval.replay.session_history import RunFiles
     from hthor.guest.agent import inputs
+    from hthor.live import server as live_server
     from hthor.watch import page, page_server, record_trial
 
-    page.check_built()
+    live_server.check_built()
     if out is not None and out.exists() and not out.is_dir():
         raise HthorError(f"{out} is a file; --out takes a folder, in which the page is called index.html.")
     record = find.find_trial(RunFolder(run), trial)
@@ -57,6 +56,7 @@ def watch(
     if out is not None:
         output.put_files([page.write_page(out, made)], json, key=record.key, task=record.spec.task.id)
         return
+    activity.wait_for_people()
     with page_server.PageServer(made, port) as server, contextlib.suppress(KeyboardInterrupt):
         if json:
             output.put_json({"address": server.address, "key": record.key, "task": record.spec.task.id})

@@ -29,7 +29,7 @@ def shown(arguments: Sequence[str], groups: Collection[str] = ()) -> Iterator[No
     Args:
         groups: names of command groups, whose commands have two words.
     """
-    if "--quiet" in arguments or "serve" in arguments[:2] or arguments[:1] in ([], ["live"]):  # they wait for people
+    if "--quiet" in arguments or "serve" in arguments[:2] or not arguments:
         yield
         return
     words = arguments[: 2 if arguments[0] in groups else 1]
@@ -38,7 +38,7 @@ def shown(arguments: Sequence[str], groups: Collection[str] = ()) -> Iterator[No
     sys.stdout, sys.stderr = _Stream(before[0], notice), _Stream(before[1], notice)
     notice.start(before[1])
     try:
-        with activity.heard_by(notice.hear):
+        with activity.heard_by(notice.hear, notice.stop):
             yield
     finally:
         notice.stop()

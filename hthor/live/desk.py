@@ -29,9 +29,9 @@ from hthor.live.desk_wire import (
     Watch,
     Ways,
 )
+from hthor.live.event_sentences import TOO_MANY
 from hthor.live.wire import FrameHead
 from hthor.types import SUBTICKS
-from hthor.types.events import Progress, Thought
 
 if TYPE_CHECKING:
     from hthor.episode import Episode
@@ -42,8 +42,6 @@ if TYPE_CHECKING:
 
 _EVERY_TICKS = 2
 """[ticks] How often the desk is shown where everybody is."""
-_UNSHOWN = (Thought, Progress)
-"""Events that are too many to read."""
 
 
 class Book(Protocol):
@@ -310,7 +308,7 @@ class Desk:
         return None if seat in self._seats else body.fov
 
     def _note(self, _: Episode, events: Sequence[Event]) -> None:
-        lines = tuple(desk_wire.line(event) for event in events if not isinstance(event, _UNSHOWN))
+        lines = tuple(desk_wire.line(event) for event in events if not isinstance(event, TOO_MANY))
         if lines:
             with self._lock:
                 self._shown.events += lines

@@ -25,6 +25,7 @@ from hthor.types.events import (
     Picked,
     Placed,
     Predicted,
+    Progress,
     Refused,
     Released,
     Resumed,
@@ -32,9 +33,13 @@ from hthor.types.events import (
     Sent,
     Shown,
     Success,
+    Thought,
     Timeout,
     Voided,
 )
+
+TOO_MANY = (Thought, Progress)
+"""Events that nobody could read one by one."""
 
 
 def sentence(event: Event) -> str:

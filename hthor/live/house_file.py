@@ -1,10 +1,10 @@
 """The house of a trial as a glTF file, with the light of its lamps in the colours of its corners.
 
 What never moves is one node, whose primitives are merged by texture; ceilings and their lamps, which hide rooms from
-above, are another. Each part that moves (a thing, a door, a body or a
-head) is a node of its own, called by its number, as `SceneParts.poses` counts them; it has the colours of its
-materials, and the page lights it by the grid of probes that the scene's ``extras`` hold. Doors and drawers, which are
-``lit``, have the light that they have while they are shut.
+above, are another. Each part that moves (a thing, a door, a body or a head) is a node of its own, called by its number,
+as `SceneParts.poses` counts them; it has the colours of its materials, and the page lights it by the grid of probes
+that the scene's ``extras`` hold. Doors and drawers, which are ``lit``, have the light that they have while they are
+shut.
 """
 
 from __future__ import annotations

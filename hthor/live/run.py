@@ -12,10 +12,10 @@ import msgspec
 from hthor import guest, rules
 from hthor.errors import HthorError
 from hthor.eval.config import human_populations
+from hthor.eval.config.human_populations import LIVE
 from hthor.eval.config.options import EvalOptions
 from hthor.eval.planning.resolve import resolve
 from hthor.eval.records.run_folder import RunFolder
-from hthor.eval.replay.recorded_session import LIVE
 from hthor.eval.runner import experiment
 from hthor.eval.runner.experiment import FinishedRun
 from hthor.eval.runner.progress import Watcher

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hthor.live import house_file, wire
 
@@ -23,18 +24,28 @@ class Scenery:
         self._world = world
         self.file = house_file.house_file(world.scene, world.house)
         self.own = dict(world.scene.seats)
-        self._last = np.zeros((0, 7), np.int16)
+        self._changes = PoseChanges()
 
     def restart(self) -> None:
         """Count everything as moved."""
-        self._last = np.zeros((0, 7), np.int16)
+        self._changes = PoseChanges()
 
     def moved(self) -> dict[int, bytes]:
         """What has moved since the last call, by its number, as `wire.encode_frame` takes it."""
-        poses = wire.round_poses(self._world.scene_poses())
-        if len(self._last) != len(poses):
-            changed = np.arange(len(poses))
-        else:
-            changed = np.flatnonzero((poses != self._last).any(axis=1))
-        self._last = poses
-        return {int(number): poses[number].tobytes() for number in changed}
+        poses, changed = self._changes.take(self._world.scene_poses())
+        return {number: poses[number].tobytes() for number in changed}
+
+
+class PoseChanges:
+    """What moves from one look at all poses to the next; at the first look everything has."""
+
+    def __init__(self) -> None:
+        self._last: NDArray[np.int16] = np.zeros((0, 7), np.int16)
+
+    def take(self, poses: NDArray[np.float64]) -> tuple[NDArray[np.int16], list[int]]:
+        """The poses (P, 7) as `wire.round_poses` rounds them, and the numbers of those that differ from the last."""
+        before, self._last = self._last, wire.round_poses(poses)
+        if len(before) != len(self._last):
+            return self._last, list(range(len(self._last)))
+        changed: list[int] = np.flatnonzero((self._last != before).any(axis=1)).tolist()
+        return self._last, changed

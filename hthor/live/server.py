@@ -59,6 +59,15 @@ _HEADERS = {
 }
 
 
+def check_built() -> None:
+    """Raise HthorError unless there are pages to serve."""
+    if not (FOLDER / PAGE).is_file():
+        raise HthorError(
+            "the page is not built: this is a clone of the repository, and 'make page' builds it there. An installed "
+            "hthor has it."
+        )
+
+
 class Connection:
     """A page that has joined a seat: a queue that loses nothing, and one place for the newest frame."""
 
@@ -189,11 +198,8 @@ class LiveServer:
             import uvicorn
         except ImportError:
             raise MissingExtra("a session with people", "live") from None
-        if page and PAGE not in self._page_files:
-            raise HthorError(
-                "the page is not built: this is a clone of the repository, and 'make live' builds it there. "
-                "An installed hthor has it."
-            )
+        if page:
+            check_built()
         try:
             listener = socket.create_server((self._host, self._port))
         except OSError as error:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 
+from hthor.eval.config.human_populations import LIVE
 from hthor.eval.records import attempts, trial_record
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.scored_trial import ScoredTrial
-from hthor.eval.replay.recorded_session import LIVE, RecordedSeat
+from hthor.eval.replay.recorded_session import RecordedSeat
 from hthor.eval.runner.messages import TrialOutcome
 from hthor.eval.runner.session_runner import run_trial
 from hthor.guest import GuestPool

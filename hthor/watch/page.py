@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hthor import jsonio
-from hthor.errors import HthorError
 from hthor.live import server
 from hthor.watch import recording
 
@@ -24,22 +23,13 @@ _LINKED_STYLE, _LINKED_SCRIPT = '<link rel="stylesheet" href="watch.css" />', '<
 _HEAD, _TITLE, _DATA = '<meta charset="utf-8" />', "<title>hthor watch</title>", "<!-- data -->"
 
 
-def check_built() -> None:
-    """Raise HthorError unless the page is built."""
-    if not (server.FOLDER / TEMPLATE).is_file():
-        raise HthorError(
-            "the page is not built: this is a clone of the repository, and 'make page' builds it there. "
-            "An installed hthor has it."
-        )
-
-
 def make_page(trial: RecordedTrial) -> bytes:
     """The page; the same trial gives the same bytes.
 
     Raises:
         HthorError: if the page is not built.
     """
-    check_built()
+    server.check_built()
     template, script, style = ((server.FOLDER / name).read_text(encoding="utf-8") for name in (TEMPLATE, SCRIPT, STYLE))
     script = re.sub(r"</(script)", r"<\\/\1", script, flags=re.IGNORECASE)
     made = trial.recording

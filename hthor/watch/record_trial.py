@@ -7,13 +7,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from hthor import activity, rules
-from hthor.eval.replay import recorded_session, repeated_trial
+from hthor.eval.config.human_populations import LIVE
+from hthor.eval.replay import repeated_trial
 from hthor.live import house_file
-from hthor.live.event_sentences import sentence
+from hthor.live.event_sentences import TOO_MANY, sentence
 from hthor.live.pictures import to_jpeg
 from hthor.report.drawing import trial_trace
 from hthor.types import is_person
-from hthor.types.events import Blocked, Covered, Displayed, InWay, Progress, Refused, Sent, Shown, Thought
+from hthor.types.events import Blocked, Covered, Displayed, InWay, Refused, Sent, Shown
 from hthor.watch import recording
 from hthor.watch.recorder import RecordedWorld
 from hthor.watch.recording import Letter, Line, Recording, RoomPlan, Seat
@@ -29,11 +30,8 @@ if TYPE_CHECKING:
     from hthor.types import Camera, TrialSpec, Vec2
     from hthor.types.events import Event
 
-_UNSHOWN = (Thought, Progress)
-"""Events that are too many to read."""
 _MINOR = (Blocked, InWay, Refused, Covered, Shown, Displayed)
 """Events that are listed, and not marked on the timeline."""
-
 _SAME_TICKS = 50
 """[ticks] A minor event that follows its like within this time is left out. Our choice."""
 
@@ -103,7 +101,7 @@ def lines(events: Iterable[Event]) -> tuple[Line, ...]:
     """Events in sentences; of the minor ones, those that go on saying the same are left out."""
     found, said = [], dict[str, int]()
     for event in events:
-        if isinstance(event, _UNSHOWN):
+        if isinstance(event, TOO_MANY):
             continue
         words, minor = sentence(event), isinstance(event, _MINOR)
         repeated = minor and words in said and event.tick - said[words] < _SAME_TICKS
@@ -127,7 +125,7 @@ def outcome(record: ScoredTrial) -> tuple[str, ...]:
 def _seats(spec: TrialSpec, world: RecordedWorld) -> tuple[Seat, ...]:
     names = {robot.seat: f"{robot.robot}, {robot.agent.name}" for robot in spec.robots}
     names |= {human.seat: human.model for human in spec.humans}
-    live = {human.seat for human in spec.humans if human.model == recorded_session.LIVE}
+    live = {human.seat for human in spec.humans if human.model == LIVE}
     found = []
     for seat in world.seats:
         body = world.bodies[seat]

@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
-import numpy as np
-
-from hthor.live import wire
+from hthor.live.scenery import PoseChanges
 from hthor.types import TaskSpec
 from hthor.types.events import Event, Sent
 from hthor.watch import recording
@@ -54,16 +52,13 @@ class RecordedWorld:
         return tuple(recording.make_track(part, self._ticks[part], self._poses[part]) for part in sorted(self._poses))
 
     def _forget(self) -> None:
-        self._last = np.zeros((0, 7), np.int16)
+        self._changes = PoseChanges()
         self._ticks: dict[int, list[int]] = {}
         self._poses: dict[int, list[Sequence[int]]] = {}
         self._sent: dict[tuple[int, str], Callable[[], Any]] = {}
 
     def _note(self) -> None:
-        poses = wire.round_poses(self._world.scene_poses())
-        same_size = len(self._last) == len(poses)
-        moved = np.flatnonzero((poses != self._last).any(axis=1)) if same_size else np.arange(len(poses))
-        for part in moved.tolist():
+        poses, moved = self._changes.take(self._world.scene_poses())
+        for part in moved:
             self._ticks.setdefault(part, []).append(self._world.tick)
             self._poses.setdefault(part, []).append(poses[part].tolist())
-        self._last = poses

@@ -75,6 +75,16 @@ def test_who_is_quiet_or_serves_or_does_nothing_is_left_alone(words: list[str]) 
         assert (sys.stdout, sys.stderr) == before
 
 
+def test_who_waits_for_people_is_left_alone_from_then_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    stream = watched(monkeypatch, live=False)
+    with waiting_notice.shown(["live"]):
+        until(stream, "live: ")
+        activity.wait_for_people()
+        said = stream.getvalue()
+        time.sleep(0.3)
+    assert stream.getvalue() == said
+
+
 def test_a_bar_is_left_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     stream = watched(monkeypatch, live=True)
     with waiting_notice.shown(["validate", "x"]):

@@ -9,9 +9,7 @@ import pytest
 
 from hthor.live import server
 
-pytestmark = pytest.mark.skipif(
-    not (server.FOLDER / server.PAGE).exists(), reason="the page is not built: make page"
-)
+pytestmark = pytest.mark.skipif(not (server.FOLDER / server.PAGE).exists(), reason="the page is not built: make page")
 PAGE_BYTES = 2_000_000
 _URL = re.compile(rb"(?:https?|wss?)://[\w.\-]+")
 _NAMES = {b"http://www.w3.org", b"http://localhost"}

@@ -324,6 +324,7 @@ class Page {
     this.panels.message(null);
     this.panels.map(null);
     this.change({ ended });
+    if (this.vrLeft) this.onHeadset(); // there is nothing to go on with
   }
 
   /** @param {any} message */

@@ -5,6 +5,7 @@ from __future__ import annotations
 import msgspec
 
 from hthor.errors import HthorError
+from hthor.eval.config.human_populations import LIVE
 from hthor.eval.config.options import EvalOptions
 
 SUITE, AGENT = "calibration", "unreliable"
@@ -27,6 +28,6 @@ def prescribed(options: EvalOptions) -> EvalOptions:
     for name in _WHOLE:
         if getattr(options, name) != getattr(usual, name):
             raise HthorError(f"--calibrate has all of its tasks: leave out --{name}, or --calibrate.")
-    if options.humans != ("live",):
+    if options.humans != (LIVE,):
         raise HthorError("--calibrate measures one person at a time: leave out --humans. --participants takes several.")
     return msgspec.structs.replace(options, agent=(AGENT,), suite=SUITE)

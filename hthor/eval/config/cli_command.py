@@ -8,6 +8,7 @@ import msgspec
 
 from hthor import plugins
 from hthor.eval.config import option
+from hthor.eval.config.human_populations import LIVE
 from hthor.eval.config.options import EvalOptions
 from hthor.eval.config.run_config import PROCEDURAL, RunConfig
 from hthor.eval.config.shards import whole_folder
@@ -29,7 +30,7 @@ def resume_command(folder: Path, config: RunConfig, out: Path | None = None) -> 
 
 def _command(options: EvalOptions) -> str:
     command = "eval"
-    if any("live" in word.split(",") for word in options.humans):  # people at pages, whose clock is that of the wall
+    if any(LIVE in word.split(",") for word in options.humans):  # people at pages, whose clock is that of the wall
         command, options = "live", msgspec.structs.replace(options, clock=EvalOptions().clock)
     return shlex.join(["hthor", command, *option.command_words(options, always=_ALWAYS)])
 

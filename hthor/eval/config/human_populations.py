@@ -21,6 +21,8 @@ from hthor.types import RobotSpec
 KINDS, BRACKET = "kinds", "bracket"
 """Words for several populations: the default with every kind of people; the default with the two extremes."""
 WORDS = (KINDS, BRACKET)
+LIVE = "live"
+"""The word for living people, who are at pages, and the name of their human model."""
 _COMMA_HINT = "A comma joins the people of one trial, as in proxy,proxy."
 EXTREMES = ("greedy", "random")
 """Human models that bound real people: one accepts every message, one accepts none."""

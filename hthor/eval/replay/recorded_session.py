@@ -12,6 +12,7 @@ from typing import Any
 import msgspec
 
 from hthor.errors import RunError
+from hthor.eval.config.human_populations import LIVE
 from hthor.eval.records import trial_record
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.records.trial_record import TrialRecord
@@ -20,9 +21,6 @@ from hthor.trials import Participants, TrialRunner
 from hthor.trials.sessions import Session
 from hthor.types import Action, Briefing, Controls, Observation, TrialSpec, Wait
 from hthor.types.events import JournalEntry, Paused, Resumed
-
-LIVE = "live"
-"""The human model of living people."""
 
 
 def is_live(spec: TrialSpec) -> bool:

@@ -7,6 +7,7 @@ from html import escape
 from pathlib import Path
 
 from hthor import jsonio
+from hthor.eval.config.human_populations import LIVE
 from hthor.eval.records.run_folder import RunFolder
 from hthor.report.drawing import render_trial
 from hthor.report.html import elements, matplotlib_svg, number_format, style
@@ -16,8 +17,6 @@ from hthor.report.person.own_session import OwnMessage, OwnSession, OwnTrial
 
 FOLDER = "people"
 """The folder of a run with the pages and numbers of its people."""
-LIVE = "live"
-"""The name of people at pages, in a log."""
 _RULES = """
 main{max-width:50rem}
 p,ul{max-width:none}

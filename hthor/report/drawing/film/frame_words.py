@@ -45,11 +45,6 @@ def write_words(
     return int(inked.shape[1])
 
 
-def words_width(text: str, size: float = WORDS_PT) -> int:
-    """The width that `write_words` takes where there is room for all words [px]."""
-    return int(DPI * _width_in(text, size))
-
-
 def bgr(shade: str) -> tuple[int, int, int]:
     """A colour by its name or code, blue first."""
     red, green, blue = (round(255 * part) for part in to_rgb(shade))

@@ -29,7 +29,7 @@ class PoseSync:
         self._model = copy.copy(model)
         self._model.opt.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)
         self._data = mujoco.MjData(self._model)
-        self._known = False  # whether the poses of all bodies are those of qpos
+        self._data.qpos[:] = np.nan  # no pose is computed yet
         self.free: dict[str, int] = {}
         self.hung: dict[tuple[str, str], int] = {}
         owners: dict[int, str] = {}
@@ -56,10 +56,9 @@ class PoseSync:
 
     def at(self, qpos: Any) -> tuple[Any, Any]:
         """Positions (B, 3) and quaternions (B, 4) of all bodies for the engine's ``qpos``."""
-        if not (self._known and np.array_equal(qpos, self._data.qpos)):  # mostly only people and robots move
+        if not np.array_equal(qpos, self._data.qpos):  # mostly only people and robots move
             self._data.qpos[:] = qpos
             mujoco.mj_kinematics(self._model, self._data)
-            self._known = True
         return self._data.xpos, self._data.xquat
 
     def rest(self, body: int) -> tuple[Any, Any]:
