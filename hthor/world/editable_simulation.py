@@ -1,39 +1,18 @@
 """A simulation whose scene can be changed at once, between motions: bodies, objects and doors."""
 
-import math
 from collections.abc import Sequence
 
 from hthor.errors import HthorError
-from hthor.types import Placement, Pose, TaskSpec, Vec2
+from hthor.types import Placement, Pose, TaskSpec
 from hthor.world import numbers
 from hthor.world.motion import spawn
 from hthor.world.simulation import Simulation
-from hthor.world.state.body_state import BodyState
 
 _AT_REST = (0.0, 0.0, 0.0)
 
 
 class EditableSimulation(Simulation):
     """A `Simulation` in which a program can put bodies, objects and doors where it wants them."""
-
-    def out_of_hand(self, seat: str, id: str, place: Vec2 | None = None) -> str:
-        """Why a body could not pick an object up or reach a thing's door with an empty hand; empty when it could.
-
-        Args:
-            seat: the body's seat. id: the object or thing; the result is also "" if it can be neither picked up nor
-                opened, or if the body can do neither.
-            place: (x, y) [m] where the body would stand, facing the thing; None for its present pose.
-        """
-        body = self._seats[seat]
-        return self._manipulation.out_of_hand(body if place is None else self._imagined(body, id, place), id)
-
-    def _imagined(self, body: BodyState, id: str, place: Vec2) -> BodyState:
-        """A copy of a body that stands at a place and faces an object or a thing that opens."""
-        item, door = self._objects.get(id), self._doors.get(id)
-        x, y, _ = item.position if item is not None else door.thing.centre if door is not None else (*place, 0.0)
-        copy = BodyState(body.name, body.spec, body.space)
-        copy.pose = Pose(x=place[0], y=place[1], yaw=math.atan2(y - place[1], x - place[0]))
-        return copy
 
     def restart(self, task: TaskSpec) -> None:
         """Begin a task as `reset` does, but between two ticks: the ticks and the random draws go on.

@@ -19,17 +19,21 @@ from hthor.types import (
     Motion,
     Outcome,
     Placement,
+    Pose,
     Receipt,
     Room,
     TaskSpec,
     Thing,
     ThingState,
+    Vec2,
     Vec3,
     is_person,
 )
 from hthor.types.events import Event
 from hthor.world import numbers
+from hthor.world.perception import view_frustum
 from hthor.world.sensing_simulation import SensingSimulation
+from hthor.world.state.body_state import BodyState
 
 _MOTION_TICKS_MAX = 36_000
 """[ticks] An hour: the most that `run` waits for the end of a motion."""
@@ -110,6 +114,39 @@ class InteractiveSimulation(SensingSimulation):
         if id not in places:
             raise UnknownName("thing", id, places)
         return places[id]
+
+    def hindrance(self, seat: str, id: str, place: Vec2 | None = None) -> str:
+        """Why a body could not use a thing with what it has in hand now; empty when it could.
+
+        An object is used by picking it up, as if the hand were empty. Furniture is used by placing on or in it what the
+        body holds, else by opening or closing it. Whatever the body has no skill for is no hindrance.
+
+        Args:
+            seat: the body's seat. id: the thing or object.
+            place: (x, y) [m] where the body would stand, facing the thing; None for its present pose.
+        """
+        body = self._seats[seat]
+        return self._usability.hindrance(body if place is None else self._imagined(body, id, place), id)
+
+    def in_sight(self, seat: str, id: str, place: Vec2 | None = None, *, picture: bool = False) -> bool:
+        """Whether a body has a free line of sight to a thing, an object or another body.
+
+        Args:
+            seat, id, place: see `hindrance`.
+            picture: whether what is in sight has to be in the picture of its camera as well.
+        """
+        body = self._seats[seat]
+        body = body if place is None else self._imagined(body, id, place)
+        return self._usability.shows(body, id) if picture else self._usability.sees(body, id)
+
+    def _imagined(self, body: BodyState, id: str, place: Vec2) -> BodyState:
+        """A copy of a body that stands at a place and faces a thing."""
+        copy = BodyState(body.name, body.spec, body.space)
+        copy.holding = body.holding
+        pose = Pose(x=place[0], y=place[1], yaw=body.pose.yaw)
+        turn = view_frustum.rotation_towards(pose, body.spec, self.position(id))
+        copy.pose = Pose(x=pose.x, y=pose.y, yaw=plane.wrap(pose.yaw + turn.yaw), pitch=turn.pitch)
+        return copy
 
     def run(self, seat: str, motion: Motion) -> Outcome:
         """Start a motion and let ticks pass until it has ended.

@@ -86,7 +86,7 @@ class Simulation:
         self._geoms, self._objects, self._seats = parts.geoms, parts.objects, parts.seats
         self._rooms, self._doorways, self._doors = parts.rooms, parts.doorways, parts.doors
         self._door_handling, self._joint_carrying = parts.door_handling, parts.joint_carrying
-        self._manipulation, self._dispatch, self._editor = parts.manipulation, parts.dispatch, parts.editor
+        self._dispatch, self._editor, self._usability = parts.dispatch, parts.editor, parts.usability
         self._scanners, self._visibility, self._detectors = parts.scanners, parts.visibility, parts.detectors
         self._loose_things, self._mocap, self._driven = parts.loose_things, parts.mocap, parts.driven
         self._keeper = StateKeeper(self.house, parts, self.bodies, self.detectors)

@@ -24,6 +24,7 @@ from hthor.world.ground_truth import GroundTruth
 from hthor.world.interaction.manipulation import HandMotion, Manipulation
 from hthor.world.interaction.opening import DoorHandling
 from hthor.world.interaction.scene_editing import SceneEditor
+from hthor.world.interaction.usability import Usability
 from hthor.world.model.composer_env import LazyComposerEnv
 from hthor.world.model.composer_task import HouseTask
 from hthor.world.model.geom_index import GeomIndex
@@ -156,6 +157,7 @@ class SimulationParts:
         self.manipulation = Manipulation(
             house, geoms, objects, doors, surfaces, overlap, self.door_handling, self.joint_carrying
         )
+        self.usability = Usability(geoms, objects, doors, surfaces, self.manipulation, self.door_handling)
         self.loose_things = LooseThings(Floor(house, self.env, geoms, objects, overlap, seats))
         for seat in seats:
             seat.loose = self.loose_things

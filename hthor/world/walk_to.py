@@ -9,15 +9,17 @@ from hthor.errors import HthorError
 from hthor.geometry import plane
 from hthor.houses.space.free_space import FreeSpace
 from hthor.houses.space.geodesic import Geodesics
-from hthor.types import BodySpec, Pose, Rotate, Vec2, Vec3
+from hthor.types import Thing, Vec2
 from hthor.world import numbers
 from hthor.world.interactive_simulation import InteractiveSimulation
 from hthor.world.state import doors
 
 _REACH_SHARES = (0.8, 0.97, 0.9999)
-"""How close a body goes to an object, as shares of its reach (metres for a body without hands). If no place within one
-share lets it see and grasp the object, the next share is tried. The margins absorb rounding to grid cells."""
-_NEAR_M, _FAR_M, _ = _REACH_SHARES
+"""How close a body goes to a thing, as shares of its reach. If it cannot see and use the thing from a place within one
+share, the next share is tried. The margins absorb rounding to grid cells."""
+_FAR_SHARE = _REACH_SHARES[1]
+_ARMLESS_M = 1.0
+"""[m] What counts as the reach of a body without hands."""
 _SHORT_M = 0.3
 """[m] A walk that ends this much farther from the target than the house requires has a body in its way."""
 _BESIDE_M = 1.0
@@ -28,14 +30,6 @@ _MARGIN_M = 0.04
 """[m] Half the diagonal of a cell: paths may cross a free cell anywhere, but only its middle is tested."""
 _TRIES = 100
 """About how many places around a body, or within reach of an object, are tried before all of them are."""
-
-
-def rotation_towards(pose: Pose, body: BodySpec, point: Vec3) -> Rotate:
-    """The rotation after which the head of a body at ``pose`` faces ``point`` [m], tilted to it as far as possible."""
-    dx, dy = point[0] - pose.x, point[1] - pose.y
-    yaw = plane.wrap(math.atan2(dy, dx) - pose.gaze)
-    up = math.atan2(point[2] - body.eye, max(math.hypot(dx, dy), 1e-6))
-    return Rotate(yaw=yaw, pitch=max(-body.pitch_limit, min(body.pitch_limit, up)) - pose.pitch)
 
 
 def route(world: InteractiveSimulation, seat: str, target: str | Vec2) -> tuple[Vec2, ...]:
@@ -63,13 +57,30 @@ def body_in_the_way(world: InteractiveSimulation, seat: str, target: str | Vec2)
     return min(others, key=lambda name: math.dist((others[name].x, others[name].y), (pose.x, pose.y)))
 
 
-def out_of_hand(world: InteractiveSimulation, seat: str, target: str) -> str:
-    """Why a body cannot pick up the object that it walked to; empty when it can, or when it is not an object."""
+def hindrance(world: InteractiveSimulation, seat: str, target: str) -> str:
+    """Why a body, from where it is, has the thing that it walked to out of reach or sight, or cannot use it; empty when
+    none of this is so.
+    """
+    pose, reach = world.pose(seat), _reach(world, seat)
+    far = float(_distances(world, target, np.array([(pose.x, pose.y)]))[0])
+    reason = world.hindrance(seat, target)
+    if not reason and far > reach and not _is_object(world, target):
+        reason = f"{target} is {far:.2f} m away; reach is {reach:.2f} m"
+    if not reason and not _picks(world, seat, target) and not world.in_sight(seat, target):
+        reason = f"{target} is out of sight"
     states = {state.id: state for state in world.truth()}
-    reason = world.out_of_hand(seat, target) if _is_object(world, target) else ""
-    inside = states.get(states[target].support) if reason else None
+    inside = states.get(states[target].support) if target in states else None
     closed = inside is not None and not inside.open and reason.endswith("out of sight")
     return f"{reason}; {states[target].support} is closed" if closed else reason
+
+
+def _picks(world: InteractiveSimulation, seat: str, target: str) -> bool:
+    """Whether a body can pick up the target, the rules of which have their own test of sight."""
+    return _is_object(world, target) and "pick" in world.bodies[seat].capabilities
+
+
+def _reach(world: InteractiveSimulation, seat: str) -> float:
+    return world.bodies[seat].reach or _ARMLESS_M
 
 
 def _is_object(world: InteractiveSimulation, target: str) -> bool:
@@ -87,8 +98,8 @@ def _detour(world: InteractiveSimulation, seat: str, target: str | Vec2) -> floa
     if not isinstance(target, str):
         goal = space.nearest_free(*target, within=alone)
         return math.dist((pose.x, pose.y), goal) - (_BESIDE_M if _is_taken(world, seat, goal) else 0.0)
-    enough = max(_FAR_M * (world.bodies[seat].reach or 1.0), float(_gaps(world, target, space.centres(alone)).min()))
-    return float(_gaps(world, target, here)[0]) - enough
+    enough = max(_FAR_SHARE * _reach(world, seat), float(_distances(world, target, space.centres(alone)).min()))
+    return float(_distances(world, target, here)[0]) - enough
 
 
 def _is_taken(world: InteractiveSimulation, seat: str, goal: Vec2) -> bool:
@@ -131,48 +142,66 @@ def _space_around_others(world: InteractiveSimulation, seat: str) -> FreeSpace:
 
 
 def _standing_place(world: InteractiveSimulation, seat: str, paths: Geodesics, here: Vec2, target: str) -> Vec2:
-    """The place, by the shortest walk, that is in front of the thing or within reach of the object ``target``.
+    """The place, by the shortest walk, from which ``target`` is in reach, in sight and can be used.
 
-    A place from which the hand can grasp the target is preferred, then one from which it is in sight.
+    Places in front of furniture are preferred, then those close to it, and of these those from which the camera can
+    show it. If there is no such place, one from which it is at least in sight, or else the nearest.
     """
     places = paths.space.centres(paths.space.component(*here))
     if not len(places):
         raise HthorError(f"{seat} stands where it cannot move")
-    gaps = _gaps(world, target, places)
-    small = _is_object(world, target)
-    rings = []
-    for share in _REACH_SHARES if small else (_NEAR_M,):
-        near = places[gaps <= max(share * (world.bodies[seat].reach or 1.0), float(gaps.min()) + 1e-9)]
-        rings.append(near[np.argsort(paths.distances(here, near), kind="stable")])
+    gaps = _distances(world, target, places)
+    within = gaps <= max(_REACH_SHARES[-1] * _reach(world, seat), float(gaps.min()) + 1e-9)
+    places, gaps = places[within], gaps[within]
+    order = np.argsort(paths.distances(here, places), kind="stable")
+    places, gaps = places[order], gaps[order]
+    front, rings = _in_front(world, target, places), []
+    for ahead in (front, ~front) if front.any() else (~front,):
+        for share in _REACH_SHARES:
+            near = ahead & (gaps <= max(share * _reach(world, seat), float(gaps.min()) + 1e-9))
+            rings.append(places[near])
 
-    def handy(place: Vec2) -> bool:
-        return not world.out_of_hand(seat, target, place)
+    def usable(place: Vec2) -> bool:
+        seen_by_hand = _picks(world, seat, target)
+        return not world.hindrance(seat, target, place) and (seen_by_hand or world.in_sight(seat, target, place))
 
-    def visible(place: Vec2) -> bool:
-        return not small or not world.hidden(target, (*place, world.bodies[seat].eye))
+    def shown(place: Vec2) -> bool:
+        return world.in_sight(seat, target, place, picture=True) and not world.hindrance(seat, target, place)
 
-    for good in (lambda place: handy(place) and visible(place), visible):
+    def seen(place: Vec2) -> bool:
+        return world.in_sight(seat, target, place)
+
+    for good in (shown, usable, seen):
         for near in rings:
             for stride in {max(1, len(near) // _TRIES): 0, 1: 0}:  # first a few places, then all
                 for x, y in near[::stride].tolist():
                     if good((x, y)):
                         return (x, y)
-    x, y = rings[0][0].tolist()
+    x, y = next(ring for ring in rings if len(ring))[0].tolist()
     return (x, y)
 
 
-def _gaps(world: InteractiveSimulation, target: str, places: Any) -> Any:
-    """(N,) distances [m] from ``places`` (N, 2) to a thing's footprint, or to an object's or body's middle.
-
-    If a near place is in front of the thing, the distance of all places that are not in front is infinite.
-    """
+def _distances(world: InteractiveSimulation, target: str, places: Any) -> Any:
+    """(N,) distances [m] from ``places`` (N, 2) to a thing's footprint, or to an object's or body's middle."""
     thing = next((thing for thing in world.furniture() if thing.id == target), None)
     x, y, _ = world.position(target)
     if thing is None:
         return np.hypot(places[:, 0] - x, places[:, 1] - y)
-    cos, sin = math.cos(thing.yaw), math.sin(thing.yaw)
-    u = cos * (places[:, 0] - x) + sin * (places[:, 1] - y)
-    v = cos * (places[:, 1] - y) - sin * (places[:, 0] - x)
-    gaps = np.hypot(np.maximum(np.abs(u) - thing.size[0] / 2, 0.0), np.maximum(np.abs(v) - thing.size[1] / 2, 0.0))
-    in_front = (v > 0.0) & (np.abs(u) <= thing.size[0] / 2)
-    return np.where(in_front, gaps, np.inf) if in_front.any() and gaps[in_front].min() < _NEAR_M else gaps
+    u, v = _local(thing, places)
+    return np.hypot(np.maximum(np.abs(u) - thing.size[0] / 2, 0.0), np.maximum(np.abs(v) - thing.size[1] / 2, 0.0))
+
+
+def _in_front(world: InteractiveSimulation, target: str, places: Any) -> Any:
+    """(N,) bool, whether places (N, 2) are straight in front of a piece of furniture; false for all else."""
+    thing = next((thing for thing in world.furniture() if thing.id == target), None)
+    if thing is None:
+        return np.zeros(len(places), bool)
+    u, v = _local(thing, places)
+    return (v > 0.0) & (np.abs(u) <= thing.size[0] / 2)
+
+
+def _local(thing: Thing, places: Any) -> tuple[Any, Any]:
+    """Places (N, 2) in the frame of a thing: to its right and to its front [m]."""
+    (x, y, _), cos, sin = thing.centre, math.cos(thing.yaw), math.sin(thing.yaw)
+    dx, dy = places[:, 0] - x, places[:, 1] - y
+    return cos * dx + sin * dy, cos * dy - sin * dx

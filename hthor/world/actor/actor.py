@@ -32,6 +32,7 @@ from hthor.types import (
 )
 from hthor.world import numbers, walk_to
 from hthor.world.actor.seat_messages import SeatMessages
+from hthor.world.perception import view_frustum
 from hthor.world.rendering.lazy_images import Size
 
 _EPS = 1e-9
@@ -107,11 +108,12 @@ class Actor(SeatMessages):
     def look_at(self, target: str | Vec3) -> Outcome:
         """Turn body and camera towards a thing, an object, a seat or a point [m] of the house frame."""
         point = self._world.position(target) if isinstance(target, str) else numbers.point3("target", target)
-        return self.do(walk_to.rotation_towards(self.pose, self.body, point))
+        return self.do(view_frustum.rotation_towards(self.pose, self.body, point))
 
     def go_to(self, target: str | Vec2) -> Outcome:
         """Walk the shortest way to the free floor nearest to a point (x, y) [m], or to a place from which a thing, an
-        object or a seat is in reach: for an object, a place that it can be seen from, if there is one.
+        object or a body is in reach, in sight and can be used: an object be picked up, what the hand holds be placed on
+        furniture, or else its door be opened or closed. The outcome is ok only at such a place.
 
         The way is planned on the house's true floor plan. A walk to a thing ends with the body facing it.
 
@@ -130,7 +132,7 @@ class Actor(SeatMessages):
         if not isinstance(target, str):
             return Outcome(motion="move", ok=True)
         facing = self.look_at(target)
-        reason = walk_to.out_of_hand(world, seat, target)
+        reason = walk_to.hindrance(world, seat, target)
         return Outcome(motion="move", ok=False, reason=reason) if facing.ok and reason else facing
 
     def _walk_straight(self, point: Vec2) -> Outcome:

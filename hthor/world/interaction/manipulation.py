@@ -215,6 +215,16 @@ class Manipulation:
         surfaces = self._accessible(motion, surfaces)
         return self._spot(seat, item, motion, surfaces) if surfaces else (f"{motion.on} is closed", _NO_POSE)
 
+    def no_spot(self, seat: BodyState, on: str) -> str:
+        """Why ``seat`` could not place what it holds on or in a thing from where it stands; empty when it could."""
+        motion = Place(on=on)
+        return self._refused(seat, motion) if self.joint_carrying.of(seat) is not None else self._place(seat, motion)[0]
+
+    def is_shut(self, on: str) -> bool:
+        """Whether nothing can be placed on or in a thing before it is opened."""
+        surfaces = self._surfaces.of(on)
+        return bool(surfaces) and not self._accessible(Place(on=on), surfaces)
+
     def _accessible(
         self, motion: Place, surfaces: tuple[support_surfaces.SupportSurface, ...]
     ) -> tuple[support_surfaces.SupportSurface, ...]:

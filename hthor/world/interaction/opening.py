@@ -1,25 +1,23 @@
-"""Rules of opening and closing the doors and drawers of furniture, and doors in doorways.
+"""Rules of opening and closing the doors and drawers of furniture, and doors in doorways: one rule for all.
 
-A hinged door passes through obstacles and only needs free space where it stops. A drawer carries along the objects that
-lie in it and needs free space on its whole way.
+A door or drawer moves only if the whole way that it sweeps is free of bodies and things. The body that moves it steps
+out of its way and does not count, except where a shut door would enclose it. What lies in a drawer goes along with it.
+An open door stops nobody; a shut one is as solid as a wall. Doors pass through walls and furniture, which houses leave
+room for or not.
 """
 
-import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 from hthor.errors import HthorError, UnknownName
 from hthor.geometry import plane
-from hthor.houses.space import solids
-from hthor.houses.space.solids import Slab
-from hthor.types import Close, Joint, Open, Opening, Part, Thing, Vec3
+from hthor.types import Close, Open, Opening, Thing, Vec3
+from hthor.world.interaction.door_sweep import DoorSweep
 from hthor.world.model.geom_index import GeomIndex
 from hthor.world.motion.reach import out_of_reach
 from hthor.world.perception import view_frustum
 from hthor.world.state.body_state import BodyState
 from hthor.world.state.doors import Doors, DoorState, Doorways, in_doorway
-from hthor.world.state.movable_object import MovableObject
 from hthor.world.state.objects import Objects
-from hthor.world.state.overlap_test import OVERLAP_M
 from hthor.world.state.support_surfaces import SupportSurfaces
 
 _DOOR_HANDLE_M = 1.0
@@ -40,6 +38,7 @@ class DoorHandling:
     ) -> None:
         self._geoms, self._objects, self._doors, self._surfaces = geoms, objects, doors, surfaces
         self._doorways, self._seats = doorways, seats
+        self._sweeps: dict[str, DoorSweep] = {}
 
     def refusal(self, seat: BodyState, motion: Open | Close) -> str:
         """Why ``seat`` cannot carry out the motion now, empty when it can."""
@@ -53,7 +52,7 @@ class DoorHandling:
             return f"{name} is being used by {leaf.user}"
         if leaf.open == isinstance(motion, Open):
             return f"{name} is already {'open' if leaf.open else 'closed'}"
-        return self._far(seat, leaf) or self._in_the_way(leaf, isinstance(motion, Open))
+        return self._far(seat, leaf) or self._in_the_way(leaf, isinstance(motion, Open), seat)
 
     def out_of_hand(self, seat: BodyState, id: str) -> str:
         """Why ``seat`` could not reach a thing's door from where it stands; empty when it could, or without a door."""
@@ -71,8 +70,9 @@ class DoorHandling:
     def finish(self, motion: Open | Close) -> str:
         """Finish the motion; if something is in the way by now, move the door back and return the reason."""
         leaf, wanted = self._leaf(motion), isinstance(motion, Open)
+        mover = next((seat for seat in self._seats if seat.name == leaf.user), None)
         leaf.user = ""
-        reason = self._in_the_way(leaf, wanted)
+        reason = self._in_the_way(leaf, wanted, mover)
         self._rest(leaf, leaf.open if reason else wanted)
         return reason
 
@@ -105,12 +105,14 @@ class DoorHandling:
         return leaf
 
     def _move(self, leaf: DoorState, share: float) -> None:
-        step = share - leaf.share
-        for place in self._surfaces.of(leaf.thing.id):
-            if place.slides:
-                riders = [item.id for item in self._objects.lying(place)]
-                x, y, z = (step * way for way in place.pull)
-                self._objects.ride(riders, (x, y, z))
+        """Move a door with what lies in its drawers; what leans on either is let go."""
+        step, drawers = share - leaf.share, [place for place in self._surfaces.of(leaf.thing.id) if place.slides]
+        riders = [self._objects.lying(place) for place in drawers]
+        solids = (geom for items in riders for item in items for geom in range(item.geoms.start, item.geoms.stop))
+        self._objects.wake_beside((*leaf.solids, *solids))
+        for place, items in zip(drawers, riders, strict=True):
+            x, y, z = (step * way for way in place.pull)
+            self._objects.ride([item.id for item in items], (x, y, z))
         self._doors.swing(leaf, share)
 
     def _far(self, seat: BodyState, leaf: DoorState) -> str:
@@ -133,11 +135,16 @@ class DoorHandling:
 
     # ------------------------------------------------------------------------------------------------------- obstacles
 
-    def _in_the_way(self, leaf: DoorState, opening: bool) -> str:
-        if leaf.opening is not None and not opening:
-            for seat in self._seats:
-                if in_doorway(seat, leaf.opening):
-                    return f"{seat.name} stands in the doorway"
+    def _in_the_way(self, leaf: DoorState, opening: bool, mover: BodyState | None = None) -> str:
+        """What keeps a door from moving, empty for nothing; ``mover`` is the body that moves it, at its place."""
+        sweep = self._sweep(leaf)
+        for seat in self._seats:
+            moves = mover is not None and seat.name == mover.name
+            body = mover if mover is not None and moves else seat
+            if leaf.opening is not None and not opening and in_doorway(body, leaf.opening):
+                return f"{seat.name} stands in the doorway"
+            if not moves and sweep.hits_body(body):
+                return f"{seat.name} is in the way"
         riders = set()
         for place in self._surfaces.of(leaf.thing.id):
             if place.slides:
@@ -147,43 +154,17 @@ class DoorHandling:
                 tall = [item.id for item in lying if item.position[2] + item.size[2] / 2 > top]
                 if tall and not opening:
                     return f"{tall[0]} is too tall for the drawer of {leaf.thing.id}"
-        ways = tuple(_swept_slabs(leaf, opening))
         for item in self._objects:
             carried = item.held_by and not item.bearers  # a thing carried by its handles is in the way too
-            if item.present and not carried and item.id not in riders and _is_hit(item, ways):
+            if item.present and not carried and item.id not in riders and sweep.hits(item):
                 return f"{item.id} is in the way"
         return ""
 
-
-def _swept_slabs(leaf: DoorState, opening: bool) -> Iterator[Slab]:
-    """The boxes that must be free: the place of a hinged door when it shuts, the whole way of a drawer."""
-    joints = {joint.name: joint for joint in leaf.joints}
-    for part in leaf.parts:
-        joint = joints[part.moves]
-        if joint.kind == "slide" or not opening:
-            yield _swept_slab(leaf.thing, part, joint)
-
-
-def _swept_slab(thing: Thing, part: Part, joint: Joint) -> Slab:
-    """An upright box around a part of a shut door, or around the whole way of a drawer's part."""
-    way = joint.travel if joint.kind == "slide" else 0.0
-    along = (joint.axis[0] * way, joint.axis[1] * way)
-    local = (part.centre[0] + along[0] / 2, part.centre[1] + along[1] / 2, part.centre[2])
-    x, y, z = plane.to_house(local, thing.centre, thing.yaw)
-    size = (2 * part.half[0] + abs(along[0]), 2 * part.half[1] + abs(along[1]))
-    return Slab((x, y), size, thing.yaw, z - part.half[2], z + part.half[2])
-
-
-def _is_hit(item: MovableObject, ways: Sequence[Slab]) -> bool:
-    x, y, z = item.position
-    w, d, h = item.size
-    reach = math.hypot(w, d) / 2
-    body = Slab((x, y), (w, d), item.yaw, z - h / 2 + OVERLAP_M, z + h / 2)
-    return any(
-        math.dist(way.centre, body.centre) < reach + math.hypot(*way.size) / 2
-        and solids.overlap_depth(way, body) > OVERLAP_M
-        for way in ways
-    )
+    def _sweep(self, leaf: DoorState) -> DoorSweep:
+        id = leaf.thing.id
+        if id not in self._sweeps:
+            self._sweeps[id] = DoorSweep(leaf.thing, leaf.parts, leaf.joints)
+        return self._sweeps[id]
 
 
 def _front_point(thing: Thing, local: Vec3) -> Vec3:

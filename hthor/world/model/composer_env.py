@@ -9,7 +9,7 @@ between two steps. So a step in which anything moves farther than `STEP_TRAVEL_M
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import dm_env
@@ -47,6 +47,8 @@ SPEED_MAX_M_S, SPIN_MAX_RAD_S = 20.0, 300.0
 """[m/s, rad/s] Limits on speed along and spin about any axis: above them things would pass through boards or spin ever
 faster.
 """
+_NUDGE_M_S = -1e-9
+"""[m/s] Enough speed to wake a sleeping object, and too little to move it."""
 
 
 class LazyComposerEnv(Environment):
@@ -180,6 +182,12 @@ class LazyComposerEnv(Environment):
         """
         self._still, self._restless = False, 0
         mujoco.mj_kinematics(self.model, self.data)
+
+    def wake(self, dofs: Iterable[int]) -> None:
+        """Wake the free objects with these addresses, because what bore them may be gone; nothing else changes."""
+        for dof in dofs:
+            self.data.qvel[dof + 2] = _NUDGE_M_S
+        self.touch()
 
     def pin(self) -> None:
         """Write the carried objects' poses."""

@@ -37,8 +37,8 @@ class GeomIndex:
         self.names = tuple(sorted(set(self.owner)))
         self._number = {owner: number for number, owner in enumerate(self.names)}
         self.numbers = np.array([self._number[owner] for owner in self.owner])
-        self.solid = model.geom_contype != 0
-        self.solid &= model.geom_rgba[:, 3] >= _OPAQUE_ALPHA
+        self._drawn = model.geom_rgba[:, 3] >= _OPAQUE_ALPHA
+        self.solid = (model.geom_contype != 0) & self._drawn
         self.solid &= model.geom_type != int(mujoco.mjtGeom.mjGEOM_PLANE)
         fixed = self.solid & (model.body_weldid[model.geom_bodyid] == 0)
         self.walls = self._sorted(fixed)
@@ -57,6 +57,11 @@ class GeomIndex:
         """Indices of the chosen geoms, largest first."""
         ids = np.flatnonzero(chosen)
         return ids[np.argsort(-self.radius[ids], kind="stable")]
+
+    def drawn(self, owner: str) -> list[int]:
+        """Indices of the opaque geoms of a thing, an object or a seat, whether they hide anything or not."""
+        found: list[int] = np.flatnonzero(self._drawn & (self.numbers == self._number.get(owner, -1))).tolist()
+        return found
 
     def hidden(self, eye: Vec3, point: Vec3, ignore: str = "") -> bool:
         """Whether something other than ``ignore`` stands between the two points [m]."""

@@ -97,8 +97,11 @@ class PushPlan:
 
     def commit(self, velocity: Mapping[MovableObject, Sequence[float]]) -> None:
         """Move the objects, each with its new velocity (6,) [m/s, rad/s]."""
-        data = self._floor.env.data
-        for item in sorted(self.shifts, key=lambda item: item.number):
+        data, shifted = self._floor.env.data, sorted(self.shifts, key=lambda item: item.number)
+        for item in shifted:
+            data.geom_xpos[item.geoms, :2] = self._begun[item]
+        self._floor.objects.wake_beside(geom for item in shifted for geom in range(item.geoms.start, item.geoms.stop))
+        for item in shifted:
             (dx, dy), (x, y, *rest) = self.shifts[item], data.qpos[item.qpos : item.qpos + 7].tolist()
             self._floor.objects.shove(item, (x + dx, y + dy, *rest), velocity[item])
         self._floor.env.touch()

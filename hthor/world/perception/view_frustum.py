@@ -6,8 +6,9 @@ import math
 import numba
 import numpy as np
 
+from hthor.geometry import plane
 from hthor.geometry.ray_casting import Bools, Floats
-from hthor.types import BodySpec, Pose, Vec2, Vec3
+from hthor.types import BodySpec, Pose, Rotate, Vec2, Vec3
 
 ViewAxes = tuple[float, ...]
 """An eye [m], its forward, left and up axes, and the tangents of half its fields of view: 14 numbers."""
@@ -31,6 +32,14 @@ def half_fov_tangents(spec: BodySpec) -> Vec2:
 def eye_position(pose: Pose, spec: BodySpec) -> Vec3:
     """The position of the eye [m], house frame."""
     return (pose.x, pose.y, spec.eye)
+
+
+def rotation_towards(pose: Pose, body: BodySpec, point: Vec3) -> Rotate:
+    """The rotation after which the head of a body at ``pose`` faces ``point`` [m], tilted to it as far as possible."""
+    dx, dy = point[0] - pose.x, point[1] - pose.y
+    yaw = plane.wrap(math.atan2(dy, dx) - pose.gaze)
+    up = math.atan2(point[2] - body.eye, max(math.hypot(dx, dy), 1e-6))
+    return Rotate(yaw=yaw, pitch=max(-body.pitch_limit, min(body.pitch_limit, up)) - pose.pitch)
 
 
 def look_points(position: Vec3, size: Vec3) -> tuple[Vec3, Vec3]:

@@ -26,7 +26,8 @@ from hthor.world.state.support_surfaces import SupportSurfaces
 class DoorState:
     """All doors and drawers of one thing, which move together, or all doors of a doorway.
 
-    ``user`` is the seat that is opening or closing the doors, empty otherwise.
+    ``user`` is the seat that opens or closes the doors, empty otherwise. ``solids`` are the engine's numbers of all
+    moving shapes, ``geoms`` of those that turn on hinges.
     """
 
     def __init__(self, door: Door, env: LazyComposerEnv) -> None:
@@ -36,6 +37,7 @@ class DoorState:
         ids = [env.physics.bind(element).element_id for element in door.elements]
         self.qpos = [int(env.model.jnt_qposadr[id]) for id in ids]
         self.dof = [int(env.model.jnt_dofadr[id]) for id in ids]
+        self.solids = np.flatnonzero(np.isin(env.model.geom_bodyid, env.model.jnt_bodyid[ids])).tolist()
         hinges = [env.model.jnt_bodyid[id] for id, joint in zip(ids, self.joints, strict=True) if joint.kind == "hinge"]
         self.geoms = np.flatnonzero(np.isin(env.model.geom_bodyid, hinges))
         self.clear()

@@ -40,6 +40,9 @@ class Objects:
         self._items = {item.id: item for item in items}
         self._list = items
         self._trees = np.array([item.tree for item in items], int)
+        self._solids = np.full(env.model.ngeom, -1)
+        for item in items:
+            self._solids[item.geoms] = item.number
         self._homes = {one.id: one.home for one in ordered if one.home is not None}
         self._beneath = {id: surfaces.support(home, self._items[id].size[2]) for id, home in self._homes.items()}
         self.positions = np.full((len(items), 3), ABSENT_POSITION)
@@ -72,6 +75,17 @@ class Objects:
         awake = np.flatnonzero(self._env.asleep[self._trees] < 0).tolist() if len(self._trees) else []
         items = (self._list[number] for number in sorted({*awake, *self._loose}))
         return [item for item in items if item.present and not item.held_by]
+
+    def wake_beside(self, geoms: Iterable[int]) -> None:
+        """Let the engine move the resting objects that touch these solids, which are about to be taken away.
+
+        Without this they would sleep on in the air, as the engine wakes only what something runs into.
+        """
+        touching = [self._list[number] for number in self._overlap.beside(geoms, self._solids)]
+        asleep = [item for item in touching if item.present and not item.held_by and self._env.asleep[item.tree] >= 0]
+        if asleep:
+            self._loose.update(item.number for item in asleep)
+            self._env.wake(item.dof for item in asleep)
 
     def shove(self, item: MovableObject, pose: QPose, velocity: Sequence[float]) -> None:
         """Put an object that nobody holds at ``pose``, with a velocity (6,) [m/s, rad/s]; call the engine's `touch`
@@ -110,6 +124,7 @@ class Objects:
     def take(self, id: str, seat: str, hand: Callable[[], QPose]) -> None:
         """From now on the object is in the hand of ``seat``; ``hand()`` returns the hand's pose."""
         item = self._items[id]
+        self._leave(item)
         item.held_by, item.support = seat, ""
         self._news.add(item.number)
         self._loose.discard(item.number)
@@ -141,6 +156,7 @@ class Objects:
     def move(self, id: str, pose: QPose, velocity: Vec3 = (0.0, 0.0, 0.0)) -> None:
         """Put an object that nobody holds at ``pose`` with ``velocity`` [m/s]; from then on the engine moves it."""
         item, data = self._items[id], self._env.data
+        self._leave(item)
         item.present, item.support = True, ""
         self.present[item.number] = True
         self._loose.add(item.number)
@@ -162,6 +178,7 @@ class Objects:
     def remove(self, id: str, parking: QPose) -> None:
         """Take an object that nobody holds out of the episode, to the pose ``parking``."""
         item, data = self._items[id], self._env.data
+        self._leave(item)
         data.qpos[item.qpos : item.qpos + 7] = parking
         data.qvel[item.dof : item.dof + 6] = 0.0
         item.clear()
@@ -271,6 +288,11 @@ class Objects:
             self._sort(item)
             self.changes += 1
         return moved
+
+    def _leave(self, item: MovableObject) -> None:
+        """Wake what rests on an object, before it leaves its place."""
+        if item.present and not item.held_by:
+            self.wake_beside(range(item.geoms.start, item.geoms.stop))
 
     def _read(self, item: MovableObject, pose: Sequence[float]) -> None:
         item.at(pose)

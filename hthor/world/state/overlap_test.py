@@ -1,6 +1,7 @@
 """Which solids an object touches or overlaps, computed from the engine's exact shapes."""
 
 import math
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -41,6 +42,21 @@ class OverlapTest:
                     owner = str(index.owner[other])
                     closest[owner] = min(gap, closest.get(owner, math.inf))
         return sorted(closest, key=lambda owner: (closest[owner], owner))
+
+    def beside(self, geoms: Iterable[int], numbers: Any) -> list[int]:
+        """Numbers of the objects that touch one of these geoms; ``numbers`` (N,): the object of each, -1 for none."""
+        model, data, radius = self._env.model, self._env.data, self._geoms.radius
+        others = np.flatnonzero((numbers >= 0) & (model.geom_contype & _MEETS != 0))
+        found: set[int] = set()
+        for geom in geoms:
+            apart = np.linalg.norm(data.geom_xpos[others] - data.geom_xpos[geom], axis=1)
+            for other in others[apart < radius[others] + radius[geom] + CONTACT_M].tolist():
+                number = int(numbers[other])
+                if number == numbers[geom] or number in found:
+                    continue
+                if mujoco.mj_geomDistance(model, data, geom, other, 1.0, None) < CONTACT_M:
+                    found.add(number)
+        return sorted(found)
 
     def inside(self, item: MovableObject, deep: float = OVERLAP_M) -> str:
         """Id of a thing, wall or object that the object overlaps at its pose in the engine, empty for none.
