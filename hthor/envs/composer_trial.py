@@ -44,6 +44,6 @@ def trial_environment(
         HthorError: when the world has other robots than the trial.
         UnknownName: when ``observe`` names no observable.
     """
-    environment = world.environment
+    environment = world.env
     environment.hand_over(EpisodeControl(trial, world, people if callable(people) else lambda: people, observe))
     return environment

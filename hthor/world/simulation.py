@@ -110,8 +110,8 @@ class Simulation:
         return int(model.nbuffer + data.nbuffer + data.narena)
 
     @property
-    def environment(self) -> LazyComposerEnv:
-        """The composer environment in which everything is, for `hthor.envs` and for programs that use dm_control."""
+    def env(self) -> LazyComposerEnv:
+        """The `dm_env` environment in which everything is; `hthor.envs.trial_environment` gives it a trial."""
         return self._env
 
     def reset(self, task: TaskSpec, seed: int = 0) -> None:

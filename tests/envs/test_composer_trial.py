@@ -219,7 +219,7 @@ def test_the_world_may_be_used_between_steps_and_after_close(world: World) -> No
     environment.close()
     world.reset()
     assert world.human.rotate(0.4).ok
-    assert world.environment.task.control is None
+    assert world.env.task.control is None
     assert environment.step(environment.action_spec().generate_value()).mid()
 
 

@@ -20,7 +20,7 @@ def world() -> World:
 
 def in_engine(world: World) -> dict[str, tuple[float, ...]]:
     """Place and heading of each body, as the engine has them."""
-    data = world.environment.data
+    data = world.env.data
     assert not data.mocap_pos[:, 2].any()
     assert not data.mocap_quat[:, 1:3].any()
     turns = [2.0 * math.atan2(z, w) for w, _, _, z in data.mocap_quat.tolist()]
@@ -84,7 +84,7 @@ def test_poses_are_right_after_a_teleport_and_a_loaded_state(world: World) -> No
 def test_poses_are_right_after_the_engine_lost_its_state(world: World, monkeypatch: pytest.MonkeyPatch) -> None:
     world.reset(task(on(TABLE, "apple")))
     world.put_object("apple", (4.0, 3.0, 1.5))
-    monkeypatch.setattr(world.environment, "warnings", lambda: {"mjWARN_BADQACC": 0})
+    monkeypatch.setattr(world.env, "warnings", lambda: {"mjWARN_BADQACC": 0})
     world.start("human", Move(forward=-0.1))
     with pytest.raises(PhysicsError):
         world.advance()
@@ -108,7 +108,7 @@ def test_bodies_that_are_pulled_along_are_in_the_engine_too() -> None:
 
 def test_only_bodies_that_moved_are_written(world: World) -> None:
     world.reset()
-    data = world.environment.data
+    data = world.env.data
     data.mocap_pos[:, 2] = 7.0  # a mark that a write of x, y and yaw leaves, and a reset removes
     data.mocap_pos[1, 0] = -3.0
     world.start("human", Rotate(yaw=1.0))

@@ -25,7 +25,7 @@ SCENES = ("hazel", "cedar", "elder")
 
 def hanging(world: World) -> dict[str, float]:
     """How far [m] the resting objects would fall that nothing carries; the world is afterwards as it was."""
-    state, environment = world.save_state(), world.environment
+    state, environment = world.save_state(), world.env
     model, data, present = environment.model, environment.data, {one.id for one in world.objects() if not one.held_by}
     joints = {prop.id: environment.physics.bind(prop.root_body).element_id for prop in environment.task.props}
     joints = {id: int(model.body_jntadr[body]) for id, body in joints.items() if id in present}

@@ -130,7 +130,7 @@ def test_a_closed_fridge_keeps_its_things_until_it_is_opened(world: World) -> No
 
 def test_one_door_one_hand(world: World) -> None:
     world.teleport("human", AT_FRIDGE)
-    world.teleport("robot2", Pose(x=1.15, y=2.7, yaw=2.2))
+    world.teleport("robot2", Pose(x=1.5, y=2.85, yaw=2.6))  # beside the swing
     world.start("human", Open(thing=FRIDGE))
     world.advance()
     assert reason(world, "robot2", Open(thing=FRIDGE)) == f"{FRIDGE} is being used by human"

@@ -15,6 +15,7 @@ from typing import Any
 import dm_env
 import numpy as np
 
+from hthor.errors import UnknownName
 from hthor.world.model.engine import Environment, composer, mujoco
 from hthor.world.model.trial_control import TrialControl
 from hthor.world.records import EngineRecord
@@ -47,6 +48,7 @@ SPEED_MAX_M_S, SPIN_MAX_RAD_S = 20.0, 300.0
 """[m/s, rad/s] Limits on speed along and spin about any axis: above them things would pass through boards or spin ever
 faster.
 """
+_HOOKS = ("initialize_episode", "before_step", "before_substep", "after_substep", "after_step")
 _NUDGE_M_S = -1e-9
 """[m/s] Enough speed to wake a sleeping object, and too little to move it."""
 
@@ -54,9 +56,9 @@ _NUDGE_M_S = -1e-9
 class LazyComposerEnv(Environment):
     """The environment of a `HouseTask`.
 
-    By itself it is an ordinary composer environment with the usual `reset` and `step`, in which bodies stand still.
-    With a `TrialControl`, `reset` begins a trial and `step` is one tick of it. `Simulation` needs neither: it calls
-    `begin` and `tick`, which reset the engine and make one control step; a control does so too, through its simulation.
+    With a `TrialControl`, `reset` begins a trial and `step` is one tick of it; without one, bodies stand still, and
+    objects fall. `Simulation` needs neither: it calls `begin` and `tick`, which reset the engine and make one control
+    step; a control does so too, through its simulation.
     """
 
     def __init__(self, task: Any) -> None:
@@ -67,76 +69,106 @@ class LazyComposerEnv(Environment):
             recompile_mjcf_every_episode=False,
             strip_singleton_obs_buffer_dim=True,
         )
-        self._mjcf_never_compiled = False  # the constructor has just compiled it; composer would compile it again
-
-    def hand_over(self, control: TrialControl | None) -> None:
-        """From now on a step is a tick of ``control``'s trial, which begins at the next reset; None: an engine's step.
-
-        A control step then has a single substep, the tick, so that observables are updated once in it.
-        """
-        self._task.take(control)
-        self._n_sub_steps = self._steps_per_tick if control is None else 1
-        self._observation_updater = self._make_observation_updater()
-        self._observation_updater.reset(self._physics_proxy, self._random_state)
-        self._reset_next_step = True
-
-    def close(self) -> None:
-        """Let go of the control; an environment without one frees the engine, and its world with it."""
-        if self._task.control is None:
-            super().close()
-        else:
-            self.hand_over(None)
-
-    def _recompile_physics(self) -> None:
-        super()._recompile_physics()
-        self.model, self.data = self._physics.model.ptr, self._physics.data.ptr
+        self.model, self.data = self.physics.model.ptr, self.physics.data.ptr
         self.asleep = self.data.tree_asleep  # per tree, below 0 while awake
         self._carried = np.full(self.model.ntree, -(1 << 30), np.int32)  # 0 while that tree is carried
         self._held: dict[int, tuple[int, int, Callable[[], QPose]]] = {}
         self._still, self._restless = False, 0
         self._puppets = np.flatnonzero(self.model.body_mocapid >= 0).tolist()
         self._step_s = float(self.model.opt.timestep)
-        self._steps_per_tick = self._task.physics_steps_per_control_step
+        self._steps_per_tick = task.physics_steps_per_control_step
         free = self.model.jnt_dofadr[self.model.jnt_type == int(mujoco.mjtJoint.mjJNT_FREE)]
         self._free = (free[:, None] + np.arange(6)).ravel()
         self._limits = np.tile((STEP_TRAVEL_MAX_M,) * 3 + (STEP_TURN_MAX_RAD,) * 3, len(free)) / self._step_s
         self._sound = self.data.qpos.copy()
         self._most = np.tile((SPEED_MAX_M_S,) * 3 + (SPIN_MAX_RAD_S,) * 3, len(free))
+        self._over = True
+        self._extra_hooks: dict[str, list[Callable[..., Any]]] = {name: [] for name in _HOOKS}
+        self.hand_over(None)
+
+    def hand_over(self, control: TrialControl | None) -> None:
+        """From now on a step is a tick of ``control``'s trial, which begins at the next reset; None: only objects move.
+
+        Observables are updated once in a step.
+        """
+        self.task.take(control)
+        self._observed = composer.observation.Updater(self.task.observables, 1, True)
+        self._observed.reset(self.physics, self.random_state)
+        self._over = True
+
+    def close(self) -> None:
+        """Let go of the control; an environment without one frees the engine, and its world with it."""
+        if self.task.control is None:
+            super().close()
+        else:
+            self.hand_over(None)
+
+    def reset(self) -> Any:
+        """Begin an episode: the control's trial, or one of the engine alone."""
+        if self.task.control is None:
+            self.begin()
+        else:
+            self.task.control.reset()
+            self._show_puppets()
+        self._call("initialize_episode")
+        self._observed.reset(self.physics, self.random_state)
+        self._over = False
+        return dm_env.restart(self._observed.get_observation())
+
+    def step(self, action: Any) -> Any:
+        """Let a tick pass: of the control's trial, in which the bodies act as ``action`` says, or of the engine alone.
+
+        After the last step of an episode, or after somebody else has reset the world, it begins the next episode.
+        """
+        if self._over:
+            return self.reset()
+        task, control = self.task, self.task.control
+        task.before_step(self.physics, action, self.random_state)
+        self._call("before_step", action)
+        self._observed.prepare_for_next_control_step()
+        self._call("before_substep", action)
+        if control is None:
+            self.tick()
+        else:
+            control.advance()
+            self._show_puppets()
+        self._call("after_substep")
+        self._call("after_step")
+        self._over = bool(task.should_terminate_episode(self.physics))  # also where a tour of this trial began again
+        self._observed.update()
+        return dm_env.TimeStep(
+            step_type=dm_env.StepType.LAST if self._over else dm_env.StepType.MID,
+            reward=task.get_reward(self.physics),
+            discount=task.get_discount(self.physics),
+            observation=self._observed.get_observation(),
+        )
+
+    def observation_spec(self) -> Any:
+        """What `step` returns, by name: the control's observables."""
+        return self._observed.observation_spec()
+
+    def add_extra_hook(self, hook_name: str, hook_callable: Callable[..., Any]) -> None:
+        """Have a function called at every reset or step, as composer does; a step is one substep.
+
+        Raises:
+            UnknownName: for any other hook: the model is compiled only once.
+        """
+        if hook_name not in self._extra_hooks:
+            raise UnknownName("hook", hook_name, self._extra_hooks)
+        self._extra_hooks[hook_name].append(hook_callable)
+
+    def _call(self, hook_name: str, *given: Any) -> None:
+        for hook in self._extra_hooks[hook_name]:
+            hook(self.physics, *given, self.random_state)
 
     def begin(self) -> None:
         """Start an episode of the engine: nothing is carried, and all sleeps at the place that the task gives it."""
         self._held.clear()
         self._carried[:] = -(1 << 30)
         self._still, self._restless = False, 0
-        self._reset_next_step = self._task.control is not None  # an episode that the control did not begin is not its
-        with self._physics.reset_context():
-            self._hooks.initialize_episode(self._physics_proxy, self._random_state)
-
-    def _reset_attempt(self) -> Any:
-        """What composer does, but a control begins the episode of the engine itself."""
-        if self._task.control is None:
-            self.begin()
-        else:
-            self._task.control.reset()
-            self._show_puppets()
-        self._observation_updater.reset(self._physics_proxy, self._random_state)
-        self._reset_next_step = False
-        return dm_env.restart(self._observation_updater.get_observation())
-
-    def _substep(self, action: Any) -> None:
-        """One of the engine's steps; with a control, a tick."""
-        if self._task.control is None:
-            super()._substep(action)
-            return
-        self._hooks.before_substep(self._physics_proxy, action, self._random_state)
-        self._task.control.advance()
-        self._reset_next_step = False  # a trial whose task begins after a tour goes on, though the engine began again
-        self._show_puppets()
-        self._hooks.after_substep(self._physics_proxy, self._random_state)
-
-    def _make_observation_updater(self) -> Any:
-        steps = self._steps_per_tick if self._task.control is None else 1
-        return composer.observation.Updater(self._task.observables, steps, self._strip_singleton_obs_buffer_dim)
+        self._over = self.task.control is not None  # an episode that the control did not begin is not its
+        with self.physics.reset_context():
+            self.task.initialize_episode(self.physics, self.random_state)
 
     def _show_puppets(self) -> None:
         """Move the mocap bodies' shapes to their poses, which the engine does only when something else moves.
