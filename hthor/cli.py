@@ -109,6 +109,30 @@ def _open_streams() -> None:
             setattr(sys, name, os.fdopen(handle, mode))
 
 
+def _read_names_as_utf8() -> None:
+    """Begin again in Python's UTF-8 mode if a name is UTF-8, but Python reads names in another way.
+
+    ``PYTHONUTF8=0`` in the locale C has Python read them as ASCII, and then no file with such a name can be opened.
+    """
+    names = [*sys.argv[1:]]
+    with contextlib.suppress(OSError):
+        names.append(os.getcwd())
+    if sys.getfilesystemencoding() == "utf-8" or not sys.executable or all(map(_is_encodable, names)):
+        return
+    with contextlib.suppress(UnicodeError):
+        for name in names:
+            os.fsencode(name).decode("utf-8")
+        os.environ["PYTHONUTF8"] = "1"  # for the processes that this one starts
+        os.execv(sys.executable, [sys.executable, "-X", "utf8", *sys.orig_argv[1:]])
+
+
+def _is_encodable(name: str) -> bool:
+    """Whether a name has none of the marks that Python puts in place of bytes that it cannot read."""
+    from hthor import jsonio
+
+    return jsonio.is_text(name)
+
+
 def _check_arguments() -> None:
     """Refuse names that are not UTF-8: file names may be any bytes, but what hthor writes is UTF-8."""
     from hthor import jsonio
@@ -123,6 +147,7 @@ def _check_arguments() -> None:
 
 def main() -> None:
     """Run `hthor` with the arguments of this process, and turn the user's errors into one clear line."""
+    _read_names_as_utf8()
     _open_streams()
     if "FORCE_COLOR" not in os.environ and not sys.stdout.isatty():
         os.environ["_TYPER_FORCE_DISABLE_TERMINAL"] = "1"  # typer would also colour for GITHUB_ACTIONS and PY_COLORS

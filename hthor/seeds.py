@@ -5,12 +5,34 @@ the outcome of any other draw.
 """
 
 import hashlib
+import operator
 from collections.abc import Sequence
 from statistics import NormalDist
+
+from hthor.errors import HthorError
+
+LARGEST = 2**63 - 1
+"""The largest seed that a user can give."""
 
 _normal = NormalDist()
 
 Name = str | int
+
+
+def check_seed(seed: object) -> int:
+    """The seed that a user gave; the roots that hthor derives need no check.
+
+    Raises:
+        HthorError: when it is not a whole number from 0 to `LARGEST`.
+    """
+    try:
+        number = operator.index(seed)  # type: ignore[arg-type]
+    except TypeError:
+        number = -1
+    if isinstance(seed, bool) or not 0 <= number <= LARGEST:
+        given = repr(seed) if not isinstance(seed, int) or abs(number) <= LARGEST else "a larger number"
+        raise HthorError(f"a seed must be a whole number from 0 to {LARGEST}, got {given:.40}")
+    return number
 
 
 def _bits(root: int, names: tuple[Name, ...]) -> int:

@@ -31,7 +31,7 @@ def calibrate(
     out: Annotated[
         Path | None, typer.Option(help="Folder of the calibration.", show_default="calibration/TARGET-SUITE-SEED")
     ] = None,
-    seed: Annotated[int, typer.Option(help="The same seed gives the same population, byte for byte.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="The same seed gives the same population, byte for byte.")] = 0,
     jobs: Annotated[int | None, typer.Option(min=1, help="Worker processes.", show_default="one per CPU")] = None,
     sessions: Annotated[
         int | None, typer.Option(min=30, help="Number of training sessions, of ten trials each.", show_default="4000")

@@ -36,7 +36,7 @@ def _count(text: str) -> int:
 
 Out = Annotated[Path | None, typer.Option(help="Folder of the training.", show_default="training/ALGORITHM-SEED")]
 Frames = Annotated[int, typer.Option(parser=_count, metavar="NUMBER", help="Actions to train on, such as 500k or 10M.")]
-Seed = Annotated[int, typer.Option(help="The same seed gives the same network on the same kind of processor.")]
+Seed = Annotated[int, typer.Option(min=0, help="The same seed gives the same network on the same kind of processor.")]
 Houses = Annotated[int, typer.Option(min=1, help="Number of houses to train in.")]
 HousesOfProfile = Annotated[
     int | None,

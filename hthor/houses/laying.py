@@ -41,22 +41,34 @@ def movable_objects(house: HouseSpec) -> tuple[Thing, ...]:
 
     Of two things that overlap, the first is free. A thing on another small thing follows it to that thing's new place.
     """
+    return tuple(laid for _, laid, _ in _lay(house) if laid is not None)
+
+
+def fixed_objects(house: HouseSpec) -> Iterator[tuple[Thing, str]]:
+    """The other small things that a file puts on or into something, each with the reason why it cannot be moved."""
+    return ((thing, problem) for thing, laid, problem in _lay(house) if laid is None)
+
+
+def _lay(house: HouseSpec) -> Iterator[tuple[Thing, Thing | None, str]]:
+    """Every small thing with a support, where it lies on that, or None and the reason why it cannot."""
     small = {thing.id for thing in house.things if catalog.kind(thing.kind).pickable}
     standing = (thing for thing in house.things if thing.id not in small or not thing.parent)
     crowd = _Crowd([*solids.wall_slabs(house), *(slab for thing in standing for slab in part_slabs(thing))])
     supports = {thing.id: thing for thing in house.things}
-    found = []
     for thing in house.things:
         if thing.id not in small or not thing.parent:
             continue
-        laid = _on_surface(thing, supports.get(thing.parent))
-        if laid is None or _body(laid).high > house.height + SUNK_M or crowd.holds(_body(laid)):
+        laid, problem = _on_surface(thing, supports.get(thing.parent))
+        if laid is not None and _body(laid).high > house.height + SUNK_M:
+            laid, problem = None, f"on '{thing.parent}' it reaches through the ceiling"
+        if laid is not None and crowd.holds(_body(laid)):
+            laid, problem = None, f"on '{thing.parent}' it is inside something else"
+        if laid is None:
             crowd.add(part_slabs(thing))
-            continue
-        crowd.add([_body(laid)])
-        supports[thing.id] = laid
-        found.append(laid)
-    return tuple(found)
+        else:
+            crowd.add([_body(laid)])
+            supports[thing.id] = laid
+        yield thing, laid, problem
 
 
 def part_slabs(thing: Thing) -> Iterator[Slab]:
@@ -73,15 +85,18 @@ def _laid(thing: Thing, laid: Thing) -> Thing:
     return msgspec.structs.replace(thing, centre=laid.centre, lift=thing.lift + lift)
 
 
-def _on_surface(thing: Thing, support: Thing | None) -> Thing | None:
-    """The thing on the surface of ``support`` that is nearest below or above it; None when no surface is near."""
+def _on_surface(thing: Thing, support: Thing | None) -> tuple[Thing | None, str]:
+    """The thing on the surface of ``support`` that is nearest below or above it; None and why if no surface is near."""
     x, y, z = thing.centre
     low = z - thing.size[2] / 2
     heights = [] if support is None else _heights(support, thing.centre)
     height = min(heights, key=lambda height: abs(height - low), default=None)
-    if height is None or abs(height - low) > _SNAP_M:
-        return None
-    return msgspec.structs.replace(thing, centre=(x, y, height + thing.size[2] / 2))
+    if height is None:
+        return None, f"it is over no surface of '{thing.parent}'"
+    if abs(height - low) > _SNAP_M:
+        side = "above" if low > height else "below"
+        return None, f"it is {abs(low - height):.2f} m {side} '{thing.parent}', more than {_SNAP_M:.2f} m"
+    return msgspec.structs.replace(thing, centre=(x, y, height + thing.size[2] / 2)), ""
 
 
 def _heights(support: Thing, point: Vec3) -> list[float]:

@@ -9,7 +9,7 @@ for walking, reaching, seeing and searching.
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -20,8 +20,9 @@ from hthor.errors import HouseError
 from hthor.geometry.plane import distance_to_rectangle, signed_area, to_house, wrap
 from hthor.houses import laying, schema
 from hthor.houses.assets import Assets
-from hthor.houses.checks import structure
-from hthor.houses.checks.structure import EXTERIOR, ROOM_KINDS
+from hthor.houses.checks import ids, structure
+from hthor.houses.checks.ids import EXTERIOR
+from hthor.houses.checks.structure import ROOM_KINDS
 from hthor.houses.schema import Agent, HouseFile, OpeningRow, RoomRow, WallRow
 from hthor.types import HouseSpec, Opening, Pose, Room, Thing, Vec2, Vec3, Wall
 
@@ -63,6 +64,7 @@ def convert_house(house: HouseFile, name: str, sha256: str, file: str, assets: A
         things=_things(house, file, assets),
         height=max(high for _, high in map(structure.wall_heights, house.walls)),
         start=_pose(found[1]),
+        start_source=found[0],
     )
     return laying.snap_objects(spec)
 
@@ -123,7 +125,7 @@ def _things(house: HouseFile, file: str, assets: Assets) -> tuple[Thing, ...]:
     rooms = [(room.id, structure.floor_polygon(room)) for room in house.rooms]
     things: list[Thing] = []
     units: dict[str, tuple[Thing, ...]] = {}
-    for where, row, parent in structure.iter_objects(house):
+    for where, row, parent in ids.iter_objects(house):
         asset = assets.find(row.asset_id, file, f"{where}.assetId")
         at = row.position
         thing = Thing(
@@ -136,10 +138,22 @@ def _things(house: HouseFile, file: str, assets: Assets) -> tuple[Thing, ...]:
             yaw=wrap(0.0 - math.radians(row.rotation.y)),
             room=structure.room_at((at.x, at.z), rooms) or "",
             parent=unit_below((at.x, at.z), units[parent]).id if parent in units else parent,
+            tilt=(wrap(math.radians(row.rotation.x)), wrap(math.radians(row.rotation.z))),
+            source=where,
         )
         units[row.id] = split_worktop(thing, asset.plan)
         things += units[row.id]
+    _check_units(house, file, units)
     return tuple(things)
+
+
+def _check_units(house: HouseFile, file: str, units: Mapping[str, Sequence[Thing]]) -> None:
+    """Refuse an id that hthor gives to a unit of a worktop."""
+    named = {unit.id: first for first, *others in units.values() for unit in others}
+    for where, name in ids.iter_ids(house):
+        if name in named:
+            problem = f"the id '{name}' is taken by a part of the worktop '{named[name].id}' ({named[name].source})"
+            raise HouseError(file, f"{where}.id", f"{problem}; choose another id")
 
 
 def _pose(agent: Agent) -> Pose:

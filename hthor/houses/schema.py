@@ -46,9 +46,11 @@ class Position(Struct, frozen=True):
 
 
 class Rotation(Struct, frozen=True):
-    """Euler angles; only the yaw ``y`` is used."""
+    """Euler angles; only the yaw ``y`` is used, and `hthor.houses.checks` reports the others."""
 
+    x: float = 0.0
     y: float = 0.0
+    z: float = 0.0
 
 
 class Color(Struct, frozen=True):

@@ -16,7 +16,7 @@ from msgspec import Struct
 from torch import Tensor
 from torch.nn import functional as F  # noqa: N812
 
-from hthor import catalog, jsonio
+from hthor import catalog, jsonio, seeds
 from hthor.agents.skills import picture_encoder
 from hthor.agents.skills.picture_encoder import WEIGHTS, PictureEncoder
 from hthor.agents.skills.savn_network import PAPER
@@ -70,6 +70,7 @@ def train(config: Config, folder: Path, device: str, jobs: int | None, watcher: 
     Raises:
         HthorError: when the folder holds another training.
     """
+    seeds.check_seed(config.seed)
     torch.set_num_threads(1)  # more threads wait for each other longer than they compute
     device = choose_device(device)
     write_config(folder, config)

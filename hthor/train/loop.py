@@ -10,6 +10,7 @@ import torch
 from msgspec import Struct, structs
 from torch import Tensor, nn
 
+from hthor import seeds
 from hthor.agents.skills import picture_encoder, savn_checkpoint
 from hthor.agents.skills.savn_checkpoint import Checkpoint
 from hthor.agents.skills.savn_network import Network, NetworkConfig
@@ -66,7 +67,7 @@ def make_network(config: LoopConfig, begin: Checkpoint | None = None, encoder: b
     Raises:
         HthorError: when the checkpoint or the encoder is of another size.
     """
-    torch.manual_seed(config.seed)
+    torch.manual_seed(seeds.check_seed(config.seed))
     network = Network(structs.replace(config.network, classes=len(CLASSES)))
     with torch.no_grad():
         network.words.copy_(torch.from_numpy(word_vectors(CLASSES)))

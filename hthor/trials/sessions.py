@@ -123,14 +123,14 @@ def make_setup(
         suite_sha256, kind_sha256, clock, step_limit_s: see `StudySetup`.
 
     Raises:
-        HthorError: when there is no such agent, robot or population, or they do not go together.
+        HthorError: when there is no such agent, robot or population, or they do not go together; for a negative seed.
     """
     team = robot_team.form_team([robot], [agent], detector) if isinstance(agent, str) else agent
     people = human_team.find_team(humans) if isinstance(humans, str) else humans
     return StudySetup(
         team=team,
         people=people,
-        seed=seed,
+        seed=seeds.check_seed(seed),
         rules_sha256=rules.sha256(),
         code_sha256=code_identity.code_sha256(people.models, kinds),
         suite_sha256=suite_sha256,

@@ -89,6 +89,8 @@ class Thing(Struct, frozen=True, kw_only=True):
     ``centre`` [m] house frame is the middle of the bounding box, ``size`` [m] its extents along the thing's local
     x (width), y (depth) and z (height) axes. ``variant`` picks one of the kind's finishes, for looks only.
     ``lift`` [m] is how far it was lowered from its height in the house's file (`hthor.houses.laying`).
+    ``tilt`` [rad] are the file's turns about its own x and z axes: hthor puts everything upright, so that they change
+    nothing here. ``source`` is the thing's field in the file, such as ``objects[3].children[0]``; empty without one.
     """
 
     id: str
@@ -101,6 +103,8 @@ class Thing(Struct, frozen=True, kw_only=True):
     room: str = ""
     parent: str = ""
     lift: float = 0.0
+    tilt: Vec2 = (0.0, 0.0)
+    source: str = ""
 
 
 class Room(Struct, frozen=True, kw_only=True):
@@ -151,6 +155,7 @@ class HouseSpec(Struct, frozen=True, kw_only=True):
         id: the house's name. sha256: hash of the canonical JSON of the house's file.
         rooms, walls, openings, things: its contents, in the house frame [m]; ids are unique within the house.
         height: [m] of the ceilings. start: where bodies stand unless a task gives other starts.
+        start_source: the start's field in the house's file; empty without one.
     """
 
     id: str
@@ -161,3 +166,4 @@ class HouseSpec(Struct, frozen=True, kw_only=True):
     things: tuple[Thing, ...]
     height: float
     start: Pose
+    start_source: str = ""

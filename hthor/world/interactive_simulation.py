@@ -5,7 +5,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from hthor import catalog, rules
+from hthor import catalog, rules, seeds
 from hthor.comms import map_picture
 from hthor.comms.display import Displays
 from hthor.comms.display_contents import display_contents
@@ -55,6 +55,7 @@ class InteractiveSimulation(SensingSimulation):
         if task is not None:
             super().reset(task, seed)
             return
+        seed = seeds.check_seed(seed)
         self._begin({})
         self._seed = seed
         self._place_bodies((self.house.start,), ())

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from hthor import houses
+from hthor import houses, seeds
 from hthor.errors import PhysicsError, TaskError, UnknownName
 from hthor.gc_freeze import collection_paused
 from hthor.houses.space.free_space import FreeSpace
@@ -124,8 +124,10 @@ class Simulation:
 
         Raises:
             TaskError: when the task belongs to another house or places an object that this world does not have.
+            HthorError: when the seed is not a whole number from 0.
         """
         spawn.check_task(task, self.house)
+        seed = seeds.check_seed(seed)
         self._begin({placement.id: placement for placement in task.objects}, task.id)
         self._seed = seed
         self._place_bodies((task.human_start, *task.other_human_starts), task.robot_starts)

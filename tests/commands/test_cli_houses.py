@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -39,7 +40,7 @@ def test_a_lenient_check_and_a_strict_one(hthor, samples):
     strict = hthor("houses", "check", file, "--strict")
     assert strict.code == 1
     assert "judged strictly" in strict.out
-    assert "(thing-floats)" in strict.out
+    assert "(thing-floats, objects[" in strict.out
 
 
 def test_a_full_check_asks_the_engine(hthor, samples):
@@ -124,3 +125,17 @@ def test_mistakes_are_told(hthor, words: tuple[str, ...], hints: tuple[str, ...]
 def test_the_commands_wake_nothing_heavy():
     code = "import sys, hthor.cli\nassert not {'numpy', 'numba', 'mujoco', 'cv2', 'rich.table'} & set(sys.modules)"
     subprocess.run([sys.executable, "-c", code], check=True, timeout=900)
+
+
+@pytest.mark.parametrize("within", [False, True])
+def test_a_name_in_utf_8_is_found_in_every_locale(tmp_path: Path, name: str, within: bool):
+    """In the locale C with ``PYTHONUTF8=0``, Python reads names as ASCII."""
+    folder = tmp_path / "mes maisons à moi"
+    folder.mkdir()
+    (folder / "日本.json").write_bytes((Path(houses.__file__).parent / "data" / f"{name}.json").read_bytes())
+    where, what = (folder, "日本.json") if within else (tmp_path, f"{folder}/日本.json")
+    env = {**os.environ, "LC_ALL": "C", "PYTHONUTF8": "0"}
+    command = [sys.executable, "-m", "hthor", "houses", "check", what, "--json"]
+    done = subprocess.run(command, cwd=where, env=env, capture_output=True, timeout=900, check=False)
+    assert (done.returncode, done.stderr) == (0, b"")
+    assert json.loads(done.stdout)["house"] == what

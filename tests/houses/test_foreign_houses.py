@@ -32,7 +32,7 @@ def built(change: Callable[[Any], None], document: Any = None) -> HouseSpec:
 
 
 def without_hash(house: HouseSpec) -> HouseSpec:
-    return msgspec.structs.replace(house, sha256="", id="")
+    return msgspec.structs.replace(house, sha256="", id="", start_source="")
 
 
 def newer(document: Any) -> None:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from msgspec import Struct
 
-from hthor import jsonio, rules
+from hthor import jsonio, rules, seeds
 from hthor.calibration.from_logs import estimate_all, trial_features
 from hthor.calibration.from_logs.display_habits import DisplayHabits, display_habits
 from hthor.calibration.from_logs.estimate import Estimate
@@ -63,6 +63,7 @@ def estimate_from_logs(
     Raises:
         RunError: when a log cannot be read, or has no journal of the person's movements.
     """
+    seeds.check_seed(seed)
     tell("reading")
     data = trial_features.read_sessions(logs)
     if not any(isinstance(entry, Stick) for one in data.trials for entry in one.record.journal):

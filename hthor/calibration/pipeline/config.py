@@ -6,6 +6,7 @@ from pathlib import Path
 import msgspec
 from msgspec import Struct
 
+from hthor import seeds
 from hthor.calibration import targets
 from hthor.calibration.targets import Targets
 from hthor.errors import HthorError
@@ -74,8 +75,9 @@ def resolve_options(options: CalibrationOptions) -> CalibrationConfig:
 
     Raises:
         UnknownName: when there is no such target or suite.
-        HthorError: when the targets are not one set of published results.
+        HthorError: when the targets are not one set of published results, or the seed is negative.
     """
+    seeds.check_seed(options.seed)
     if len(options.targets) != 1:
         raise HthorError("--target takes one set of published results, or any number of logs; not both.")
     published, suite = targets.load_targets(options.targets[0]), library.load_suite(options.suite)

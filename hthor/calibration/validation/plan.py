@@ -6,7 +6,7 @@ from typing import Literal
 
 from msgspec import Struct
 
-from hthor import code_identity, jsonio, rules, tasks
+from hthor import code_identity, jsonio, rules, seeds, tasks
 from hthor.calibration.simulation.trial_table import AGENTS
 from hthor.calibration.validation.report.study_groups import PEOPLE
 from hthor.errors import HthorError
@@ -68,8 +68,9 @@ def planned_runs(options: ValidationOptions) -> tuple[ValidationRun, ...]:
 
     Raises:
         UnknownName: when no people or no suite have that name.
-        HthorError: when there are too few participants for a study group.
+        HthorError: when there are too few participants for a study group, or the seed is negative.
     """
+    seeds.check_seed(options.seed)
     count = options.count
     if count < PEOPLE:
         raise HthorError(f"--participants {count} is too few: a group of the published study has {PEOPLE}.")

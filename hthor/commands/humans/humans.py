@@ -82,7 +82,7 @@ def describe(name: Name, json: Json = False) -> None:
 def sample(
     name: Name,
     n: Annotated[int, typer.Option("--n", min=1, help="Number of participants.")] = 18,
-    seed: Annotated[int, typer.Option(help="Seed of the study, as in hthor eval.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the study, as in hthor eval.")] = 0,
     json: Json = False,
 ) -> None:
     """Show the participants of a study with this seed: the traits in which they differ, or with --json all traits."""

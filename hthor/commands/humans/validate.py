@@ -40,7 +40,7 @@ def validate(
         ),
     ] = None,
     kinds: Annotated[bool, typer.Option("--kinds", help="Also play every kind of people.")] = False,
-    seed: Annotated[int, typer.Option(help="The same seed gives the same people.")] = 0,
+    seed: Annotated[int, typer.Option(min=0, help="The same seed gives the same people.")] = 0,
     jobs: Annotated[int | None, typer.Option(min=1, help="Worker processes.", show_default="one per CPU")] = None,
     out: Annotated[
         Path | None, typer.Option(help="Folder of the report.", show_default="runs/validation-NAME-HASH")

@@ -108,7 +108,7 @@ class EvalOptions(Struct, frozen=True, kw_only=True):
             default="built-in furniture, in the profile 'fast'",
         ),
     ] = ""
-    seed: Annotated[int, Option(help="The same seed gives the same people with the same tasks.")] = 0
+    seed: Annotated[int, Option(least=0, help="The same seed gives the same people with the same tasks.")] = 0
     participants: Annotated[
         int | None,
         Option(

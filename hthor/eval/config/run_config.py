@@ -9,7 +9,7 @@ from pathlib import Path
 import msgspec
 from msgspec import Struct
 
-from hthor import code_identity, installation, jsonio, rules
+from hthor import code_identity, installation, jsonio, rules, seeds
 from hthor.errors import HthorError
 from hthor.eval.config import human_populations
 from hthor.eval.config.human_populations import HumanModelRef
@@ -218,6 +218,7 @@ def build_config(
         design: the between-subjects study that the run is a condition of; ``participants`` then makes no difference.
         limit, houses, difficulty: how ``suite`` was narrowed; empty or None where it was not.
     """
+    seeds.check_seed(seed)
     people = human_team.find_team(humans) if isinstance(humans, str) else humans
     size = len(suite.tasks)
     together = len(people.members)

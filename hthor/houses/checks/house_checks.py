@@ -13,7 +13,7 @@ import numpy as np
 
 from hthor import catalog, rules
 from hthor.geometry.plane import distance_to_rectangle, to_house, to_local
-from hthor.houses.checks import house_rules
+from hthor.houses.checks import house_rules, placing_rules
 from hthor.houses.checks.house_rules import Finding, error, is_sound, readable_kind, warning
 from hthor.houses.space import boxes
 from hthor.houses.space.free_space import Bools, FreeSpace
@@ -38,6 +38,7 @@ STRICT = (
     "receptacles-present",
     "thing-indoors",
     "thing-floats",
+    "thing-tilted",
     "swing-free",
     "object-visible",
 )
@@ -56,12 +57,17 @@ def check(house: HouseSpec, radius: float, height: float = 1.8, *, strict: bool 
         return (error("start-free", house.id, f"no floor is free for a body of radius {radius} m"),)
     if not space.is_free(start.x, start.y):
         problem = f"the start ({start.x:.2f}, {start.y:.2f}) is not free for a body of radius {radius} m"
-        findings.append(error("start-free", house.id, problem))
+        x, y = space.nearest_free(start.x, start.y)
+        nearest = f"the nearest free floor is at x {x:.3f}, {'z' if house.start_source else 'y'} {y:.3f}"
+        field = f"{house.start_source}.position" if house.start_source else ""
+        findings.append(error("start-free", house.id, f"{problem}; {nearest}", field))
     reached = space.component(*space.nearest_free(start.x, start.y))
     findings += _rooms(house, space, reached)
     findings += _doors(house, radius, height)
     findings += _receptacles(house, space, reached)
     findings += house_rules.check_indoors(house)
+    findings += placing_rules.check_upright(house)
+    findings += placing_rules.check_movable(house)
     if strict:
         findings += house_rules.check_rooms(house)
         findings += house_rules.check_doors(house, height)
@@ -72,23 +78,26 @@ def check(house: HouseSpec, radius: float, height: float = 1.8, *, strict: bool 
         findings = [msgspec.structs.replace(one, severity="error") if one.rule in STRICT else one for one in findings]
     else:
         findings += house_rules.check_overlaps(house)
+        findings += placing_rules.check_carried(house)
     return tuple(sorted(findings, key=lambda finding: finding.severity != "error"))
 
 
 def _rooms(house: HouseSpec, space: FreeSpace, reached: Bools) -> Iterator[Finding]:
-    for room in house.rooms:
+    for index, room in enumerate(house.rooms):
         if not (reached & space.room_mask(room)).any():
             problem = f"the {room.name or room.kind} cannot be reached from the start with a radius of {space.radius} m"
-            yield error("room-reachable", room.id, problem)
+            yield error("room-reachable", room.id, problem, f"rooms[{index}]")
 
 
 def _doors(house: HouseSpec, radius: float, height: float) -> Iterator[Finding]:
-    for opening in house.openings:
-        width = math.dist(opening.a, opening.b)
+    for index, opening in enumerate(house.openings):  # doors first, in the file's order
+        width, field = math.dist(opening.a, opening.b), f"doors[{index}].holePolygon"
         if opening.passable and width < 2 * radius:
-            yield warning("door-width", opening.id, f"{width:.2f} m wide; the body needs {2 * radius:.2f} m")
+            yield warning("door-width", opening.id, f"{width:.2f} m wide; the body needs {2 * radius:.2f} m", field)
         if opening.passable and opening.high < height:
-            yield warning("door-height", opening.id, f"{opening.high:.2f} m high; the body is {height:.2f} m tall")
+            yield warning(
+                "door-height", opening.id, f"{opening.high:.2f} m high; the body is {height:.2f} m tall", field
+            )
 
 
 def _receptacles(house: HouseSpec, space: FreeSpace, reached: Bools) -> Iterator[Finding]:
@@ -103,7 +112,7 @@ def _receptacles(house: HouseSpec, space: FreeSpace, reached: Bools) -> Iterator
             gaps = (distance_to_rectangle((x, y), thing.centre[:2], thing.size[:2], thing.yaw) for x, y in near)
             if not any(gap <= STAND_M for gap in gaps):
                 problem = f"nowhere to stand within {STAND_M} m of the {readable_kind(thing.kind)}"
-                yield warning("receptacle-reachable", thing.id, problem)
+                yield warning("receptacle-reachable", thing.id, problem, thing.source)
 
 
 def _present(house: HouseSpec) -> Iterator[Finding]:

@@ -44,25 +44,30 @@ _STEPS = 12
 
 
 class Finding(Struct, frozen=True, kw_only=True):
-    """A fault of a house: the ``rule`` that is broken, ``where`` (an id), and the ``problem`` in words."""
+    """A fault of a house: the ``rule`` that is broken, ``where`` (an id), and the ``problem`` in words.
+
+    ``field`` is the place in the house's file, such as ``objects[3].position.y``; empty if no single field is at fault.
+    """
 
     severity: Literal["error", "warning"]
     rule: str
     where: str
     problem: str
+    field: str = ""
 
     def __str__(self) -> str:
-        return f"{self.severity}: {self.where}: {self.problem} ({self.rule})"
+        place = f", {self.field}" if self.field else ""
+        return f"{self.severity}: {self.where}: {self.problem} ({self.rule}{place})"
 
 
-def error(rule: str, where: str, problem: str) -> Finding:
+def error(rule: str, where: str, problem: str, field: str = "") -> Finding:
     """A finding that makes a house unsound."""
-    return Finding(severity="error", rule=rule, where=where, problem=problem)
+    return Finding(severity="error", rule=rule, where=where, problem=problem, field=field)
 
 
-def warning(rule: str, where: str, problem: str) -> Finding:
+def warning(rule: str, where: str, problem: str, field: str = "") -> Finding:
     """A finding that does not make a house unsound."""
-    return Finding(severity="warning", rule=rule, where=where, problem=problem)
+    return Finding(severity="warning", rule=rule, where=where, problem=problem, field=field)
 
 
 def is_sound(findings: Iterable[Finding]) -> bool:
@@ -165,7 +170,8 @@ def check_indoors(house: HouseSpec) -> Iterator[Finding]:
     """``thing-indoors``: a thing whose middle is in no room."""
     for thing, _ in solids.furniture_slabs(house):
         if not any(inside(thing.centre[:2], room.polygon) for room in house.rooms):
-            yield warning("thing-indoors", thing.id, f"the {readable_kind(thing.kind)} stands outside every room")
+            problem = f"the {readable_kind(thing.kind)} stands outside every room"
+            yield warning("thing-indoors", thing.id, problem, thing.source)
 
 
 def check_overlaps(house: HouseSpec) -> Iterator[Finding]:
@@ -173,11 +179,11 @@ def check_overlaps(house: HouseSpec) -> Iterator[Finding]:
     pieces, walls = solids.furniture_slabs(house), solids.wall_slabs(house)
     for k, (thing, box) in enumerate(pieces):
         if any(solids.overlap_depth(box, wall) > _DEEP_M for wall in walls):
-            yield warning("thing-in-wall", thing.id, f"reaches more than {_DEEP_M} m into a wall")
+            yield warning("thing-in-wall", thing.id, f"reaches more than {_DEEP_M} m into a wall", thing.source)
         for other, rival in pieces[k + 1 :]:
             shallow = min(*box.size, *rival.size) / 2
             if solids.overlap_depth(box, rival) > shallow:
-                yield warning("thing-in-thing", thing.id, f"stands deep inside {other.id}")
+                yield warning("thing-in-thing", thing.id, f"stands deep inside {other.id}", thing.source)
 
 
 def check_supported(house: HouseSpec) -> Iterator[Finding]:
@@ -194,22 +200,21 @@ def check_supported(house: HouseSpec) -> Iterator[Finding]:
             if below is None:
                 kinds = readable_kind(thing.kind), readable_kind(support.kind)
                 problem = f"the {kinds[0]} lies over no surface of '{support.id}' ({kinds[1]})"
-                yield warning("thing-floats", thing.id, problem)
+                yield warning("thing-floats", thing.id, problem, thing.source)
             elif abs(below[1] + thing.lift) > FLOAT_M:
                 gap = below[1] + thing.lift
                 above = f"{abs(gap):.3f} m {'above' if gap > 0 else 'below'} the {below[0].name}"
-                yield warning(
-                    "thing-floats", thing.id, f"the {readable_kind(thing.kind)} lies {above} of '{support.id}'"
-                )
+                problem = f"the {readable_kind(thing.kind)} lies {above} of '{support.id}'"
+                yield warning("thing-floats", thing.id, problem, thing.source)
         elif catalog.kind(thing.kind).wall_mounted:
             gap = _off_wall(thing, house)
             if gap > HANG_M:
                 problem = f"the back of the {readable_kind(thing.kind)} is {gap:.3f} m from the nearest wall's face"
-                yield warning("thing-floats", thing.id, problem)
+                yield warning("thing-floats", thing.id, problem, thing.source)
         elif abs(bottom) > FLOAT_M:
             where = f"{abs(bottom):.3f} m {'above' if bottom > 0 else 'below'} the floor"
             problem = f"the {readable_kind(thing.kind)} stands {where}"
-            yield warning("thing-floats", thing.id, problem)
+            yield warning("thing-floats", thing.id, problem, thing.source)
 
 
 def _off_wall(thing: Thing, house: HouseSpec) -> float:

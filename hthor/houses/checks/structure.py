@@ -4,17 +4,16 @@ Whether a body can live in the house is checked in `house_checks`.
 """
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 
 from hthor.errors import HouseError
 from hthor.geometry.plane import inside, signed_area
+from hthor.houses.checks.ids import EXTERIOR, id_faults, iter_ids, iter_objects
 from hthor.houses.checks.polygons import distance_to_outline, find_crossing, overlap_area, simplify
-from hthor.houses.schema import Agent, HouseFile, ObjectRow, OpeningRow, RoomRow, WallRow
+from hthor.houses.schema import Agent, HouseFile, OpeningRow, RoomRow, WallRow
 from hthor.types import Vec2
 
 ROOM_KINDS = {"Kitchen": "kitchen", "LivingRoom": "living_room", "Bedroom": "bedroom", "Bathroom": "bathroom"}
-EXTERIOR = "exterior"
-"""Used in place of a room's id for the outside."""
 OVERLAP_M2 = 0.01
 OUTSIDE_M = 1.0
 """How far the middle of an object may lie outside of every room, above the ceiling or below the floor.
@@ -22,6 +21,10 @@ OUTSIDE_M = 1.0
 Things on walls reach slightly beyond the floor, and foreign houses may have misplaced things; `house_checks` reports
 those.
 """
+UPRIGHT_DEG = 1.0
+"""Up to this angle something counts as upright: ProcTHOR's physics left at most 0.04 degrees in eight real houses."""
+HORIZON_DEG = 60.0
+"""How far a person looks up or down at most."""
 _SLACK_M = 0.02
 _HOLE_M = 0.1
 """How far a hole may reach beyond its wall, which is then open up to that edge."""
@@ -49,18 +52,6 @@ def validate_structure(house: HouseFile, file: str) -> None:
         _check_start(house)
     except StructureFault as fault:
         raise HouseError(file, fault.field, fault.problem) from None
-
-
-def iter_objects(house: HouseFile) -> Iterator[tuple[str, ObjectRow, str]]:
-    """Every object of the tree with its field path and its parent's id, parents first."""
-
-    def walk(rows: list[ObjectRow], where: str, parent: str) -> Iterator[tuple[str, ObjectRow, str]]:
-        for index, row in enumerate(rows):
-            path = f"{where}[{index}]"
-            yield path, row, parent
-            yield from walk(row.children or [], f"{path}.children", row.id)
-
-    return walk(house.objects, "objects", "")
 
 
 def find_start(house: HouseFile) -> tuple[str, Agent] | None:
@@ -106,23 +97,8 @@ def _listed(name: str, rows: Iterable[OpeningRow]) -> list[tuple[str, OpeningRow
 
 
 def _check_ids(house: HouseFile) -> None:
-    openings = [
-        (where, row.id) for where, row in (*_listed("doors", house.doors), *_listed("windows", house.windows or ()))
-    ]
-    groups = (
-        [(f"rooms[{i}]", row.id) for i, row in enumerate(house.rooms)],
-        [(f"walls[{i}]", row.id) for i, row in enumerate(house.walls)],
-        openings,
-        [(where, row.id) for where, row, _ in iter_objects(house)],
-    )
-    for group in groups:
-        seen: dict[str, str] = {}
-        for where, name in group:
-            if name in seen:
-                raise StructureFault(
-                    f"{where}.id", f"the id '{name}' already belongs to {seen[name]}; ids must be unique"
-                )
-            seen[name] = where
+    for field, problem in id_faults(iter_ids(house)):
+        raise StructureFault(field, problem)
 
 
 def _check_rooms(rooms: list[RoomRow]) -> None:
@@ -217,6 +193,13 @@ def _check_start(house: HouseFile) -> None:
     rooms = [(room.id, floor_polygon(room)) for room in house.rooms]
     if room_at((agent.position.x, agent.position.z), rooms, slack=0.0) is None:
         raise StructureFault(f"{where}.position", "is outside every room")
+    for axis in ("x", "z"):
+        degrees = math.remainder(getattr(agent.rotation, axis), 360.0)
+        if abs(degrees) > UPRIGHT_DEG:
+            raise StructureFault(f"{where}.rotation.{axis}", f"bodies start upright, at 0 degrees; got {degrees:g}")
+    if abs(agent.horizon) > HORIZON_DEG:
+        problem = f"bodies look at most {HORIZON_DEG:g} degrees up or down; got {agent.horizon:g}"
+        raise StructureFault(f"{where}.horizon", problem)
 
 
 def _names(names: Iterable[str]) -> str:

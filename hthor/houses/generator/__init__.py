@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from hthor import jsonio
+from hthor import jsonio, seeds
 from hthor.errors import HthorError
 from hthor.houses.generator.attempt import AttemptFailed, build_document
 from hthor.houses.generator.draws import Dice
@@ -51,7 +51,7 @@ def generate(
     Every house has the benchmark's eight receptacles, a sink and a chair, and none of its targets.
 
     Args:
-        seed: any whole number.
+        seed: a whole number from 0.
         rooms: 4 to 7.
         spec: the name of one of `SPECS`; None draws a spec with this number of rooms.
         tries: how many attempts are made, each with its own draws; the metadata name the successful attempt.
@@ -59,10 +59,10 @@ def generate(
         first: the number of the first attempt, to go on after an attempt that the caller rejected.
 
     Raises:
-        HthorError: for a number of rooms, a spec or a need that does not exist.
+        HthorError: for a negative seed, or for a number of rooms, a spec or a need that does not exist.
         GeneratorError: when all attempts failed; names the rule that each attempt broke.
     """
-    reasons = []
+    seed, reasons = seeds.check_seed(seed), []
     given = None if needs is None or isinstance(needs, str) else frozenset(needs)
     for attempt in range(first, first + tries):
         dice = Dice(seed).of("house", VERSION, rooms, attempt)

@@ -6,6 +6,7 @@ import msgspec
 import numpy as np
 from msgspec import Struct
 
+from hthor import seeds
 from hthor.humans.population import population_file
 from hthor.humans.population.distributions import Prior
 from hthor.humans.population.parameter_registry import Grade
@@ -97,7 +98,12 @@ def describe_population(source: ParticipantSource) -> PopulationDescription:
 
 
 def sample_participants(source: ParticipantSource, count: int, seed: int) -> list[dict[str, Any]]:
-    """The first participants of the study with this seed, with all their parameters."""
+    """The first participants of the study with this seed, with all their parameters.
+
+    Raises:
+        HthorError: when the seed is negative.
+    """
+    seeds.check_seed(seed)
     return [
         {"participant": number, **msgspec.structs.asdict(source.participant(seed, number).traits)}
         for number in range(count)

@@ -39,10 +39,11 @@ def make_tasks(recipe: Recipe, house: HouseSpec, possible: IsPossible = accept_a
     """The tasks of one house, no two of them alike; tasks that are not ``possible`` are drawn again.
 
     Raises:
-        HthorError: when the house has no room for that many tasks.
+        HthorError: when the house has no room for that many tasks, or the seed is negative.
     """
+    root = seeds.derive(_ROOT, seeds.check_seed(recipe.seed))
     orders = functools.partial(_orders, recipe)
-    spec = SuiteSpec(name=recipe.name, version=VERSION, root=seeds.derive(_ROOT, recipe.seed), houses=(), orders=orders)
+    spec = SuiteSpec(name=recipe.name, version=VERSION, root=root, houses=(), orders=orders)
     made = _House(spec, house, possible)
     for order in spec.orders(spec, house):
         made.add(order)
