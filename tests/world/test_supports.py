@@ -24,11 +24,15 @@ SCENES = ("hazel", "cedar", "elder")
 
 
 def hanging(world: World) -> dict[str, float]:
-    """How far [m] the resting objects would fall that nothing carries; the world is afterwards as it was."""
+    """How far [m] the objects at rest would fall that nothing carries; the world is afterwards as it was.
+
+    What a body keeps from falling, because it fits nowhere beside that body, is not at rest.
+    """
     state, environment = world.save_state(), world.env
     model, data, present = environment.model, environment.data, {one.id for one in world.objects() if not one.held_by}
-    joints = {prop.id: environment.physics.bind(prop.root_body).element_id for prop in environment.task.props}
-    joints = {id: int(model.body_jntadr[body]) for id, body in joints.items() if id in present}
+    bodies = {prop.id: environment.physics.bind(prop.root_body).element_id for prop in environment.task.props}
+    rests = {id: id in present and environment.asleep[model.body_treeid[body]] >= 0 for id, body in bodies.items()}
+    joints = {id: int(model.body_jntadr[body]) for id, body in bodies.items() if rests[id]}
     height = {id: int(model.jnt_qposadr[joint]) + 2 for id, joint in joints.items()}
     before = {id: float(data.qpos[at]) for id, at in height.items()}
     environment.wake(int(model.jnt_dofadr[joint]) for joint in joints.values())
