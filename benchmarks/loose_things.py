@@ -1,9 +1,10 @@
 """``python -m benchmarks.loose_things``: random actions of people and robots among things strewn on the floor.
 
 After every tick nothing may be in anything: no body in a loose thing or in the house, no object deep in furniture,
-walls or other objects, nothing outside the house, no number that is not finite. How deep a body is in an object is
-measured with the engine's own shapes, not with the outlines that bodies push by. Equal seeds make equal actions; the
-exit code says whether anything was wrong.
+walls or other objects, nothing outside the house, no number that is not finite, and when all is at rest, nothing in the
+air. How deep a body is in an object is measured with the engine's own shapes, not with the outlines that bodies push
+by. Whenever things have been strewn, bodies go to random things, and their hands have to find what `Actor.go_to` says.
+Equal seeds make equal actions; the exit code says whether anything was wrong.
 """
 
 from __future__ import annotations
@@ -20,10 +21,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
+from benchmarks import reaching
 from hthor.errors import HthorError
 from hthor.geometry import plane
 from hthor.houses.space import solids
-from hthor.types import Drive, Drop, Motion, Move, Pick, Place, Pose, Rotate, Wait
+from hthor.types import Close, Drive, Drop, Motion, Move, Open, Pick, Place, Pose, Rotate, Wait
 from hthor.types.events import Blocked
 from hthor.world import World
 from hthor.world.model.engine import mujoco
@@ -45,6 +47,8 @@ _ABOVE_M = 0.05
 """Things are strewn from this height, so that a thin one falls on the edge of a rug, not into it."""
 STREW_EVERY = 200
 """Actions after which things are strewn again."""
+WALKS = 4
+"""How many things bodies go to whenever things have been strewn."""
 
 
 @dataclass
@@ -54,8 +58,10 @@ class Report:
     actions: Counter[str] = field(default_factory=Counter)
     findings: list[str] = field(default_factory=list)
     stopped: Counter[str] = field(default_factory=Counter)
+    walks: Counter[str] = field(default_factory=Counter)
     ticks: int = 0
     moved: int = 0
+    rested: int = 0
     body_mm: float = 0.0
     rest_mm: float = 0.0
     moving_mm: float = 0.0
@@ -79,6 +85,7 @@ def main() -> None:
     print(f"{sum(report.actions.values())} actions, {report.ticks} ticks in {cpu:.0f} s of CPU, digest {report.digest}")
     print("actions: " + ", ".join(f"{count} {name}" for name, count in report.actions.most_common()))
     print(f"ticks in which something loose moved: {report.moved}")
+    print(f"times all came to rest: {report.rested}; walks: {reaching.words(report.walks)}")
     print("stopped by: " + ", ".join(f"{count} {name}" for name, count in report.stopped.most_common()))
     print(
         f"deepest: body in object {report.body_mm:.1f} mm, objects at rest {report.rest_mm:.1f} mm, "
@@ -97,6 +104,8 @@ def run(house: str, crew: tuple[str, ...], people: int, actions: int, seed: str,
     while done < actions:
         if done >= until:
             _strew(world, chance)
+            for _ in range(WALKS):
+                report.findings += [f"{house}, action {done}: {wrong}" for wrong in _walk(world, chance, report)]
             until = done + STREW_EVERY
         for seat in world.seats:
             if world.idle(seat) and done < actions and (seat not in checker.driving or chance.random() < 0.2):
@@ -127,6 +136,7 @@ class Checker:
         self._data = mujoco.MjData(self._model)
         self._bodies = _Bodies(world)
         self._begun = {item.id: item.position for item in world._objects}
+        self._rested = True
 
     def check(self) -> Iterator[str]:
         """What is wrong now."""
@@ -140,6 +150,16 @@ class Checker:
             if deep > OVERLAP_M:
                 yield f"{seat} is {1000 * deep:.0f} mm deep in {item}"
         yield from self._depth()
+        if self._world.still and not self._rested:
+            self._report.rested += 1
+            for state in self._world.objects():
+                if not state.held_by and not self._touches(state.id):
+                    yield f"{state.id} hangs in the air, at {state.position}"
+        self._rested = self._world.still
+
+    def _touches(self, id: str) -> bool:
+        item = self._world._objects.get(id)
+        return item is None or bool(self._world._objects._overlap.touched(item))
 
     def _places(self) -> Iterator[str]:
         world = self._world
@@ -246,6 +266,17 @@ def _strew(world: World, chance: random.Random) -> None:
     world.settle(3.0)
 
 
+def _walk(world: World, chance: random.Random, report: Report) -> list[str]:
+    """Have a body go to a random thing and use it; what it found otherwise than `Actor.go_to` said."""
+    actor = world.actor(chance.choice(world.seats))
+    targets = [thing.id for thing in world.furniture()] + [one.id for one in world.truth() if not one.held_by]
+    reasons: Counter[str] = Counter()
+    found = reaching.tried(world, actor, chance.choice(targets), reasons)
+    report.walks += found
+    world.settle(3.0)
+    return [f"{actor.seat}: {reason}" for reason in reasons] if reaching.broken(found) else []
+
+
 def _motion(world: World, seat: str, chance: random.Random) -> Motion:
     pose, body, sort = world.pose(seat), world.bodies[seat], chance.random()
     low = [item for item in world._objects if item.number in world._objects.low]
@@ -264,6 +295,10 @@ def _motion(world: World, seat: str, chance: random.Random) -> Motion:
         return Pick(object=nearest.id)
     if sort < 0.95:
         return Drop()
+    if sort < 0.965:
+        doors = [one for one in world.truth() if world._doors.get(one.id) is not None]
+        door = min(doors, key=lambda one: math.dist(one.position[:2], (pose.x, pose.y)))
+        return (Close if door.open else Open)(thing=door.id)
     if sort < 0.98:
         return Place(on=chance.choice([thing.id for thing in world.furniture()]))
     return Wait(seconds=chance.uniform(0.1, 1.0))

@@ -54,11 +54,11 @@ def measure(house: str, body: str, reasons: Counter[str]) -> Counter[str]:
     found: Counter[str] = Counter()
     for target in (*things, *doors, *objects):
         begin(world, actor)
-        found += _tried(world, actor, target, reasons)
+        found += tried(world, actor, target, reasons)
     for target in things if "pick" in actor.body.capabilities else ():
         begin(world, actor)
         if take(world, actor):
-            found += _tried(world, actor, target, reasons)
+            found += tried(world, actor, target, reasons)
     return found
 
 
@@ -84,7 +84,8 @@ def take(world: World, actor: Actor) -> bool:
     return False
 
 
-def _tried(world: World, actor: Actor, target: str, reasons: Counter[str]) -> Counter[str]:
+def tried(world: World, actor: Actor, target: str, reasons: Counter[str]) -> Counter[str]:
+    """Have a body go to a thing and use it: whether it was ok, and whether it was true."""
     went = actor.go_to(target)
     shown = went.ok and bool((actor.segmentation(PICTURE) == world.names.index(target)).any())
     used = use(world, actor, target)
