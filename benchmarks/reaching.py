@@ -106,7 +106,7 @@ def use(world: World, actor: Actor, target: str) -> Outcome | None:
     state = next((one for one in world.truth() if one.id == target), None)
     skills, is_object = actor.body.capabilities, any(one.id == target for one in world.objects())
     if is_object:
-        return actor.pick(target) if "pick" in skills else None
+        return actor.pick(target) if "pick" in skills and not actor.holding else None
     if actor.holding:
         placed = actor.place(target)
         if not placed.reason.startswith("nothing can be placed") and not placed.reason.endswith("is closed"):
