@@ -15,6 +15,7 @@ from typing import Any
 import dm_env
 import numpy as np
 
+from hthor.errors import WorldClosed
 from hthor.world.model.engine import Environment, composer, mujoco
 from hthor.world.model.trial_control import TrialControl
 from hthor.world.records import EngineRecord
@@ -65,6 +66,7 @@ class LazyComposerEnv(Environment):
             recompile_mjcf_every_episode=False,
             strip_singleton_obs_buffer_dim=True,
         )
+        self._shut = False
         self._mjcf_never_compiled = False  # the constructor has just compiled it; composer would compile it again
 
     def hand_over(self, control: TrialControl | None) -> None:
@@ -80,10 +82,17 @@ class LazyComposerEnv(Environment):
 
     def close(self) -> None:
         """Let go of the control; an environment without one frees the engine, and its world with it."""
-        if self._task.control is None:
-            super().close()
-        else:
+        if self._task.control is not None:
             self.hand_over(None)
+        elif not self._shut:
+            super().close()
+
+    def shut(self, house: str) -> None:
+        """Free the engine, with a control or without one; from then on whatever needs it raises WorldClosed."""
+        self._task.take(None)
+        super().close()
+        self._physics = self._physics_proxy = _ClosedEngine(house)
+        self._shut = True
 
     def _recompile_physics(self) -> None:
         super()._recompile_physics()
@@ -279,6 +288,16 @@ class LazyComposerEnv(Environment):
         mujoco.mj_resetData(self.model, self.data)
         self.data.qpos[:] = self._sound
         self.touch()
+
+
+class _ClosedEngine:
+    """Stands for the engine of a world that was closed."""
+
+    def __init__(self, house: str) -> None:
+        self._house = house
+
+    def __getattr__(self, name: str) -> Any:
+        raise WorldClosed.of(self._house)
 
 
 def _write(array: Any, raw: bytes) -> None:
