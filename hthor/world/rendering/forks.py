@@ -5,6 +5,8 @@ import os
 import weakref
 from typing import Protocol
 
+CODE_PART = "pictures"
+
 
 class Forked(Protocol):
     """What hears of forks."""
