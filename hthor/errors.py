@@ -105,7 +105,19 @@ class MissingExtra(HthorError):
 
 
 class RenderingUnavailable(HthorError):
-    """No OpenGL back end could draw a frame."""
+    """No OpenGL back end can draw a frame in this process."""
+
+
+class WorldClosed(HthorError):
+    """A world was used after it was closed."""
+
+    @classmethod
+    def of(cls, house: str) -> WorldClosed:
+        """The error for the world of a house."""
+        return cls(
+            f"this world of house '{house}' is closed. Make another one with World(...), or close this one only after "
+            "its last use."
+        )
 
 
 class PhysicsError(HthorError):

@@ -83,9 +83,9 @@ class SensingSimulation(EditableSimulation):
                 f"there are {len(given)} cameras and {len(self.robots)} robots; give one camera for each robot"
             )
         self.cameras = dict(zip(self.robots, given, strict=False))
-        self._pictures = LazyImages(
-            self.house, self._env, self._geoms, self._seats, self._studio, profile, self.cameras
-        )
+        seen = self.house, self._contents, self.bodies, self._env.model, self._geoms, self._pack
+        studio = functools.partial(_studio, *seen)  # without this world in it: a circle would wait for the collector
+        self._pictures = LazyImages(self.house, self._env, self._geoms, self._seats, studio, profile, self.cameras)
         self._kinds = {wall.id: "wall" for wall in self.house.walls}
         self._kinds |= {one.id: one.kind for one in (*self.house.openings, *self.house.things, *self._objects)}
         self._kinds |= {seat: "person" if is_person(seat) else body.name for seat, body in self.bodies.items()}
@@ -229,12 +229,6 @@ class SensingSimulation(EditableSimulation):
         """
         return self._pictures.overview(viewpoint, mode, size, profile)
 
-    def _studio(self) -> Any:
-        """The renderer of the profile "nice"; its module loads OpenGL, so it is imported only now."""
-        from hthor.world.rendering.opengl_renderer import OpenGLRenderer
-
-        return OpenGLRenderer(self.house, self._contents, self.bodies, self._env.model, self._geoms, self._pack)
-
     @functools.cached_property
     def scene(self) -> SceneParts:
         """Everything that can be seen, as plain meshes, for a program that draws the house itself."""
@@ -249,3 +243,10 @@ class SensingSimulation(EditableSimulation):
     def top_view_bounds(self) -> tuple[float, float, float, float]:
         """x0, y0, x1, y1 [m] of the top view: the rooms and a small margin."""
         return self._pictures.bounds
+
+
+def _studio(*seen: Any) -> Any:
+    """The renderer of the profile "nice"; its module loads OpenGL, so it is imported only now."""
+    from hthor.world.rendering.opengl_renderer import OpenGLRenderer
+
+    return OpenGLRenderer(*seen)

@@ -5,7 +5,7 @@ from typing import Any
 
 from hthor import houses, seeds
 from hthor.errors import PhysicsError, TaskError, UnknownName
-from hthor.gc_freeze import collection_paused
+from hthor.gc_freeze import collect_after_close, collection_paused
 from hthor.houses.space.free_space import FreeSpace
 from hthor.types import (
     BodySpec,
@@ -93,6 +93,7 @@ class Simulation:
         self.tick, self._episode = 0, 0
         self._begin({})
         self._place_bodies((self.house.start,), ())
+        collect_after_close(self)
 
     @property
     def model(self) -> Any:

@@ -2,15 +2,19 @@
 
 from hthor.world import World
 
-world = World("hazel", robots=["tender"])
-world.robot.go_to("fridge")
+with World("hazel", robots=["tender"]) as world:
+    world.robot.go_to("fridge")
 """
 
-from hthor import houses
-from hthor.errors import UnknownName
+from typing import TYPE_CHECKING, Any, Self
+
+from hthor import gc_freeze, houses
+from hthor.errors import UnknownName, WorldClosed
 from hthor.types import HUMAN
 from hthor.world.actor import Actor
 from hthor.world.interactive_simulation import InteractiveSimulation
+
+_KEPT_WHEN_CLOSED = ("house", "seats", "robots", "bodies", "detectors", "cameras", "tick", "events", "mail")
 
 
 class World(InteractiveSimulation):
@@ -30,6 +34,36 @@ class World(InteractiveSimulation):
         mail: the mailbox that `Actor.send` and `Actor.reply` use.
         events: everything that has happened since the last reset, in order.
     """
+
+    def close(self) -> None:
+        """Give back the memory of the renderers, and, when a fifth of the open worlds were closed, of their engines.
+
+        Pictures, observations and records that were read before stay valid. ``house``, ``seats``, ``robots``,
+        ``bodies``, ``detectors``, ``cameras``, ``tick``, ``events`` and ``messages`` can still be read; everything else
+        raises `hthor.errors.WorldClosed`, also a picture of before that is drawn only now. Closing twice is fine.
+        """
+        if "_env" not in vars(self):
+            return
+        self._pictures.close()
+        self._env.shut(self.house.id)
+        kept = {name: vars(self)[name] for name in _KEPT_WHEN_CLOSED}
+        vars(self).clear()
+        vars(self).update(kept)
+        gc_freeze.collect_closed(self)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        self.close()
+
+    if not TYPE_CHECKING:  # else a wrong name would pass as an attribute
+
+        def __getattr__(self, name: str) -> Any:
+            house = vars(self).get("house")
+            if house is not None and "_env" not in vars(self) and "mail" in vars(self):
+                raise WorldClosed.of(house.id)
+            raise AttributeError(f"'{type(self).__name__}' object has no attribute '{name}'")
 
     @staticmethod
     def scenes() -> tuple[str, ...]:

@@ -15,7 +15,7 @@ from typing import Any
 import dm_env
 import numpy as np
 
-from hthor.errors import UnknownName
+from hthor.errors import UnknownName, WorldClosed
 from hthor.world.model.engine import Environment, composer, mujoco
 from hthor.world.model.trial_control import TrialControl
 from hthor.world.records import EngineRecord
@@ -61,6 +61,8 @@ class LazyComposerEnv(Environment):
     step; a control does so too, through its simulation.
     """
 
+    _closed_house = ""
+
     def __init__(self, task: Any) -> None:
         super().__init__(
             task,
@@ -98,10 +100,29 @@ class LazyComposerEnv(Environment):
 
     def close(self) -> None:
         """Let go of the control; an environment without one frees the engine, and its world with it."""
+        if self._closed_house:
+            return
         if self.task.control is None:
             super().close()
         else:
             self.hand_over(None)
+
+    def shut(self, house: str) -> None:
+        """Free the engine, with a control or without one; from then on whatever needs it raises WorldClosed."""
+        self.task.take(None)
+        super().close()
+        self._closed_house, self._over = house, True
+
+    @property
+    def physics(self) -> Any:
+        """The engine, as composer gives it."""
+        if self._closed_house:
+            raise WorldClosed.of(self._closed_house)
+        return super().physics
+
+    def action_spec(self) -> Any:
+        """The control's specification of actions."""
+        return self.task.action_spec(self.physics)
 
     def reset(self) -> Any:
         """Begin an episode: the control's trial, or one of the engine alone."""

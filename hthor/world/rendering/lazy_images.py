@@ -6,6 +6,7 @@ detailed meshes with textures and shadows, through OpenGL; it is loaded at its f
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -15,12 +16,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hthor import seeds
+from hthor.errors import WorldClosed
 from hthor.types import Camera, CameraSpec, HouseSpec, Pose, Vec2, View
 from hthor.world import numbers
 from hthor.world.model.composer_env import LazyComposerEnv
 from hthor.world.model.geom_index import GeomIndex
-from hthor.world.rendering import camera
+from hthor.world.rendering import camera, forks
 from hthor.world.rendering.camera import Images, PoseSnapshot
+from hthor.world.rendering.renderer_slot import RendererSlot
 from hthor.world.state.body_state import BodyState
 
 if TYPE_CHECKING:
@@ -79,7 +82,7 @@ class LazyImages:
     """Copies poses now and draws pictures of them on request.
 
     Args:
-        opengl: makes the renderer of the profile ``nice``; called at most once, when first needed.
+        opengl: makes the renderer of the profile ``nice`` when it is needed.
         profile: the profile of pictures for which a call names none.
         cameras: by seat, the cameras that replace their bodies' own.
     """
@@ -98,11 +101,12 @@ class LazyImages:
         self.profile = profile
         self._house, self._env, self._geoms, self._seats = house, env, geoms, seats
         self._cameras = dict(cameras or {})
-        self._make_opengl = opengl
-        self._opengl_renderer: OpenGLRenderer | None = None
+        self._opengl = RendererSlot(opengl)
         self._ray_renderer: RayRenderer | None = None
         self._labels = SegmentationLabels(geoms.names)
         self._lock = threading.RLock()  # renderers and labels keep buffers from picture to picture
+        self._closed = False
+        forks.watch(self)
 
     def names(self, labels: LabelKey) -> tuple[str, ...]:
         """The owners that the numbers of a segmentation stand for in the episode."""
@@ -167,8 +171,8 @@ class LazyImages:
                 f"pixels_per_metre must be more than 0 and at most 500, got {numbers.quoted(pixels_per_metre)}"
             )
         moment = self.moment()
-        with self._lock:
-            picture: NDArray[np.uint8] = self._draw(profile).top_view(moment, self.bounds, pixels_per_metre)
+        with self._drawing(profile) as renderer:
+            picture: NDArray[np.uint8] = renderer.top_view(moment, self.bounds, pixels_per_metre)
         return picture
 
     def overview(self, viewpoint: Viewpoint, mode: str, size: tuple[int, int], profile: str | None) -> NDArray[Any]:
@@ -176,8 +180,8 @@ class LazyImages:
         _check(("rgb", "depth"), mode=mode)
         camera.check_size(size)
         moment = self.moment()
-        with self._lock:
-            picture: NDArray[Any] = self._draw(profile).overview(moment, viewpoint, mode, size)
+        with self._drawing(profile) as renderer:
+            picture: NDArray[Any] = renderer.overview(moment, viewpoint, mode, size)
         return picture
 
     @property
@@ -190,15 +194,15 @@ class LazyImages:
     def _view(
         self, moment: PoseSnapshot, seat: str, mode: str, size: tuple[int, int], profile: str | None, labels: LabelKey
     ) -> NDArray[Any]:
-        with self._lock:
-            picture: NDArray[Any] = self._draw(profile).view(moment, seat, mode, size, self._by(seat))
+        with self._drawing(profile) as renderer:
+            picture: NDArray[Any] = renderer.view(moment, seat, mode, size, self._by(seat))
             return self._labelled(picture, labels) if mode == "segmentation" else picture
 
     def _look(
         self, moment: PoseSnapshot, seat: str, size: tuple[int, int], profile: str | None, labels: LabelKey
     ) -> Images:
-        with self._lock:
-            images: Images = self._draw(profile).look(moment, seat, size, self._by(seat))
+        with self._drawing(profile) as renderer:
+            images: Images = renderer.look(moment, seat, size, self._by(seat))
             return images._replace(segmentation=self._labelled(images.segmentation, labels))
 
     def _by(self, seat: str) -> CameraSpec:
@@ -222,10 +226,37 @@ class LazyImages:
         poses = {name: (seat.pose, seat.spec) for name, seat in self._seats.items()}
         return PoseSnapshot(self._env.data.qpos.copy(), poses)
 
-    def _draw(self, profile: str | None) -> Any:
+    @contextlib.contextmanager
+    def _drawing(self, profile: str | None) -> Iterator[Any]:
+        """The renderer of a profile, for this thread alone until the end of the block."""
         wanted = profile or self.profile
         _check(PROFILES, profile=wanted)
-        return self._fast() if wanted == "fast" else self._nice()
+        with self._lock:
+            if self._closed:
+                raise WorldClosed.of(self._house.id)
+            if wanted == "fast":
+                yield self._fast()
+            else:
+                with self._opengl.drawing() as renderer:
+                    yield renderer
+
+    def close(self) -> None:
+        """Let go of the engine and the renderers, after the picture that another thread may be drawing.
+
+        From then on, every picture raises WorldClosed.
+        """
+        with self._lock:
+            self._closed = True
+            del self._env, self._geoms, self._ray_renderer, self._opengl
+
+    def forked(self) -> None:
+        """Start again what another thread was drawing, because in the forked process it never ends."""
+        if self._lock.acquire(blocking=False):
+            self._lock.release()
+            return
+        self._lock = threading.RLock()
+        if not self._closed:
+            self._ray_renderer, self._labels = None, SegmentationLabels(self._geoms.names)
 
     def _fast(self) -> RayRenderer:
         if self._ray_renderer is None:
@@ -233,11 +264,6 @@ class LazyImages:
 
             self._ray_renderer = RayRenderer(self._env.model, self._geoms, self._house)
         return self._ray_renderer
-
-    def _nice(self) -> OpenGLRenderer:
-        if self._opengl_renderer is None:
-            self._opengl_renderer = self._make_opengl()
-        return self._opengl_renderer
 
 
 def _check(valid: tuple[str, ...], **given: str) -> None:

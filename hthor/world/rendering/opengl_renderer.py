@@ -3,7 +3,6 @@
 It draws copied poses with a model of its own (see `hthor.world.rendering.scene`), so a picture never changes the world.
 """
 
-import atexit
 import weakref
 from collections.abc import Mapping
 from typing import Any
@@ -20,6 +19,7 @@ from hthor.world.perception import view_frustum
 from hthor.world.rendering import camera as projection
 from hthor.world.rendering import opengl_context
 from hthor.world.rendering.camera import Images, PoseSnapshot
+from hthor.world.rendering.opengl_process import PROCESS
 from hthor.world.rendering.scene.asset_registry import AssetSource
 from hthor.world.rendering.scene.compile_scene import compile_scene
 from hthor.world.rendering.scene.lights import RoomLights
@@ -38,7 +38,7 @@ _ABOVE_M = 20.0
 
 
 class OpenGLRenderer:
-    """Draws snapshots of one world.
+    """Draws snapshots of one world; it is made and used in a turn of `hthor.world.rendering.opengl_process`.
 
     Args:
         house: the floor plan. contents: its things, movable and static. seats: the body in each seat, in order.
@@ -63,17 +63,11 @@ class OpenGLRenderer:
         number = {name: index for index, name in enumerate(scene.names)}
         self._numbers = np.array([number.get(owner, -1) for owner in dressed.owner], np.int32)
         self._data = mujoco.MjData(self._model)
-        self._gl = opengl_context.context(64, 64)
-        with opengl_context.current(self._gl), opengl_context.named(self._gl):
-            self._context = mujoco.MjrContext(self._model, int(mujoco.mjtFontScale.mjFONTSCALE_100))
-            mujoco.mjr_setBuffer(int(mujoco.mjtFramebuffer.mjFB_OFFSCREEN), self._context)
+        self._surface = PROCESS.open(self._model)
+        weakref.finalize(self, PROCESS.discard, self._surface).atexit = False
+        self._context = self._surface.context
         self._scene = mujoco.MjvScene(self._model, maxgeom=self._model.ngeom + 64)
         self._option = mujoco.MjvOption()
-
-        self.close = weakref.finalize(self, _free, self._gl, self._context)
-        """Releases the graphics memory."""
-        self.close.atexit = False
-        atexit.register(self.close)  # registered after the back end's own exit handler, so it runs before that
 
     def look(self, moment: PoseSnapshot, seat: str, size: tuple[int, int], by: CameraSpec = projection.OWN) -> Images:
         """All three pictures of the camera of ``seat``."""
@@ -132,7 +126,7 @@ class OpenGLRenderer:
         mujoco.mjv_updateScene(self._model, self._data, self._option, None, blank, everything, self._scene)
 
     def _shoot(self, mode: str, size: tuple[int, int]) -> Any:
-        with opengl_context.current(self._gl):
+        with opengl_context.current(self._surface.gl):
             return self._rendered(mode, size)
 
     def _rendered(self, mode: str, size: tuple[int, int]) -> Any:
@@ -174,12 +168,6 @@ def _downsampled(pixels: NDArray[np.uint8], times: int) -> NDArray[np.uint8]:
     height, width, channels = pixels.shape
     blocks = pixels.reshape(height // times, times, width // times, times, channels).sum(axis=(1, 3), dtype=np.uint16)
     return np.asarray((blocks + times * times // 2) // (times * times), np.uint8)
-
-
-def _free(gl: Any, context: Any) -> None:
-    with opengl_context.current(gl):
-        context.free()
-    gl.free()
 
 
 def place_at_eye(camera: Any, pose: Pose, spec: BodySpec, lens: Vec2) -> None:
