@@ -14,7 +14,6 @@ from hthor.envs.registration import register
 if TYPE_CHECKING:
     from hthor.envs.action_arrays import action_spec, decode_action, encode_action
     from hthor.envs.composer_trial import trial_environment
-    from hthor.envs.learner_view import LearnerView
     from hthor.envs.learning.assist import AssistEnv
     from hthor.envs.learning.object_nav import ObjectNavEnv
     from hthor.envs.learning.parallel import AssistParallelEnv
@@ -24,7 +23,6 @@ _MODULES = {
     "decode_action": "action_arrays",
     "encode_action": "action_arrays",
     "trial_environment": "composer_trial",
-    "LearnerView": "learner_view",
     "AssistEnv": "learning.assist",
     "ObjectNavEnv": "learning.object_nav",
     "AssistParallelEnv": "learning.parallel",
@@ -33,7 +31,6 @@ _MODULES = {
 __all__ = [
     "AssistEnv",
     "AssistParallelEnv",
-    "LearnerView",
     "ObjectNavEnv",
     "action_spec",
     "decode_action",

@@ -10,10 +10,10 @@ from typing import Any
 from msgspec import Struct
 
 from hthor import rules
+from hthor.agents.skills.learner import LearnerView
+from hthor.agents.skills.learner.known_things import target_id
+from hthor.agents.skills.learner.walking_distance import WalkingDistance
 from hthor.envs.episode_control import EpisodeControl
-from hthor.envs.known_things import target_id
-from hthor.envs.learner_view import LearnerView
-from hthor.envs.walking_distance import WalkingDistance
 from hthor.types import TaskSpec
 from hthor.types.events import Event, Refused
 
@@ -23,8 +23,9 @@ class RewardWeights(Struct, frozen=True, kw_only=True):
 
     Attributes:
         time_cost: what the whole time limit costs; a second costs its share of it.
-        approach: [1/m] what it is worth to come nearer to the nearest object of the task, by the shortest way. It adds
-            up to the whole way that was gained, so that going to and fro is worth nothing.
+        approach: [1/m] what it is worth to come nearer to the nearest object of the task, by the shortest way, also to
+            one that is where it belongs. It adds up to the whole way that was gained, so that going to and fro is worth
+            nothing.
     """
 
     time_cost: float = 0.0

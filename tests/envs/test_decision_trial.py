@@ -16,11 +16,11 @@ from learning_tasks import ALL_KNOWN, few, follow_the_way
 from still_person import StillPerson
 from world_house import TABLE, on
 
-from hthor.envs import LearnerView
+from hthor.agents.skills.learner import LearnerView
+from hthor.agents.skills.learner.actions import action_names
+from hthor.agents.skills.learner.state import state_fields, state_size
 from hthor.envs.decision_trial import DecisionTrial, RewardWeights
 from hthor.envs.episode_control import EpisodeControl
-from hthor.envs.robot_actions import action_names
-from hthor.envs.robot_state import state_fields, state_size
 from hthor.envs.trial_source import TrialSource
 from hthor.episode import play
 from hthor.types import Action, Briefing, Observation, Pose, Send, TrialSpec

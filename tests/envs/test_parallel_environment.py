@@ -15,7 +15,8 @@ pytest.importorskip("pettingzoo", reason="needs the extra learn")
 
 from gymnasium.error import ResetNeeded
 
-from hthor.envs import AssistParallelEnv, LearnerView
+from hthor.agents.skills.learner import LearnerView
+from hthor.envs import AssistParallelEnv
 from hthor.episode import play
 from hthor.types import Action, Briefing, Observation
 

@@ -9,7 +9,7 @@ import msgspec
 import numpy as np
 
 from hthor import tasks
-from hthor.envs.robot_state import WAY_M, state_fields
+from hthor.agents.skills.learner.state import WAY_M, state_fields
 from hthor.tasks.suite import Suite, make_suite
 
 HOUSE = "elder"

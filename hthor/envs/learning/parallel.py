@@ -10,12 +10,12 @@ from gymnasium.error import ResetNeeded
 from gymnasium.utils import seeding
 from pettingzoo import ParallelEnv
 
+from hthor.agents.skills.learner.actions import action_names
 from hthor.envs.decision_trial import DecisionTrial, RewardWeights
 from hthor.envs.learning import spaces
 from hthor.envs.learning.information import information
 from hthor.envs.learning.remade import Remade
 from hthor.envs.learning.study_seeds import StudySeeds
-from hthor.envs.robot_actions import action_names
 from hthor.envs.trial_source import TrialSource
 from hthor.episode import EpisodeLog
 from hthor.tasks.suite import Suite

@@ -9,13 +9,13 @@ import numpy as np
 from gymnasium.error import ResetNeeded
 from numpy.typing import NDArray
 
+from hthor.agents.skills.learner import LearnerView
+from hthor.agents.skills.learner.actions import action_names
 from hthor.envs.decision_trial import Decided, DecisionTrial, RewardWeights
-from hthor.envs.learner_view import LearnerView
 from hthor.envs.learning import spaces
 from hthor.envs.learning.information import information
 from hthor.envs.learning.remade import Remade
 from hthor.envs.learning.study_seeds import StudySeeds
-from hthor.envs.robot_actions import action_names
 from hthor.envs.trial_source import TrialSource
 from hthor.episode import EpisodeLog
 from hthor.types import TrialSpec

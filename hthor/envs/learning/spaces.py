@@ -5,9 +5,9 @@ from typing import Any, Literal
 import numpy as np
 from gymnasium import spaces
 
-from hthor.envs.learner_view import LearnerView
-from hthor.envs.robot_actions import action_names
-from hthor.envs.robot_state import state_size
+from hthor.agents.skills.learner import LearnerView
+from hthor.agents.skills.learner.actions import action_names
+from hthor.agents.skills.learner.state import state_size
 from hthor.errors import UnknownName
 from hthor.types import BodySpec, cameras
 from hthor.types.cameras import OWN
@@ -27,7 +27,7 @@ def camera_name(sight: str) -> str:
 
 
 def observation_space(jobs: int, sight: str) -> spaces.Space[Any]:
-    """The state of `hthor.envs.robot_state`, or a dict of it as "state" and of "rgbd", see `LearnerView.rgbd`."""
+    """The space of `LearnerView.state`, or of a dict of it as "state" and of `LearnerView.rgbd` as "rgbd"."""
     state = spaces.Box(-1.0, 1.0, (state_size(jobs),), np.float32)
     if sight == "state":
         return state
@@ -35,7 +35,7 @@ def observation_space(jobs: int, sight: str) -> spaces.Space[Any]:
 
 
 def action_space(body: BodySpec, jobs: int, talks: bool = True) -> spaces.Discrete:
-    """The numbers of `hthor.envs.robot_actions.action_names`."""
+    """The numbers of `hthor.agents.skills.learner.actions.action_names`."""
     return spaces.Discrete(len(action_names(body, jobs, talks)))
 
 

@@ -1,6 +1,6 @@
 """A robot's trial as a learner has it: observations as arrays, actions as numbers.
 
-The environments are made of it, and an agent for `hthor eval` that plays what was learned in them:
+The environments of `hthor.envs.learning` are made of it, and so is an agent that plays what was learned in them:
 
     class Agent:
         def begin(self, briefing):
@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hthor.envs.known_things import KnownThings
-from hthor.envs.robot_actions import Choice, RobotActions, action_names
-from hthor.envs.robot_state import RobotState
+from hthor.agents.skills.learner.actions import Choice, RobotActions, action_names
+from hthor.agents.skills.learner.known_things import KnownThings
+from hthor.agents.skills.learner.state import RobotState
 from hthor.types import Action, Briefing, Observation
 
 DEPTH_M = 10.0
@@ -33,7 +33,7 @@ class LearnerView:
             it can send messages.
 
     Attributes:
-        names: the names of its actions in the order of their numbers, see `hthor.envs.robot_actions.action_names`.
+        names: the names of its actions in the order of their numbers, see `learner.actions.action_names`.
     """
 
     def __init__(self, briefing: Briefing, jobs: int | None = None, talks: bool = True) -> None:
@@ -57,7 +57,7 @@ class LearnerView:
         self._state.see(observation)
 
     def state(self) -> NDArray[np.float32]:
-        """(size,) float32 from -1 to 1, see `hthor.envs.robot_state.state_fields`; in the tick of the observation."""
+        """(size,) float32 from -1 to 1, see `learner.state.state_fields`; call it in the tick of the observation."""
         return self._state.vector(self.seen)
 
     def rgbd(self) -> NDArray[np.uint8]:

@@ -12,9 +12,9 @@ from msgspec import Struct
 from numpy.typing import NDArray
 
 from hthor import catalog
-from hthor.envs.known_things import KnownThings, target_id
-from hthor.envs.robot_actions import here
-from hthor.envs.walking_distance import WalkingDistance
+from hthor.agents.skills.learner.actions import here
+from hthor.agents.skills.learner.known_things import KnownThings, target_id
+from hthor.agents.skills.learner.walking_distance import WalkingDistance
 from hthor.geometry.plane import turn
 from hthor.types import Briefing, Job, Observation, Pose, Vec3
 

@@ -13,8 +13,8 @@ from msgspec import Struct
 from numpy.typing import NDArray
 
 from hthor import catalog, rules
+from hthor.agents.skills.learner.known_things import KnownThings, target_id
 from hthor.agents.skills.message_timing import sighting_text
-from hthor.envs.known_things import KnownThings, target_id
 from hthor.types import (
     Action,
     BodySpec,
@@ -97,8 +97,8 @@ class RobotActions:
         """What a number stands for; anything that is no number of an action stands for nothing."""
         place = _whole(number)
         if place is None or not 0 <= place < len(self.names):
-            given = f"{number!r:.40}"
-            return _nothing(f"an action is a whole number from 0 to {len(self.names) - 1}, got {given}")
+            given = number.item() if isinstance(number, np.generic) else number
+            return _nothing(f"an action is a whole number from 0 to {len(self.names) - 1}, got {given!r:.40}")
         name = self.names[place]
         if name in WALKING:
             return Choice(action=Action(motion=WALKING[name]))
