@@ -19,7 +19,7 @@ from hthor.trials.sessions import StudySetup, make_setup
 from hthor.trials.sources import make_sources
 from hthor.trials.trial_runner import TrialRunner
 from hthor.types import Action, AgentRef, BodySpec, Briefing, Observation, TaskSpec, TrialSpec, Wait, cameras
-from hthor.types.detector_specs import OWN
+from hthor.types.detector_specs import OWN, canonical_name
 
 LEARNER = "learner"
 """The name of the agent in the trials of these environments."""
@@ -78,7 +78,7 @@ class TrialSource:
         if unknown := [name for name in privileges if name not in PRIVILEGES]:
             raise UnknownName("privilege", unknown[0], PRIVILEGES)
         ref = AgentRef(name=LEARNER, source="", sha256="", privileges=tuple(privileges))
-        team = robot_team.form_team(robots, [AgentInfo(ref=ref)] * len(robots), detector, camera)
+        team = robot_team.form_team(robots, [AgentInfo(ref=ref)] * len(robots), canonical_name(detector), camera)
         self._alone, self._houses = humans is None, suite.houses
         self._setup: StudySetup = make_setup(
             {task.kind for task in self.tasks}, agent=team, humans=humans or "proxy", suite_sha256=suite.sha256
@@ -101,10 +101,10 @@ class TrialSource:
 
     def find(self, id: Any) -> TaskSpec:
         """The task with this id. Raises UnknownName when there is none."""
-        by_id = {task.id: task for task in self.tasks}
-        if id not in by_id:
-            raise UnknownName("task", str(id), by_id)
-        return by_id[id]
+        found = next((task for task in self.tasks if task.id == id), None)
+        if found is None:
+            raise UnknownName("task", str(id), [task.id for task in self.tasks])
+        return found
 
     def trial(self, task: TaskSpec, seed: int, participant: int) -> TrialSpec:
         """The first trial of the session of this number in the study with this seed."""

@@ -146,8 +146,16 @@ def test_a_reset_may_choose_the_task() -> None:
     for task in suite.tasks:
         _, info = env.reset(seed=0, options={"task": task.id})
         assert (info["task"], info["instruction"]) == (task.id, task.instruction)
-    with pytest.raises(UnknownName, match="unknown task"):
-        env.reset(options={"task": "smoke/none"})
+    for wrong in ("smoke/none", 3, {}):
+        with pytest.raises(UnknownName, match="unknown task"):
+            env.reset(options={"task": wrong})
+
+
+def test_several_people_and_a_detector_that_errs() -> None:
+    env = AssistEnv(few(), humans="proxy,proxy", detector="miss=0.3,false_alarm=0.3")
+    rollout(env, 60)
+    assert [seat.participant for seat in env.trial.humans] == [2 * env.trial.session, 2 * env.trial.session + 1]
+    rollout(ObjectNavEnv(few(SEARCH), detector="miss=0.3,false_alarm=0.3"), 60)
 
 
 def test_a_trial_is_that_of_the_batch() -> None:
