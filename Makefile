@@ -74,11 +74,11 @@ python:
 	@touch $@
 
 .venv/.installed-dev: pyproject.toml constraints.txt | .venv/bin/python
-	@$(BIN)/python scripts/install.py dev calibration live
+	@$(BIN)/python scripts/install.py dev calibration learn live
 	@touch .venv/.installed $@
 
 .venv/.installed-torch: pyproject.toml constraints.txt | .venv/bin/python
-	@$(BIN)/python scripts/install.py dev browser calibration live page torch
+	@$(BIN)/python scripts/install.py dev browser calibration learn live page sb3 torch
 	@touch .venv/.installed .venv/.installed-dev .venv/.installed-page $@
 
 .venv/.installed-page: pyproject.toml constraints.txt | .venv/bin/python

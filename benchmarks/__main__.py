@@ -7,6 +7,7 @@ are compared come from the same run, so that ratios hold on a noisy machine too.
 from __future__ import annotations
 
 import argparse
+import importlib.util
 import itertools
 import sys
 from collections.abc import Callable, Iterator
@@ -14,7 +15,7 @@ from collections.abc import Callable, Iterator
 from benchmarks import driving, environment, guests, rendering, scaling, scenes, table, trials
 from hthor import code_identity, tasks
 
-PARTS = ("trials", "environment", "rendering", "processes", "guests")
+PARTS = ("trials", "environment", "rendering", "learners", "processes", "guests")
 
 
 def main() -> None:
@@ -48,9 +49,20 @@ def _measures(given: argparse.Namespace) -> dict[str, Callable[[], Iterator[tabl
         ),
         "environment": lambda: environment.rows(scenes.scenes(suite), suite, 1 if quick else 5),
         "rendering": lambda: rendering.rows(scenes.scenes(suite), profiles, sizes),
+        "learners": lambda: _learners(600 if quick else 3000),
         "processes": lambda: scaling.rows(suite, 5 if quick else 30),
         "guests": lambda: guests.rows(suite, 300 if quick else 2000, 1 if quick else 3),
     }
+
+
+def _learners(decisions: int) -> Iterator[table.Row]:
+    """The environments of Gymnasium, which are an extra."""
+    if importlib.util.find_spec("gymnasium") is None:
+        yield table.Row(part="learners", what="decisions", value=None, unit="", remark="needs the extra learn")
+        return
+    from benchmarks import gym_decisions
+
+    yield from gym_decisions.rows(decisions)
 
 
 if __name__ == "__main__":

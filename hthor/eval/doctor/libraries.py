@@ -17,6 +17,7 @@ _EXTRAS = {
     "cluster": "Ray, for --engine ray",
     "calibration": "for hthor calibrate",
     "live": "for hthor live",
+    "learn": "for environments of Gymnasium and PettingZoo",
     "torch": "for robots that learn",
     "assets": "for hthor assets build",
     "priors": "for hthor priors build",
