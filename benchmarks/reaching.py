@@ -71,16 +71,18 @@ def begin(world: World, actor: Actor) -> None:
 
 
 def take(world: World, actor: Actor) -> bool:
-    """Give the body an apple; False where it stands so that it cannot take one out of the air before it."""
-    pose = actor.pose
-    for ahead in (0.5, 0.6, 0.7):
-        try:
-            x, y = pose.x + ahead * math.cos(pose.yaw), pose.y + ahead * math.sin(pose.yaw)
-            world.put_object(IN_HAND, (x, y, 0.9))
-        except HthorError:
-            continue
-        if actor.pick(IN_HAND).ok:
-            return True
+    """Give the body an apple out of the air before it; False where it stands with no room for one on any side."""
+    for _ in range(8):
+        pose = actor.pose
+        for ahead in (0.5, 0.6, 0.7):
+            try:
+                x, y = pose.x + ahead * math.cos(pose.yaw), pose.y + ahead * math.sin(pose.yaw)
+                world.put_object(IN_HAND, (x, y, 0.9))
+            except HthorError:
+                continue
+            if actor.pick(IN_HAND).ok:
+                return True
+        actor.rotate(math.pi / 4)
     return False
 
 
