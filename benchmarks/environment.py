@@ -146,7 +146,7 @@ def _drop(scene: Scene) -> None:
 def _falling(scene: Scene, other: Any, repeats: int) -> dict[str, float]:
     """The world, dm_control's environment and two floors, for two seconds from the same state."""
     world, found = scene.world, {"fall": [], "fall composer": [], "fall floor": [], "fall 20 ms": []}
-    engine = world._env
+    engine = world.env
     _drop(scene)
     parts = _recorded(world)
     for turn in range(repeats + 1):

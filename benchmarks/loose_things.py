@@ -131,19 +131,19 @@ class Checker:
 
     def __init__(self, world: World, report: Report) -> None:
         self._world, self._report, self.driving = world, report, set[str]()
-        self._model = copy.copy(world._env.model)
+        self._model = copy.copy(world.env.model)
         self._model.opt.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)
         self._data = mujoco.MjData(self._model)
         self._bodies = _Bodies(world)
-        self._begun = {item.id: item.position for item in world._objects}
+        self._begun = {item.id: item.position for item in world.parts.objects}
         self._rested = True
 
     def check(self) -> Iterator[str]:
         """What is wrong now."""
         self._report.ticks += 1
-        low = [item for item in self._world._objects if item.number in self._world._objects.low]
+        low = [item for item in self._world.parts.objects if item.number in self._world.parts.objects.low]
         self._report.moved += any(item.position[:2] != self._begun[item.id][:2] for item in low)
-        self._begun = {item.id: item.position for item in self._world._objects}
+        self._begun = {item.id: item.position for item in self._world.parts.objects}
         yield from self._places()
         for seat, item, deep in self._bodies.depths(low):
             self._report.body_mm = max(self._report.body_mm, 1000 * deep)
@@ -158,8 +158,8 @@ class Checker:
         self._rested = self._world.still
 
     def _touches(self, id: str) -> bool:
-        item = self._world._objects.get(id)
-        return item is None or bool(self._world._objects._overlap.touched(item))
+        item = self._world.parts.objects.get(id)
+        return item is None or bool(self._world.parts.objects._overlap.touched(item))
 
     def _places(self) -> Iterator[str]:
         world = self._world
@@ -184,14 +184,14 @@ class Checker:
         """Exactly as the engine's shapes are; its own state stays untouched."""
         world, model, data = self._world, self._model, self._data
         model.geom_contype[:], model.geom_conaffinity[:] = (
-            world._env.model.geom_contype,
-            world._env.model.geom_conaffinity,
+            world.env.model.geom_contype,
+            world.env.model.geom_conaffinity,
         )
-        data.qpos[:] = world._env.data.qpos
+        data.qpos[:] = world.env.data.qpos
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
         mujoco.mj_collision(model, data)
-        owner, still, report = world._geoms.owner, world.still, self._report
+        owner, still, report = world.parts.geoms.owner, world.still, self._report
         for pair, distance in zip(data.contact.geom, data.contact.dist, strict=True):
             deep = -float(distance)
             if still:
@@ -206,12 +206,12 @@ class _Bodies:
 
     def __init__(self, world: World) -> None:
         self._world = world
-        spec, model = mujoco.MjSpec(), world._env.model
+        spec, model = mujoco.MjSpec(), world.env.model
         for seat in world.seats:
             body = world.bodies[seat]
             size = (body.radius, body.height / 2, 0.0)
             spec.worldbody.add_geom(name=seat, type=mujoco.mjtGeom.mjGEOM_CYLINDER, size=size)
-        for item in world._objects:
+        for item in world.parts.objects:
             for geom in range(item.geoms.start, item.geoms.stop):
                 kind = mujoco.mjtGeom(int(model.geom_type[geom]))
                 spec.worldbody.add_geom(name=str(geom), type=kind, size=model.geom_size[geom])
@@ -220,7 +220,7 @@ class _Bodies:
 
     def depths(self, items: list[Any]) -> Iterator[tuple[str, str, float]]:
         """Seat, object and depth [m] for all bodies that are in objects."""
-        world, real, model, data = self._world, self._world._env.data, self._model, self._data
+        world, real, model, data = self._world, self._world.env.data, self._model, self._data
         for seat, pose in world.poses().items():
             mine, body = model.geom(seat).id, world.bodies[seat]
             data.geom_xpos[mine], data.geom_xmat[mine] = (pose.x, pose.y, body.height / 2), (1, 0, 0, 0, 1, 0, 0, 0, 1)
@@ -247,7 +247,7 @@ def _strew(world: World, chance: random.Random) -> None:
                 break
             except HthorError:
                 continue
-    for item in world._objects:
+    for item in world.parts.objects:
         if item.clutter:
             continue
         for _ in range(50):
@@ -279,7 +279,7 @@ def _walk(world: World, chance: random.Random, report: Report) -> list[str]:
 
 def _motion(world: World, seat: str, chance: random.Random) -> Motion:
     pose, body, sort = world.pose(seat), world.bodies[seat], chance.random()
-    low = [item for item in world._objects if item.number in world._objects.low]
+    low = [item for item in world.parts.objects if item.number in world.parts.objects.low]
     nearest = min(low, key=lambda item: math.dist(item.position[:2], (pose.x, pose.y)), default=None)
     yaw = pose.yaw
     if nearest is not None and chance.random() < 0.7:
@@ -296,7 +296,7 @@ def _motion(world: World, seat: str, chance: random.Random) -> Motion:
     if sort < 0.95:
         return Drop()
     if sort < 0.965:
-        doors = [one for one in world.truth() if world._doors.get(one.id) is not None]
+        doors = [one for one in world.truth() if world.parts.doors.get(one.id) is not None]
         door = min(doors, key=lambda one: math.dist(one.position[:2], (pose.x, pose.y)))
         return (Close if door.open else Open)(thing=door.id)
     if sort < 0.98:
@@ -305,7 +305,7 @@ def _motion(world: World, seat: str, chance: random.Random) -> Motion:
 
 
 def _sort(world: World, by: str) -> str:
-    item = world._objects.get(by)
+    item = world.parts.objects.get(by)
     return item.kind if item is not None else "the house"
 
 

@@ -114,7 +114,7 @@ class Checker:
     """What must hold of a world after every call."""
 
     def __init__(self, world: World) -> None:
-        self._world, env = world, world._env
+        self._world, env = world, world.env
         self._model = copy.copy(env.model)
         self._model.opt.enableflags &= ~int(mujoco.mjtEnableBit.mjENBL_SLEEP)
         self._data = mujoco.MjData(self._model)
@@ -188,14 +188,14 @@ class Checker:
         """Exactly as the engine's shapes are; its own state stays untouched."""
         world, model, data = self._world, self._model, self._data
         model.geom_contype[:], model.geom_conaffinity[:] = (
-            world._env.model.geom_contype,
-            world._env.model.geom_conaffinity,
+            world.env.model.geom_contype,
+            world.env.model.geom_conaffinity,
         )
-        data.qpos[:] = world._env.data.qpos
+        data.qpos[:] = world.env.data.qpos
         mujoco.mj_kinematics(model, data)
         mujoco.mj_comPos(model, data)
         mujoco.mj_collision(model, data)
-        owner = world._geoms.owner
+        owner = world.parts.geoms.owner
         for pair, distance in zip(data.contact.geom, data.contact.dist, strict=True):
             if distance < -DEEP_M:
                 yield f"{owner[pair[0]]} is {-1000 * distance:.0f} mm deep in {owner[pair[1]]}"
@@ -213,9 +213,9 @@ class Fuzz:
 
     def __init__(self, world: World, chance: random.Random, odd: float) -> None:
         self._world, self._chance, self._odd = world, chance, odd
-        self._ids = [item.id for item in world._objects]
+        self._ids = [item.id for item in world.parts.objects]
         self._things = [thing.id for thing in world.furniture()]
-        self._opens = [leaf.thing.id for leaf in world._doors]
+        self._opens = [leaf.thing.id for leaf in world.parts.doors]
         self._rooms = [room.id for room in world.house.rooms]
         self._state = world.save_state()
         self.words = ""

@@ -25,7 +25,7 @@ from hthor.types import SUBTICKS, BodySpec, Mind, TrialSpec
 if TYPE_CHECKING:
     from hthor.live.house_file import HouseFile
     from hthor.live.practice import Practice
-    from hthor.world.sensing_simulation import SensingSimulation
+    from hthor.world import World
 
 ABSENT_S = 2.0
 """[s] When somebody's page has been gone for so long, the trial is paused. Our choice."""
@@ -145,7 +145,7 @@ class RealTimeLoop:
         if self._publish is None:
             return None
         if world not in self._sceneries:
-            self._sceneries[world] = Scenery(cast("SensingSimulation", world))
+            self._sceneries[world] = Scenery(cast("World", world))
         scenery = self._sceneries[world]
         scenery.restart()
         return scenery

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from hthor.live import house_file, wire
 
 if TYPE_CHECKING:
-    from hthor.world.sensing_simulation import SensingSimulation
+    from hthor.world import World
 
 
 class Scenery:
@@ -20,7 +20,7 @@ class Scenery:
         file: the house. own: the numbers of each seat's body and head, which its own page does not draw.
     """
 
-    def __init__(self, world: SensingSimulation) -> None:
+    def __init__(self, world: World) -> None:
         self._world = world
         self.file = house_file.house_file(world.scene, world.house)
         self.own = dict(world.scene.seats)

@@ -1,6 +1,6 @@
 """The sensors of a seat, the records that they read, and the specifications of these sensors.
 
-A new sensor is a method of `Senses` and a property of `SensorReadings`; `hthor.world.sensing_simulation` measures it in
+A new sensor is a method of `Senses` and a property of `SensorReadings`; `hthor.world.sensors` measures it in
 a method of the same name. The wire, the clocks and the tests find it in `READINGS`.
 """
 

@@ -14,14 +14,14 @@ from hthor.types.sensors import READINGS
 from hthor.world.rendering.lazy_images import MODES
 
 MEASURED = tuple(name for name in READINGS if name not in MODES)
-"""The sensors other than pictures: a method of `hthor.world.sensing_simulation.SensingSimulation` with the sensor's
+"""The sensors other than pictures: a method of `hthor.world.sensors.Sensors` with the sensor's
 name measures each of them for a seat.
 """
 _NOT_SEEN = Sighting()
 
 
 class SensedWorld(Protocol):
-    """The members of a `hthor.world.sensing_simulation.SensingSimulation` that senses use, besides `MEASURED`."""
+    """The members of a `hthor.world.sensors.Sensors` that senses use, besides `MEASURED`."""
 
     @property
     def moment(self) -> tuple[int, int, int]: ...

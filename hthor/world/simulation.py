@@ -1,11 +1,10 @@
 """The simulation of a house with bodies and objects, one tick at a time."""
 
 from collections.abc import Iterable, Sequence
-from typing import Any
 
 from hthor import houses, seeds
 from hthor.errors import PhysicsError, TaskError, UnknownName
-from hthor.gc_freeze import collect_after_close, collection_paused
+from hthor.gc_freeze import collection_paused
 from hthor.houses.space.free_space import FreeSpace
 from hthor.types import (
     BodySpec,
@@ -31,7 +30,6 @@ from hthor.world import numbers
 from hthor.world.interaction import manipulation
 from hthor.world.model import inventory
 from hthor.world.model.bodies import avatar, bodies
-from hthor.world.model.composer_env import LazyComposerEnv
 from hthor.world.motion import spawn
 from hthor.world.perception import detector_noise
 from hthor.world.saved_state import StateKeeper
@@ -79,80 +77,61 @@ class Simulation:
         self.bodies = dict(zip(self.seats, specs, strict=True))
         self.space = {seat: FreeSpace.of(self.house, spec.radius, spec.height) for seat, spec in self.bodies.items()}
         self.detectors = detector_noise.assign_detectors(self.robots, self.bodies, detectors)
-        self._contents = inventory.split_things(self.house, objects)
+        self.contents = inventory.split_things(self.house, objects)
         with collection_paused():
-            parts = SimulationParts(self.house, self._contents, self.bodies, self.space, self.detectors)
-        self._task, self._env, self._truth = parts.task, parts.env, parts.truth
-        self._geoms, self._objects, self._seats = parts.geoms, parts.objects, parts.seats
-        self._rooms, self._doorways, self._doors = parts.rooms, parts.doorways, parts.doors
-        self._door_handling, self._joint_carrying = parts.door_handling, parts.joint_carrying
-        self._dispatch, self._editor, self._usability = parts.dispatch, parts.editor, parts.usability
-        self._scanners, self._visibility, self._detectors = parts.scanners, parts.visibility, parts.detectors
-        self._loose_things, self._mocap, self._driven = parts.loose_things, parts.mocap, parts.driven
+            self.parts = parts = SimulationParts(self.house, self.contents, self.bodies, self.space, self.detectors)
+        self._env, self._objects, self._seats, self._truth = parts.env, parts.objects, parts.seats, parts.truth
+        self._rooms, self._dispatch, self._driven, self._mocap = parts.rooms, parts.dispatch, parts.driven, parts.mocap
         self._keeper = StateKeeper(self.house, parts, self.bodies, self.detectors)
-        self.tick, self._episode = 0, 0
-        self._begin({})
-        self._place_bodies((self.house.start,), ())
-        collect_after_close(self)
-
-    @property
-    def model(self) -> Any:
-        """The compiled `mujoco.MjModel`; changing it makes results undefined."""
-        return self._env.model
-
-    @property
-    def nbytes(self) -> int:
-        """About how much memory it takes: that of the engine's buffers and of its arena.
-
-        The arena stays nearly empty, and Python's objects take about as much instead: for the houses that ship, 15 to
-        41 MB were measured, and this gives 26 to 43 MB.
-        """
-        model, data = self._env.model, self._env.data
-        return int(model.nbuffer + data.nbuffer + data.narena)
-
-    @property
-    def env(self) -> LazyComposerEnv:
-        """The `dm_env` environment in which everything is; `hthor.envs.trial_environment` gives it a trial."""
-        return self._env
+        self.tick, self._episode, self.seed = 0, 0, 0
+        self.spares: frozenset[str] = frozenset()
+        self.clear()
 
     def reset(self, task: TaskSpec, seed: int = 0) -> None:
-        """Begin a task: all objects in place and at rest, things closed, doorways open.
-
-        A body whose start is not free stands at the nearest free place. A person without a start in the task stands at
-        the free place nearest to the first person's start, such a robot at that nearest to the first robot's start.
-        ``seed`` decides all random draws of the episode, which are the errors of noisy detectors and the numbers of
-        segmentations.
-
-        Raises:
-            TaskError: when the task belongs to another house or places an object that this world does not have.
-            HthorError: when the seed is not a whole number from 0.
-        """
+        """Begin a task; see `World.reset`."""
         spawn.check_task(task, self.house)
         seed = seeds.check_seed(seed)
         self._begin({placement.id: placement for placement in task.objects}, task.id)
-        self._seed = seed
+        self.seed = seed
         self._place_bodies((task.human_start, *task.other_human_starts), task.robot_starts)
 
+    def clear(self, seed: int = 0) -> None:
+        """Begin an episode of the house as it is, with every body at the house's start."""
+        seed = seeds.check_seed(seed)
+        self._begin({})
+        self.seed = seed
+        self._place_bodies((self.house.start,), ())
+
+    def restart(self, task: TaskSpec) -> None:
+        """Begin a task between two ticks; see `World.restart`."""
+        spawn.check_task(task, self.house)
+        tick, seed = self.tick, self.seed
+        self._begin({placement.id: placement for placement in task.objects}, task.id)
+        self.seed = seed
+        people = (task.human_start, *task.other_human_starts)
+        spawn.place_bodies(tuple(self._seats.values()), people, task.robot_starts)
+        self._begin_moment(tick)
+
     def _begin(self, placements: dict[str, Placement], task: str = "") -> None:
-        movables = {movable.id: movable for movable in self._contents.movables}
+        movables = {movable.id: movable for movable in self.contents.movables}
         for id in placements:
             if id not in movables:
                 raise TaskError(task, "objects", str(UnknownName("object", id, movables)))
         self._rooms.reset()
-        self._seed = 0
+        self.seed = 0
         begin: dict[str, tuple[Vec3, float, str]] = {}
         for id, movable in movables.items():
             if (placed := placements.get(id)) is not None:
                 begin[id] = (placed.position, placed.yaw, placed.support)
             elif movable.home is not None:
                 begin[id] = (movable.home, movable.yaw, movable.support)
-        self._spares = frozenset(movables.keys() - begin.keys())
-        self._task.starts = {id: begin[id][:2] for id in placements}
+        self.spares = frozenset(movables.keys() - begin.keys())
+        self.parts.task.starts = {id: begin[id][:2] for id in placements}
         self._env.begin()
         self._objects.reset(begin)
-        self._joint_carrying.reset()
-        self._doors.reset()
-        self._doorways.update({})
+        self.parts.joint_carrying.reset()
+        self.parts.doors.reset()
+        self.parts.doorways.update({})
         self._driven.reset()
         self._episode += 1
         self._begin_moment(0)
@@ -163,15 +142,11 @@ class Simulation:
         self._mocap.rewrite()
 
     def idle(self, seat: str) -> bool:
-        """Whether the seat's body is free for a new motion; a body that drives is, while its hands are free."""
+        """See `World.idle`."""
         return self._seats[seat].activity is None
 
     def start(self, seat: str, action: Motion) -> None:
-        """Begin a motion. If a rule forbids it, `outcome` says why and the next `advance` returns a "refused" event.
-
-        A `Drive` is never refused, and replaces any motion but those of the hands. It is replaced by a `Move`, `Rotate`
-        or `Wait`; during a motion of the hands, the body stands.
-        """
+        """See `World.start`."""
         body = self._seats[seat]
         if isinstance(action, Drive):
             self._driven.start(body, action)
@@ -189,31 +164,17 @@ class Simulation:
         body.activity = self._dispatch.activity(body, action)
 
     def outcome(self, seat: str) -> Outcome | None:
-        """How the seat's last motion ended; None before any motion has ended."""
+        """See `World.outcome`."""
         return self._seats[seat].outcome
 
     def substep(self) -> None:
-        """Move the bodies that drive by one of a tick's `hthor.types.SUBTICKS` steps; `advance` makes those left.
-
-        With the same set-points at the same steps, the states are the same, whoever makes the steps. After the last
-        step of a tick this does nothing until `advance` was called.
-        """
+        """See `World.substep`."""
         self._events += self._driven.step(self.tick + 1)
         self._mocap.write()
         self._begin_moment(self.tick)
 
     def advance(self) -> tuple[Event, ...]:
-        """Let one tick pass: first all bodies that drive move, then every busy body, in the order of the seats, then
-        objects fall and doors swing.
-
-        Returns:
-            the tick's events: picked, placed, dropped, opened, closed, refused, blocked (by the house), in_way (by
-            another body); held, lifted, lowered, released, see `hthor.world.carrying.joint_carrying`.
-
-        Raises:
-            PhysicsError: when the engine loses the state. All objects are then at rest where they were a tick before.
-                The next call goes on from there and also returns the other events of this tick.
-        """
+        """See `World.advance`."""
         events, self._events = self._events, []
         if self._driven.active or self._driven.steps:
             events += self._driven.finish(self.tick + 1)
@@ -232,7 +193,7 @@ class Simulation:
         self._mocap.write()
         if self._env.tick():
             self._check(events)
-            self._loose_things.keep_off(self._objects.settle())
+            self.parts.loose_things.keep_off(self._objects.settle())
         return tuple(sorted(events, key=lambda event: event.tick)) if events else ()
 
     def _check(self, events: list[Event]) -> None:
@@ -252,48 +213,42 @@ class Simulation:
 
     @property
     def still(self) -> bool:
-        """Whether every door and every object that is not carried is at rest."""
+        """See `World.still`."""
         return self._env.still
 
     def pose(self, seat: str) -> Pose:
-        """The pose of the seat's body."""
+        """See `World.pose`."""
         return self._seats[seat].pose
 
     def poses(self) -> dict[str, Pose]:
-        """The pose of every seat's body, the people's first."""
+        """See `World.poses`."""
         return {name: seat.pose for name, seat in self._seats.items()}
 
     def holding(self, seat: str) -> str:
-        """Id of the object in the seat's hand, empty for none."""
+        """See `World.holding`."""
         return self._seats[seat].holding
 
     def room(self, seat: str) -> str:
-        """Id of the room that the seat's body is in; between rooms, of the room that it was in last."""
+        """See `World.room`."""
         return self._rooms.room(seat, self._seats[seat].pose)
 
     def truth(self) -> tuple[ThingState, ...]:
-        """True states of all objects and openable things, by id."""
+        """See `World.truth`."""
         return tuple(self._truth.states().values())
 
     def snapshot(self) -> Snapshot:
-        """The true state at this tick, for judging and logging."""
+        """See `World.snapshot`."""
         return self._truth.snapshot(self.tick)
 
     def save_state(self) -> bytes:
-        """The whole state of the world, for `load_state`; pictures and readings of sensors are not in it."""
-        return self._keeper.save(self.tick, self._seed, self._spares, self._events)
+        """See `World.save_state`."""
+        return self._keeper.save(self.tick, self.seed, self.spares, self._events)
 
     def load_state(self, state: bytes) -> None:
-        """Go back to a state that `save_state` returned: the same motions then have the same results, byte for byte.
-
-        The state may also be of another world of the same house, bodies, objects and detectors.
-
-        Raises:
-            HthorError: when the bytes are damaged, or belong to a different world; nothing has changed then.
-        """
+        """See `World.load_state`."""
         record = self._keeper.load(state)
-        self._seed, self._events = record.seed, list(record.events)
-        self._spares = frozenset(record.spares)
+        self.seed, self._events = record.seed, list(record.events)
+        self.spares = frozenset(record.spares)
         self._episode += 1
         self._begin_moment(record.tick)
 

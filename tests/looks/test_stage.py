@@ -73,7 +73,7 @@ def drawn(world: World) -> World:
 def undressed(world: World, pack: Any = None) -> Any:
     """The visual model of a world, without any OpenGL."""
     split = inventory.split_things(world.house, inventory.DEFAULT_OBJECTS)
-    puppets, lamps = PoseSync(world.model, world._geoms), lights.RoomLights(world.house)
+    puppets, lamps = PoseSync(world.model, world.parts.geoms), lights.RoomLights(world.house)
     return compile_scene(world.house, split, puppets, AssetSource(pack), world.bodies, lamps)
 
 
@@ -169,14 +169,14 @@ def test_a_pack_comes_first_and_brings_its_own_textures(world: World) -> None:
 
 
 def test_puppets_follow_doors(world: World) -> None:
-    puppets = PoseSync(world.model, world._geoms)
-    body = puppets.hung[FRIDGE, world._doors.get(FRIDGE).joints[0].name]
-    closed = puppets.at(world._env.data.qpos)[1][body].copy()
+    puppets = PoseSync(world.model, world.parts.geoms)
+    body = puppets.hung[FRIDGE, world.parts.doors.get(FRIDGE).joints[0].name]
+    closed = puppets.at(world.env.data.qpos)[1][body].copy()
     _, (w, *_rest) = puppets.relative(body, ((0.0, 0.0, 0.0), tuple(closed)))
     assert abs(w) == pytest.approx(1.0, abs=1e-9)  # at rest it is what it is closed
     world.teleport(HUMAN, AT_THE_FRIDGE)
     do(world, HUMAN, Open(thing=FRIDGE))
-    opened = puppets.at(world._env.data.qpos)[1][body]
+    opened = puppets.at(world.env.data.qpos)[1][body]
     assert 2.0 * math.acos(min(1.0, abs(float(opened @ closed)))) > 1.0
 
 

@@ -71,7 +71,7 @@ def while_a_thread_draws(world: World, profile: str) -> str:
     inside, done = threading.Event(), threading.Event()
 
     def draw() -> None:
-        with world._pictures._drawing(profile):
+        with world.pictures._images._drawing(profile):
             inside.set()
             done.wait()
 

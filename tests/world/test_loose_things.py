@@ -42,14 +42,14 @@ def world(made: World) -> World:
 
 def lay(world: World, id: str, x: float, y: float) -> None:
     """Put an object on the floor and wait until it rests."""
-    world.put_object(id, (x, y, world._objects.known(id).size[2] / 2 + 0.005))
+    world.put_object(id, (x, y, world.parts.objects.known(id).size[2] / 2 + 0.005))
     assert world.settle()
 
 
 def gap(world: World, seat: str, id: str) -> float:
     """How far [m] a body is from the outline of an object, negative inside it."""
-    pose, item = world.pose(seat), world._objects.get(id)
-    return -footprint(item, world._env, world._geoms).depth((pose.x, pose.y), world.bodies[seat].radius)
+    pose, item = world.pose(seat), world.parts.objects.get(id)
+    return -footprint(item, world.env, world.parts.geoms).depth((pose.x, pose.y), world.bodies[seat].radius)
 
 
 def test_an_apple_is_pushed_and_never_entered(world: World) -> None:
@@ -73,7 +73,7 @@ def test_a_thing_hit_off_centre_leaves_beside_the_body(world: World) -> None:
 
 @pytest.mark.parametrize("kind", ["trunk", "dumbbell"])
 def test_what_is_heavy_stops_a_body_and_is_named(world: World, kind: str) -> None:
-    assert world._objects.known(kind).mass > LIGHT_KG
+    assert world.parts.objects.known(kind).mass > LIGHT_KG
     lay(world, kind, 2.3, 1.1)
     before = world.position(kind)
     outcome = world.robot.move(2.0)
@@ -128,13 +128,13 @@ def test_what_rolls_at_a_body_stops_there(world: World) -> None:
 def test_a_body_does_not_touch_what_lies_on_furniture_or_is_held(world: World) -> None:
     world.put_object("apple", on=tiny.TABLE)
     assert world.settle()
-    assert not world._objects.low
+    assert not world.parts.objects.low
     assert world.human.go_to("apple").ok
     before = world.position("apple")
     world.human.move(0.3)
     assert world.position("apple") == before
     assert world.human.pick("apple").ok
-    assert not world._objects.low
+    assert not world.parts.objects.low
 
 
 def test_a_teleported_body_pushes_what_lies_there_aside(world: World) -> None:
@@ -148,7 +148,7 @@ def test_a_thing_is_not_dropped_where_it_would_stay_in_a_body(world: World, monk
     lay(world, "box", 3.6, 1.7)
     world.teleport("human", Pose(x=4.2, y=1.7, yaw=math.pi))
     assert world.human.pick("box").ok
-    world._env.touch()  # the engine's shapes follow the hand
+    world.env.touch()  # the engine's shapes follow the hand
     assert gap(world, "human", "box") < -0.02
     with monkeypatch.context() as jammed:
         jammed.setattr(PushPlan, "_shift_all", lambda *_: False)
@@ -167,7 +167,7 @@ def test_a_quiet_world_looks_at_no_object(world: World, monkeypatch: pytest.Monk
         raise AssertionError("objects were looked at")
 
     assert world.settle()
-    assert not world._objects.low
+    assert not world.parts.objects.low
     monkeypatch.setattr("hthor.world.motion.loose_things.PushPlan", never)
     monkeypatch.setattr("hthor.world.motion.loose_things.LooseThings._near", never)
     monkeypatch.setattr(Objects, "_sort", never)

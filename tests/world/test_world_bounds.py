@@ -44,9 +44,9 @@ def world(built: World) -> World:
 
 def inside(world: World, id: str) -> str:
     """What an object is in."""
-    item = world._objects.get(id)
+    item = world.parts.objects.get(id)
     assert item is not None
-    return OverlapTest(world._env, world._geoms).inside(item)
+    return OverlapTest(world.env, world.parts.geoms).inside(item)
 
 
 # ------------------------------------------------------------------------------------- two things in one place
@@ -126,7 +126,7 @@ def test_a_thin_thing_that_hits_an_edge_does_not_spin_up_without_end(world: Worl
     fastest = 0.0
     for _ in range(60):
         world.step()
-        fastest = max(fastest, float(np.abs(world._env.data.qvel).max()))
+        fastest = max(fastest, float(np.abs(world.env.data.qvel).max()))
     assert fastest <= composer_env.SPIN_MAX_RAD_S
 
 
@@ -140,16 +140,16 @@ def test_an_engine_that_breaks_down_says_so_and_goes_on(world: World) -> None:
     world.put_object("mug", (4.0, 3.0, 1.0))
     world.step(2)
     lying, falling = world.position("apple"), world.position("mug")
-    item = world._objects.get("mug")
+    item = world.parts.objects.get("mug")
     assert item is not None
-    world._env.data.qvel[item.dof] = 1e12
+    world.env.data.qvel[item.dof] = 1e12
     with pytest.raises(PhysicsError, match=r"lost the state of house 'tiny' at tick 3 \(mjWARN_BADQVEL at mug\)"):
         world.step()
     assert world.position("apple") == lying
     assert world.position("mug") == falling
     assert world.settle()
     assert world.position("mug")[2] < 0.1
-    assert world._env.warnings() == {}
+    assert world.env.warnings() == {}
 
 
 def test_what_happened_in_the_tick_of_a_breakdown_is_not_lost(world: World) -> None:
@@ -157,8 +157,8 @@ def test_what_happened_in_the_tick_of_a_breakdown_is_not_lost(world: World) -> N
     world.settle()
     tick = world.tick
     world.start("human", Pick(object="nothing"))
-    world._env.data.qvel[0] = np.nan
-    world._env.touch()
+    world.env.data.qvel[0] = np.nan
+    world.env.touch()
     with pytest.raises(PhysicsError):
         world.advance()
     assert [(event.kind, event.tick) for event in world.advance()] == [("refused", tick)]

@@ -161,11 +161,11 @@ def test_a_world_is_freed_with_its_last_reference_and_its_renderers_with_it(worl
     nice(world)
     world.human.rgb()
     world.human.detections()
-    left = [weakref.ref(part) for part in (world._pictures, world._pictures._ray_renderer)]
-    left.append(weakref.ref(world._pictures._opengl._renderer))  # type: ignore[arg-type]
+    left = [weakref.ref(part) for part in (world.pictures._images, world.pictures._images._ray_renderer)]
+    left.append(weakref.ref(world.pictures._images._opengl._renderer))  # type: ignore[arg-type]
     other = World(tiny.house())
     other.human.rgb()
-    left += [weakref.ref(other), weakref.ref(other._pictures)]
+    left += [weakref.ref(other), weakref.ref(other.pictures._images)]
     world.close()
     del other
     assert [one() for one in left] == [None] * 5  # without the garbage collector
@@ -175,7 +175,7 @@ def test_only_so_many_renderers_live_and_pictures_are_the_same(monkeypatch: pyte
     monkeypatch.setattr(renderer_slot, "RENDERERS_MAX", 2)
     worlds = [World(tiny.house(), robots=["scout"] * count) for count in (0, 1, 2)]
     first = [nice(one) for one in worlds]
-    assert [one._pictures._opengl._renderer is not None for one in worlds] == [False, True, True]
+    assert [one.pictures._images._opengl._renderer is not None for one in worlds] == [False, True, True]
     assert all((nice(one) == picture).all() for one, picture in zip(worlds, first, strict=True))
     for one in worlds:
         one.close()

@@ -217,22 +217,22 @@ def test_no_door_closes_on_an_object_and_a_closed_one_stops_them(world: World) -
 def test_reset_opens_all_doorways(world: World) -> None:
     world.teleport("human", Pose(x=4.3, y=2.0))
     before = world.snapshot().things[DOOR]
-    pose = np.array(world._env.data.geom_xpos)
+    pose = np.array(world.env.data.geom_xpos)
     do(world, "human", Close(thing=DOOR))
     world.reset(task(human=Pose(x=4.3, y=2.0)))
     assert world.snapshot().things[DOOR] == before
     assert world.space["human"].segment_free((4.3, 2.0), (5.7, 2.0))
-    leaf = slice(*world._geoms.span[DOOR])
+    leaf = slice(*world.parts.geoms.span[DOOR])
     world.advance()
-    assert np.allclose(world._env.data.geom_xpos[leaf], pose[leaf])
+    assert np.allclose(world.env.data.geom_xpos[leaf], pose[leaf])
 
 
 def test_a_leaf_opens_into_the_first_room_clear_of_the_wall() -> None:
     (leaf,) = door_geometry.doorway_leaves(house())
     (joint,) = leaf.joints
     world = World(house())
-    first, end = world._geoms.span[DOOR]
-    x, y, _ = world._env.data.geom_xpos[first]
+    first, end = world.parts.geoms.span[DOOR]
+    x, y, _ = world.env.data.geom_xpos[first]
     assert end - first == 2
     assert (x, y) == pytest.approx((5.0 - 0.02 - 0.48, 1.5 + 0.02 + 0.02), abs=1e-3)  # the kitchen is on the west
     assert joint.travel == pytest.approx(math.pi / 2)

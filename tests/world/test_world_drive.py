@@ -356,7 +356,7 @@ def test_what_is_held_follows_in_every_step(built: World) -> None:
         built.substep()
         assert 0.0 < math.dist(before, built.position("apple")) < 0.1
     built.advance()
-    held = built._env.data.qpos[built._objects.known("apple").qpos :][:3]
+    held = built.env.data.qpos[built.parts.objects.known("apple").qpos :][:3]
     assert tuple(held) == built.position("apple")
 
 

@@ -89,7 +89,7 @@ def test_the_story_ends_as_told(world: World) -> None:
 def test_skipping_sleep_gives_the_states_of_stepping_always(world: World) -> None:
     def fall(lazy: bool) -> list[bytes]:
         world.reset(task(on(TABLE, "apple"), on(TABLE, "mug", u=0.3), human=Pose(x=2.5, y=3.4, yaw=-math.pi / 2)))
-        env, states = world._env, []
+        env, states = world.env, []
         do(world, "human", Pick(object="apple"))
         do(world, "human", Place(on=TABLE, position=(2.9, 2.8, 0.7)))
         for _ in range(60):
@@ -107,16 +107,16 @@ def test_nothing_is_computed_while_nothing_moves(world: World, monkeypatch: pyte
     world.reset(task(on(TABLE, "apple")))
     wait(world, 2)
     assert world.still
-    monkeypatch.setattr(world._env, "pin", lambda: pytest.fail("the engine was touched"))
+    monkeypatch.setattr(world.env, "pin", lambda: pytest.fail("the engine was touched"))
     do(world, "human", Move(forward=0.5))
     wait(world, 20)
 
 
 def test_it_is_a_composer_environment_too(world: World) -> None:
     world.reset(task(on(TABLE, "apple")))
-    step = world._env.step(world._env.action_spec().generate_value())
+    step = world.env.step(world.env.action_spec().generate_value())
     assert (step.reward, step.discount) == (0.0, 1.0)
-    assert world._env.control_timestep() == pytest.approx(rules.TICK_S)
+    assert world.env.control_timestep() == pytest.approx(rules.TICK_S)
 
 
 def test_objects_start_where_the_task_says_asleep_and_stay(world: World) -> None:

@@ -69,8 +69,8 @@ def state(one: World, id: str):
 
 def energy(one: World, id: str) -> tuple[float, float]:
     """Kinetic and potential energy [J] of an object, and its mass [kg]."""
-    item = one._objects.get(id)
-    model, data = one._env.model, one._env.data
+    item = one.parts.objects.get(id)
+    model, data = one.env.model, one.env.data
     body = int(model.geom_bodyid[item.geoms.start])
     pose, rates = data.qpos[item.qpos : item.qpos + 7], data.qvel[item.dof : item.dof + 6]
     turn, inner = _matrix(pose[3:]), _matrix(model.body_iquat[body])
@@ -117,14 +117,14 @@ def test_nothing_passes_through_a_wall_or_a_surface(kind, x, y, z, speed, headin
     assert 0.0 < before[0] < 10.0
     assert 0.0 < before[1] < 4.0
     assert before[2] > 0.0
-    assert one._editor._overlap.inside(one._objects.get(id), 0.012) == ""
+    assert one.parts.editor._overlap.inside(one.parts.objects.get(id), 0.012) == ""
 
 
 @quick
 @given(kinds, st.sampled_from((TABLE, COFFEE, COUNTER, "sofa|1", "bed|1", "shelf|1")), st.floats(-2.0, 4.0), angles)
 def test_what_is_thrown_at_a_board_does_not_come_out_below(kind, thing, push, yaw) -> None:
     one = fresh()
-    place = max(one._editor._surfaces.of(thing), key=lambda place: place.centre[2])
+    place = max(one.parts.editor._surfaces.of(thing), key=lambda place: place.centre[2])
     x, y, z = place.centre
     height = 0.28 if thing == "shelf|1" else 0.7
     id = put(one, kind, (x, y, z + height / 2 + 0.05), (0.0, 0.0, -max(push, 0.0)), yaw)
@@ -157,7 +157,7 @@ def test_energy_does_not_grow(kind, x, y, z, speed, heading) -> None:
 @given(kinds, st.sampled_from((TABLE, COFFEE, COUNTER, "bed|1", "sofa|1")), st.floats(-1, 1), st.floats(-1, 1), angles)
 def test_what_is_placed_stays(kind, thing, u, v, yaw) -> None:
     one = fresh()
-    places = [place for place in one._editor._surfaces.of(thing) if not place.inside]
+    places = [place for place in one.parts.editor._surfaces.of(thing) if not place.inside]
     x, y, z = to_house((u * places[0].half[0], v * places[0].half[1], 0.0), places[0].centre, places[0].yaw)
     try:
         one.put_object(f"my {kind}", (x, y, z), on=thing, yaw=yaw if kind in ("apple", "egg", "lettuce") else 0.0)
@@ -193,7 +193,7 @@ def test_what_is_closed_hides_its_content_from_every_sensor(thing: str) -> None:
             pitch = math.atan2(z - one.bodies[seat].eye, far)
             limit = one.bodies[seat].pitch_limit
             there = Pose(x=spot[0], y=spot[1], yaw=angle + math.pi, pitch=max(-limit, min(limit, pitch)))
-            one._seats[seat].pose = there  # where somebody else may stand
+            one.parts.seats[seat].pose = there  # where somebody else may stand
             looks += 1
             assert "my mug" not in {detection.id for detection in one.detections(seat)}
             assert "my mug" not in one.snapshot().in_view["human"]
@@ -273,7 +273,7 @@ def test_hands_neither_make_nor_lose_anything(doings) -> None:
         one.put_object(f"my {kind}", on=TABLE, position=(2.1 + 0.3 * number, 2.8, 0.0))
     one.teleport("human", Pose(x=2.5, y=3.4, yaw=-math.pi / 2))
     ids = [entry.id for entry in one.truth()]
-    masses = {item.id: item.mass for item in one._objects}
+    masses = {item.id: item.mass for item in one.parts.objects}
     for name, amount in doings:
         wanted = ("my apple", "my mug", "my book")[round(abs(amount) * 2)]
         motion = {
@@ -288,7 +288,7 @@ def test_hands_neither_make_nor_lose_anything(doings) -> None:
         assert [entry.id for entry in one.truth()] == ids
         held = [entry.id for entry in one.truth() if entry.held_by]
         assert held == ([one.holding("human")] if one.holding("human") else [])
-    assert {item.id: item.mass for item in one._objects} == masses
+    assert {item.id: item.mass for item in one.parts.objects} == masses
     assert all(-0.1 < entry.position[2] < 2.5 for entry in one.truth())
 
 
@@ -332,7 +332,7 @@ def busy(one: World, ticks: int = 500) -> str:
                 one.start(seat, script[turns[seat] % len(script)])
                 turns[seat] += 1
         one.advance()
-        for values in (one._env.data.qpos, one._env.data.qvel):
+        for values in (one.env.data.qpos, one.env.data.qvel):
             seen.update(values.tobytes())
         seen.update(repr(one.poses()).encode())
     return seen.hexdigest()

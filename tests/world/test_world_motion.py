@@ -106,7 +106,7 @@ def test_bodies_block_each_other_and_may_part(world: World) -> None:
     assert [(event.seat, event.kind, fields(event)) for event in events] == [("human", "in_way", {"by": "robot"})]
     outcome = Outcome(motion="move", ok=False, reason="robot is in the way", by="robot")
     assert world.outcome("human") == outcome
-    world._seats["robot"].pose = Pose(x=6.25, y=2.5)  # inside the person's disc
+    world.parts.seats["robot"].pose = Pose(x=6.25, y=2.5)  # inside the person's disc
     assert reason(world, "human", Move(forward=0.3)) == "robot is in the way"
     assert reason(world, "human", Move(forward=-0.3)) == ""
 

@@ -184,12 +184,12 @@ def test_what_the_engine_lost_is_not_in_a_state(worlds: tuple[World, World]) -> 
     one.put_object("apple", (4.0, 2.0, 1.5))
     wait(one, 2)
     state = one.save_state()
-    item = one._objects.known("apple")
+    item = one.parts.objects.known("apple")
     assert item is not None
-    one._env.data.qvel[item.dof] = 1e12
+    one.env.data.qvel[item.dof] = 1e12
     with pytest.raises(HthorError, match="lost the state"):
         one.advance()
-    one._env.data.qvel[item.dof] = 1e12
+    one.env.data.qvel[item.dof] = 1e12
     one.load_state(state)
     other.load_state(state)
     assert [one.advance() for _ in range(30)] == [other.advance() for _ in range(30)]

@@ -61,7 +61,7 @@ def lift(world: World) -> None:
 
 
 def footprint(world: World) -> Any:
-    item = world._objects.get("trunk")
+    item = world.parts.objects.get("trunk")
     return np.array((*item.position[:2], item.yaw))
 
 
@@ -245,7 +245,7 @@ def test_no_arm_gets_longer_than_it_is(world: World) -> None:
     lift(world)
     do(world, "human", Rotate(yaw=math.pi))
     do(world, "human", Move(forward=0.4))
-    world._seats["robot3"].pose = Pose(x=5.2, y=2.0)  # between them, in the doorway: the trunk cannot come along
+    world.parts.seats["robot3"].pose = Pose(x=5.2, y=2.0)  # between them, in the doorway: the trunk cannot come along
     for _ in range(4):
         do(world, "human", Move(forward=0.5))
         sound(world)

@@ -1,7 +1,7 @@
 """Control of one body by hand, for notebooks and scripts: motions, perception and messages.
 
 Each call starts motions and lets ticks pass until the body is free again; the other bodies start no motions during the
-call. A trial, in which all bodies act at once, uses `hthor.world.simulation.Simulation` instead.
+call. A trial, in which all bodies act at once, starts motions with `World.start` instead.
 """
 
 import math
@@ -30,7 +30,7 @@ from hthor.types import (
     View,
     Wait,
 )
-from hthor.world import numbers, walk_to
+from hthor.world import numbers
 from hthor.world.actor.seat_messages import SeatMessages
 from hthor.world.perception import view_frustum
 from hthor.world.rendering.lazy_images import Size
@@ -122,17 +122,17 @@ class Actor(SeatMessages):
         """
         world, seat = self._world, self.seat
         target = target if isinstance(target, str) else numbers.point2("target", target)
-        for point in walk_to.route(world, seat, target):
+        for point in world.walks.route(seat, target):
             outcome = self._walk_straight(point)
             if not outcome.ok:
                 return outcome
-        other = walk_to.body_in_the_way(world, seat, target)
+        other = world.walks.body_in_the_way(seat, target)
         if other:
             return Outcome(motion="move", ok=False, reason=f"{other} is in the way", by=other)
         if not isinstance(target, str):
             return Outcome(motion="move", ok=True)
         facing = self.look_at(target)
-        reason = walk_to.hindrance(world, seat, target)
+        reason = world.walks.hindrance(seat, target)
         return Outcome(motion="move", ok=False, reason=reason) if facing.ok and reason else facing
 
     def _walk_straight(self, point: Vec2) -> Outcome:

@@ -36,9 +36,9 @@ def unseen(scene: str, poses: int) -> list[tuple[str, str, Pose]]:
         seat, other = ("human", "robot")[:: 1 if number % 2 else -1]
         place = world.space[seat].nearest_free(float(rng.uniform(x0, x1)), float(rng.uniform(y0, y1)))
         pose = Pose(x=place[0], y=place[1], yaw=float(rng.uniform(-3.1, 3.1)), pitch=float(rng.uniform(-0.5, 0.4)))
-        world._seats[other].pose = Pose(x=-1e3, y=-1e3)  # bodies hide nothing from detectors, but do in pictures
-        world._seats[seat].pose = pose
-        world._mocap.rewrite()
+        world.parts.seats[other].pose = Pose(x=-1e3, y=-1e3)  # bodies hide nothing from detectors, but do in pictures
+        world.parts.seats[seat].pose = pose
+        world.parts.mocap.rewrite()
         view, (width, height) = world.look(seat), camera.image_size(world.bodies[seat])
         for one in world.detections(seat):
             if not place_in_view(view, one) and not place_in_view(world.look(seat, (4 * width, 4 * height)), one):

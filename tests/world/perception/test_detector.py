@@ -27,7 +27,7 @@ FIRST, GLIMPSES = "scout", 400
 
 def start(world: World, seed: int = 0) -> None:
     world.reset(task(on(TABLE, "apple"), on(COFFEE, "lettuce"), human=HUMAN, robots=(AT_TABLE,)), seed=seed)
-    world._seats["robot"].pose = AT_TABLE
+    world.parts.seats["robot"].pose = AT_TABLE
 
 
 @pytest.fixture(scope="module")
@@ -79,8 +79,8 @@ def test_false_alarms_are_as_many_as_declared_and_each_could_be_true(worlds: dic
             assert ghost.distance <= world.bodies["robot"].sight_range
             eye = (AT_TABLE.x, AT_TABLE.y, world.bodies["robot"].eye)
             assert math.dist(eye, ghost.position) == pytest.approx(ghost.distance)
-            assert not world._geoms.hidden(eye, ghost.position)
-            place = world._detectors["robot"]._places.of(ghost.support)[-1]
+            assert not world.parts.geoms.hidden(eye, ghost.position)
+            place = world.parts.detectors["robot"]._places.of(ghost.support)[-1]
             assert place.holds(ghost.position, ghost.size[2])
     assert within(alarms, 0.25)
 
@@ -112,7 +112,7 @@ def test_chance_depends_on_the_event_and_not_on_who_looked_before(worlds: dict[s
 def test_what_it_holds_is_never_missed() -> None:
     world = World(tiny.house(), robots=("tender",), detectors=(DetectorSpec(name="blind", miss=1.0),))
     world.reset(task(on(TABLE, "apple", v=0.25), human=HUMAN, robots=(AT_TABLE,)))
-    world._seats["robot"].pose = Pose(x=2.5, y=3.4, yaw=-math.pi / 2)
+    world.parts.seats["robot"].pose = Pose(x=2.5, y=3.4, yaw=-math.pi / 2)
     assert named(world.detections("robot"), "apple") is None
     world.start("robot", Pick(object="apple"))
     wait(world, 30)
@@ -125,7 +125,7 @@ def test_the_person_s_eyes_never_err(worlds: dict[str, World]) -> None:
     for world in worlds.values():
         start(world)
         assert "human" not in world.detectors
-        assert world.detections("human") == world._visibility.detections(world._seats["human"])
+        assert world.detections("human") == world.parts.visibility.detections(world.parts.seats["human"])
 
 
 def test_a_body_declares_its_own_and_a_trial_overrules_it() -> None:

@@ -60,9 +60,9 @@ def world() -> World:
 def test_a_house_is_traced_as_the_engine_s_rays_see_it(
     world: World, x: float, y: float, yaw: float, pitch: float
 ) -> None:
-    world._seats["robot"].pose = Pose(x=x, y=y, yaw=yaw, pitch=pitch)
-    drawn = ray_renderer.RayRenderer(world.model, world._geoms, world.house)
-    view, w, hit = drawn._fill(world._pictures.moment(), "robot", SIZE, camera.OWN)
+    world.parts.seats["robot"].pose = Pose(x=x, y=y, yaw=yaw, pitch=pitch)
+    drawn = ray_renderer.RayRenderer(world.model, world.parts.geoms, world.house)
+    view, w, hit = drawn._fill(world.pictures._images.moment(), "robot", SIZE, camera.OWN)
     offset = np.abs(np.einsum("nji,nj->ni", drawn._mat.reshape(-1, 3, 3), view[:3] - drawn._pos))
     assume(not (offset < drawn._half + 0.05).all(axis=1).any())  # what is inside or nearer than NEAR_M is not seen
     model = drawn._model
@@ -113,13 +113,13 @@ def test_every_shape_is_traced_as_the_engine_s_rays_see_it(
 
 
 def test_a_picture_is_the_same_every_time(world: World) -> None:
-    world._seats["robot"].pose = Pose(x=4.0, y=1.2, yaw=2.4)
+    world.parts.seats["robot"].pose = Pose(x=4.0, y=1.2, yaw=2.4)
     first, second = world.look("robot"), world.look("robot")
     assert np.array_equal(first.rgb, second.rgb)
     assert np.array_equal(first.depth, second.depth)
     again = World(tiny.house(), robots=("scout",))
     again.reset(task(on(TABLE, "apple"), on(TABLE, "mug", u=0.4), on(COFFEE, "lettuce"), human=Pose(x=4.0, y=2.0)))
-    again._seats["robot"].pose = Pose(x=4.0, y=1.2, yaw=2.4)
+    again.parts.seats["robot"].pose = Pose(x=4.0, y=1.2, yaw=2.4)
     assert np.array_equal(again.look("robot").rgb, first.rgb)
 
 

@@ -72,7 +72,7 @@ def test_the_three_pictures_fit_together(world: World) -> None:
 def test_the_camera_projects_points_to_where_the_pictures_show_them(
     world: World, size: tuple[int, int], pitch: float
 ) -> None:
-    world._seats["human"].pose = Pose(x=3.4, y=1.9, yaw=math.atan2(0.7, -0.9) + 0.2, pitch=pitch)
+    world.parts.seats["human"].pose = Pose(x=3.4, y=1.9, yaw=math.atan2(0.7, -0.9) + 0.2, pitch=pitch)
     view, apple = world.look("human", size), (2.5, 2.6, 0.78)
     assert view.camera.size == size
     column, row, depth = project(view.camera, apple)
@@ -107,7 +107,7 @@ def test_glass_is_seen_through_but_seen(world: World) -> None:
     column, row, _ = (round(part) for part in project(view.camera, (0.0, 1.8, 1.5)))
     assert view.segmentation[row, column] in (-1, world.names.index("outdoors"))
     assert view.depth[row, column] > 5.0
-    tracer = world._pictures._fast()
+    tracer = world.pictures._images._fast()
     panes, tracer._glass = tracer._glass, tracer._glass[:0]
     bare = world.picture("human")
     tracer._glass = panes
@@ -173,11 +173,11 @@ def test_a_frame_is_of_its_moment(world: World) -> None:
 
 
 def test_drawing_leaves_the_world_alone(world: World) -> None:
-    before = world.snapshot(), world._env.data.qpos.copy()
+    before = world.snapshot(), world.env.data.qpos.copy()
     world.top_view()
     world.picture("robot", "depth")
     assert world.snapshot() == before[0]
-    assert np.array_equal(world._env.data.qpos, before[1])
+    assert np.array_equal(world.env.data.qpos, before[1])
 
 
 def test_the_top_view_is_to_scale(world: World) -> None:
