@@ -15,11 +15,11 @@ class SceneSetup:
     """Puts the bodies, objects and doors of one simulation somewhere; see `World` for each call."""
 
     def __init__(self, simulation: Simulation) -> None:
-        self._simulation, self._parts = simulation, simulation.parts
+        self._simulation = simulation
 
     def teleport(self, seat: str, pose: Pose) -> None:
         """See `World.teleport`."""
-        parts, body, pose = self._parts, self._parts.seats[seat], numbers.pose(pose)
+        parts, body, pose = self._simulation.parts, self._simulation.parts.seats[seat], numbers.pose(pose)
         spawn.check_fits(body, pose, parts.seats.values())
         body.pose, body.activity = pose, None
         parts.driven.stop(body)
@@ -40,15 +40,15 @@ class SceneSetup:
         velocity: Sequence[float] = _AT_REST,
     ) -> None:
         """See `World.put_object`."""
-        self._parts.editor.put(id, position, on, yaw, velocity)
+        self._simulation.parts.editor.put(id, position, on, yaw, velocity)
 
     def remove_object(self, id: str) -> None:
         """See `World.remove_object`."""
-        self._parts.editor.remove(id)
+        self._simulation.parts.editor.remove(id)
 
     def set_open(self, thing: str, wanted: bool = True) -> None:
         """See `World.set_open`."""
-        self._parts.door_handling.put(thing, wanted)
+        self._simulation.parts.door_handling.put(thing, wanted)
 
     def rearrange(self, before: Sequence[Placement], after: Sequence[Placement]) -> None:
         """See `World.rearrange`."""
@@ -67,13 +67,13 @@ class SceneSetup:
 
     def _take_away(self, id: str) -> None:
         """Take an object out of the episode, and out of the hands that hold it; what these hands do ends."""
-        objects = self._parts.objects
-        for body in self._parts.seats.values():
+        objects = self._simulation.parts.objects
+        for body in self._simulation.parts.seats.values():
             if body.holding == id:
                 if body.activity is not None and body.activity.of_hands:
                     body.activity = None
-                self._parts.joint_carrying.release(body, self._simulation.tick)
+                self._simulation.parts.joint_carrying.release(body, self._simulation.tick)
                 if body.holding:
                     body.holding = ""
                     objects.put(id, objects.pose(id), "")
-        self._parts.editor.remove(id)
+        self._simulation.parts.editor.remove(id)

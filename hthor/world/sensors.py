@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hthor.errors import UnknownName
-from hthor.types import Detection, Pose, Scan, Senses, Sighting, Vec3, View
+from hthor.types import Camera, Detection, Pose, Scan, Senses, Sighting, Vec3, View
 from hthor.world import numbers
 from hthor.world.perception import view_frustum
 from hthor.world.pictures import Pictures
@@ -36,7 +36,7 @@ class Sensors:
     """
 
     def __init__(self, simulation: Simulation, pictures: Pictures) -> None:
-        self._simulation, self._parts, self._pictures = simulation, simulation.parts, pictures
+        self._simulation, self._pictures = simulation, pictures
 
     def senses(self, seat: str) -> Senses:
         """See `World.senses`."""
@@ -51,7 +51,7 @@ class Sensors:
 
     def detections(self, seat: str) -> tuple[Detection, ...]:
         """See `World.detections`."""
-        parts = self._parts
+        parts = self._simulation.parts
         found, noise = parts.visibility.detections(parts.seats[seat]), parts.detectors.get(seat)
         if noise is None:
             return found
@@ -59,23 +59,27 @@ class Sensors:
 
     def sighting(self, seat: str, id: str) -> Sighting:
         """See `World.sighting`."""
-        return self._parts.visibility.sighting(self._parts.seats[seat], id)
+        return self._simulation.parts.visibility.sighting(self._simulation.parts.seats[seat], id)
 
     def hidden(self, id: str, eye: Vec3) -> bool:
         """See `World.hidden`."""
-        eye, item, geoms = numbers.point3("eye", eye), self._parts.objects.known(id), self._parts.geoms
+        eye, item, geoms = (
+            numbers.point3("eye", eye),
+            self._simulation.parts.objects.known(id),
+            self._simulation.parts.geoms,
+        )
         if item is None:
-            raise UnknownName("object", id, [one.id for one in self._parts.objects])
+            raise UnknownName("object", id, [one.id for one in self._simulation.parts.objects])
         return all(geoms.hidden(eye, point, id) for point in view_frustum.look_points(item.position, item.size))
 
     def scan(self, seat: str) -> Scan:
         """See `World.scan`."""
-        body = self._parts.seats[seat]
-        return self._parts.scanners[seat].scan(body.pose, body.space)
+        body = self._simulation.parts.seats[seat]
+        return self._simulation.parts.scanners[seat].scan(body.pose, body.space)
 
     def survey(self, seat: str, poses: Iterable[Pose], *, colours: bool = False) -> Iterator[SurveyReading]:
         """See `World.survey`."""
-        parts, body, kept = self._parts, self._parts.seats[seat], self._simulation.poses()
+        parts, body, kept = self._simulation.parts, self._simulation.parts.seats[seat], self._simulation.poses()
         try:
             for other in parts.seats.values():
                 other.pose = _OUT_OF_SIGHT
@@ -102,6 +106,10 @@ class Sensors:
     def look(self, seat: str) -> View:
         """All three pictures of this moment."""
         return self._pictures.look(seat)
+
+    def camera(self, seat: str) -> Camera:
+        """The pose and projection of the seat's camera now."""
+        return self._pictures.camera(seat)
 
     def picture(self, seat: str, mode: str) -> NDArray[np.generic]:
         """The picture of the seat's camera now: "rgb", "depth" or "segmentation"."""

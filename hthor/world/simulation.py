@@ -1,9 +1,10 @@
 """The simulation of a house with bodies and objects, one tick at a time."""
 
 from collections.abc import Iterable, Sequence
+from typing import Any
 
 from hthor import houses, seeds
-from hthor.errors import PhysicsError, TaskError, UnknownName
+from hthor.errors import PhysicsError, TaskError, UnknownName, WorldClosed
 from hthor.gc_freeze import collection_paused
 from hthor.houses.space.free_space import FreeSpace
 from hthor.types import (
@@ -37,6 +38,17 @@ from hthor.world.simulation_parts import SimulationParts
 
 PEOPLE_MAX = 20
 """The most people in one world."""
+
+
+class Closed:
+    """Stands for the parts of a world that was closed: all but what it was made with raises WorldClosed."""
+
+    def __init__(self, house: str, **kept: Any) -> None:
+        self._house = house
+        vars(self).update(kept)
+
+    def __getattr__(self, name: str) -> Any:
+        raise WorldClosed.of(self._house)
 
 
 class Simulation:
@@ -254,3 +266,10 @@ class Simulation:
 
     def _begin_moment(self, tick: int) -> None:
         self.tick, self.moment = tick, (self._episode, tick, self._driven.steps)
+
+    def close(self) -> None:
+        """Free the engine; from then on, whatever needs it raises WorldClosed."""
+        self._env.shut(self.house.id)
+        closed: Any = Closed(self.house.id)
+        self.parts = self._keeper = self._env = self._objects = self._seats = self._truth = closed
+        self._rooms = self._dispatch = self._driven = self._mocap = closed

@@ -13,13 +13,13 @@ class Things:
     """The furniture, objects and bodies of one simulation by name; see `World` for each call."""
 
     def __init__(self, simulation: Simulation) -> None:
-        self._simulation, self._parts = simulation, simulation.parts
+        self._simulation = simulation
 
     def objects(self, kind: str = "", room: str = "") -> tuple[ThingState, ...]:
         """See `World.objects`."""
         _check_kind(kind)
         where = self.room(room).polygon if room else ()
-        states = (item.state() for item in self._parts.objects if item.present and kind in ("", item.kind))
+        states = (item.state() for item in self._simulation.parts.objects if item.present and kind in ("", item.kind))
         return tuple(state for state in states if not where or plane.inside(state.position[:2], where))
 
     def furniture(self, kind: str = "", room: str = "") -> tuple[Thing, ...]:
@@ -62,16 +62,20 @@ class Things:
 
     def hindrance(self, seat: str, id: str, place: Vec2 | None = None) -> str:
         """See `World.hindrance`."""
-        return self._parts.usability.hindrance(self._body(seat, id, place), id)
+        return self._simulation.parts.usability.hindrance(self._body(seat, id, place), id)
 
     def in_sight(self, seat: str, id: str, place: Vec2 | None = None, *, picture: bool = False) -> bool:
         """See `World.in_sight`."""
         body = self._body(seat, id, place)
-        return self._parts.usability.shows(body, id) if picture else self._parts.usability.sees(body, id)
+        return (
+            self._simulation.parts.usability.shows(body, id)
+            if picture
+            else self._simulation.parts.usability.sees(body, id)
+        )
 
     def _body(self, seat: str, id: str, place: Vec2 | None) -> BodyState:
         """The body in a seat, or a copy of it that stands at a place and faces a thing."""
-        body = self._parts.seats[seat]
+        body = self._simulation.parts.seats[seat]
         if place is None:
             return body
         copy = BodyState(body.name, body.spec, body.space)

@@ -16,7 +16,7 @@ from hthor import gc_freeze, houses, rules
 from hthor.comms import map_picture
 from hthor.comms.display import Displays
 from hthor.comms.mailbox import Mailbox
-from hthor.errors import HthorError, UnknownName, WorldClosed
+from hthor.errors import HthorError, UnknownName
 from hthor.houses.space.free_space import FreeSpace
 from hthor.looks.pack import Pack
 from hthor.types import (
@@ -58,8 +58,7 @@ from hthor.world.rendering.scene.scene_parts import SceneParts
 from hthor.world.rendering.viewpoint import Viewpoint
 from hthor.world.scene_setup import SceneSetup
 from hthor.world.sensors import Sensors, SurveyReading
-from hthor.world.simulation import Simulation
-from hthor.world.simulation_parts import SimulationParts
+from hthor.world.simulation import Closed, Simulation
 from hthor.world.things import Things
 from hthor.world.walk_planner import WalkPlanner
 
@@ -74,8 +73,8 @@ class World:
 
     ``human``, ``robot`` and ``actor(seat)`` are the bodies; a call on one of them lets time pass until its motion ends.
     Each call here is one of a part, which does the work: ``simulation`` lets ticks pass, ``scene_setup`` changes the
-    scene at once, ``things`` looks things up, ``walks`` plans `Actor.go_to`, ``sensors`` and ``pictures`` show what seats
-    sense, and ``conversation`` keeps messages and events.
+    scene at once, ``things`` looks things up, ``walks`` plans `Actor.go_to`, ``sensors`` and ``pictures`` show what
+    seats sense, and ``conversation`` keeps messages and events.
 
     Args:
         house: a name of `scenes`, the path of a house file, or a `HouseSpec`.
@@ -129,12 +128,13 @@ class World:
         ``bodies``, ``detectors``, ``cameras``, ``tick``, ``events`` and ``messages`` can still be read; everything else
         raises `hthor.errors.WorldClosed`, also a picture of before that is drawn only now. Closing twice is fine.
         """
-        if isinstance(self.simulation, _Closed):
+        if isinstance(self.simulation, Closed):
             return
         self.pictures.close()
-        self.env.shut(self.house.id)
-        closed: Any = _Closed(self.house.id, self.tick)
-        self.simulation = self.pictures = self.sensors = self.scene_setup = self.things = self.walks = closed
+        self.simulation.close()
+        closed: Any = Closed(self.house.id, tick=self.tick, mail=self.mail, events=self.events)
+        self.simulation = self.pictures = self.sensors = self.scene_setup = closed
+        self.things = self.walks = self.conversation = closed
         gc_freeze.collect_closed(self)
 
     def __enter__(self) -> Self:
@@ -168,8 +168,8 @@ class World:
     # ------------------------------------------------------------------------------------------------------- the engine
 
     @property
-    def parts(self) -> SimulationParts:
-        """The parts of the simulation, each with its own state, for tests and tools; changes to them go unchecked."""
+    def parts(self) -> Any:
+        """The `SimulationParts`, each with its own state, for tests and tools; changes to them go unchecked."""
         return self.simulation.parts
 
     @property
@@ -654,13 +654,3 @@ class World:
     def note(self, events: Iterable[Event]) -> None:
         """Add events to `events`."""
         self.conversation.note(events)
-
-
-class _Closed:
-    """Stands for the parts of a world that was closed."""
-
-    def __init__(self, house: str, tick: int) -> None:
-        self._house, self.tick = house, tick
-
-    def __getattr__(self, name: str) -> Any:
-        raise WorldClosed.of(self._house)

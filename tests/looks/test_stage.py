@@ -235,12 +235,12 @@ def test_no_picture_is_dark_or_has_a_hole(drawn: World) -> None:
 
 
 def test_drawing_leaves_the_world_alone_and_is_repeatable(drawn: World) -> None:
-    before, qpos = drawn.snapshot(), drawn._env.data.qpos.copy()
+    before, qpos = drawn.snapshot(), drawn.env.data.qpos.copy()
     first = drawn.picture("robot", size=(96, 64)), drawn.top_view(20.0)
     again = drawn.picture("robot", size=(96, 64)), drawn.top_view(20.0)
     assert all(np.array_equal(one, other) for one, other in zip(first, again, strict=True))
     assert drawn.snapshot() == before
-    assert np.array_equal(drawn._env.data.qpos, qpos)
+    assert np.array_equal(drawn.env.data.qpos, qpos)
 
 
 def test_bodies_are_seen_by_others_only(drawn: World) -> None:

@@ -44,8 +44,8 @@ def test_what_is_wrong_is_found() -> None:
     broken.put_object("apple", on=broken.furniture("counter_top")[0].id)
     broken.settle()
     assert checker.check() == ""
-    apple, other = broken._objects.get("apple"), next(one for one in broken._objects if one.clutter)
+    apple, other = broken.parts.objects.get("apple"), next(one for one in broken.parts.objects if one.clutter)
     assert apple is not None
-    data = broken._env.data
+    data = broken.env.data
     data.qpos[apple.qpos : apple.qpos + 3] = data.qpos[other.qpos : other.qpos + 3]
     assert " mm deep in " in checker.check()

@@ -1,7 +1,7 @@
 """Messages of one seat of a `World`, and what is on a person's display."""
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,15 +10,13 @@ from hthor.comms import map_picture
 from hthor.errors import HthorError
 from hthor.types import Display, Message, Receipt, Reply, Send, Show, Vec3, is_person
 from hthor.types.events import Event, Refused
-
-if TYPE_CHECKING:
-    from hthor.world.world import World
+from hthor.world.actor.actor_world import ActorWorld
 
 
 class SeatMessages:
     """One ``seat`` of a ``world`` as far as it sends, reads and answers messages."""
 
-    def __init__(self, world: "World", seat: str) -> None:
+    def __init__(self, world: ActorWorld, seat: str) -> None:
         self._world, self.seat = world, seat
 
     def send(

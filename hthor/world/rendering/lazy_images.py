@@ -222,6 +222,8 @@ class LazyImages:
 
     def moment(self) -> PoseSnapshot:
         """All poses of this moment."""
+        if self._closed:
+            raise WorldClosed.of(self._house.id)
         self._env.pin()
         poses = {name: (seat.pose, seat.spec) for name, seat in self._seats.items()}
         return PoseSnapshot(self._env.data.qpos.copy(), poses)

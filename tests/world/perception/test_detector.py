@@ -41,7 +41,7 @@ def glimpses(world: World, seed: int = 0, ticks: int = GLIMPSE_TICKS) -> list[tu
     start(world, seed)
     out = []
     for number in range(GLIMPSES):
-        world.tick = number * ticks
+        world.simulation.tick = number * ticks
         out.append(world.detections("robot"))
     return out
 
@@ -102,7 +102,7 @@ def test_chance_depends_on_the_event_and_not_on_who_looked_before(worlds: dict[s
     whole = glimpses(world)
     start(world)
     for number in (377, 5, 5, 12):
-        world.tick = number * GLIMPSE_TICKS
+        world.simulation.tick = number * GLIMPSE_TICKS
         assert world.detections("robot") == whole[number]
     assert glimpses(world) == whole
     assert glimpses(world, seed=1) != whole
