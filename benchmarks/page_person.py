@@ -77,6 +77,15 @@ class Person:
                 self.page.keyboard.press("s", delay=300)
             self.page.wait_for_timeout(300)
 
+    def go_on_until_offered(self, words: str) -> None:
+        """Go ahead, step by step, until the page offers to do something."""
+        end = time.monotonic() + _PATIENCE_S
+        while not self.page.query_selector(f"#offers :text('{words}')"):
+            assert time.monotonic() < end, words
+            self.page.keyboard.press("w", delay=150)
+            self.answered()
+            self.page.wait_for_timeout(300)
+
     def press_when_offered(self, key: str, words: str) -> None:
         """Press a key as soon as the page offers what it does."""
         self.page.wait_for_selector(f"#offers :text('{words}')")
