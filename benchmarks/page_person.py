@@ -9,11 +9,15 @@ from typing import Any
 _PATIENCE_S = 60.0
 _NEAR_M = 0.25
 
-_WALK = """([x, y]) => new Promise((done) => {
+WALK_S = 20.0
+"""[s] How long somebody walks to one place at most."""
+_WALK = """([x, y, seconds]) => new Promise((done) => {
   const begin = [x - page.motion.x, y - page.motion.y];
+  const end = performance.now() + 1000 * seconds;
   const step = () => {
     const left = [x - page.motion.x, y - page.motion.y];
-    if (Math.hypot(...left) < 0.12 || left[0] * begin[0] + left[1] * begin[1] < 0) {
+    const there = Math.hypot(...left) < 0.12 || left[0] * begin[0] + left[1] * begin[1] < 0;
+    if (there || page.ended !== null || performance.now() > end) {
       page.keys.held.clear();
       return done();
     }
@@ -22,7 +26,10 @@ _WALK = """([x, y]) => new Promise((done) => {
   };
   step();
 })"""
-"""Looks to a place, with the key to walk held down, until the person is there or has just passed it."""
+"""Looks to a place, with the key to walk held down, until the person is there or has just passed it.
+
+It ends with the trial too, and after some time, as when somebody stands in the way: nothing else ends what a page does.
+"""
 
 
 class Person:
@@ -56,10 +63,10 @@ class Person:
         raise AssertionError(f"the person does not come to {x}, {y}")
 
     def go_straight(self, x: float, y: float) -> None:
-        """Walk until the page shows that the person is there, or has just passed it."""
+        """Walk until the page shows that the person is there or has just passed it, or they can go no farther."""
         self.page.evaluate(f"page.keys.yaw = Math.atan2({y} - page.motion.y, {x} - page.motion.x)")
         self.page.keyboard.down("w")
-        self.page.evaluate(_WALK, [x, y])
+        self.page.evaluate(_WALK, [x, y, WALK_S])
         self.page.keyboard.up("w")
 
     def answered(self) -> None:
@@ -75,6 +82,15 @@ class Person:
             self.until(f"page.head.tick > {pressed + 15} && !page.now.busy")
             if self.page.evaluate("!page.now.outcome.ok"):
                 self.page.keyboard.press("s", delay=300)
+            self.page.wait_for_timeout(300)
+
+    def go_on_until_offered(self, words: str) -> None:
+        """Go ahead, step by step, until the page offers to do something."""
+        end = time.monotonic() + _PATIENCE_S
+        while not self.page.query_selector(f"#offers :text('{words}')"):
+            assert time.monotonic() < end, words
+            self.page.keyboard.press("w", delay=150)
+            self.answered()
             self.page.wait_for_timeout(300)
 
     def press_when_offered(self, key: str, words: str) -> None:

@@ -177,7 +177,7 @@ def play() -> tuple[Any, Any]:
         person.walk_to(*BY_FRIDGE)
         _face(person, FRIDGE, "open the fridge")
         person.open_fridge()
-        page.wait_for_selector("#offers :text('put the apple in the fridge')")
+        person.go_on_until_offered("put the apple in the fridge")
         page.wait_for_timeout(1000)
         sheet.take("at the fridge, which is open")
         page.keyboard.press("e")

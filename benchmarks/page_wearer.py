@@ -4,19 +4,21 @@ from __future__ import annotations
 
 from typing import Any
 
-from benchmarks.page_person import Person
+from benchmarks.page_person import WALK_S, Person
 
 DEVICE = "page.headsetChoice.device"
 _BUTTONS = {
     "right": {"accept": ("right", "a-button"), "decline": ("right", "b-button"), "map": ("left", "x-button")},
     "left": {"accept": ("left", "x-button"), "decline": ("left", "y-button"), "map": ("right", "a-button")},
 }
-_WALK = """([x, y, stick]) => new Promise((done) => {
+_WALK = """([x, y, stick, seconds]) => new Promise((done) => {
   const { headset, motion, headsetChoice: { device } } = page;
   const begin = [x - motion.x, y - motion.y];
+  const end = performance.now() + 1000 * seconds;
   const step = () => {
     const left = [x - motion.x, y - motion.y];
-    if (Math.hypot(...left) < 0.12 || left[0] * begin[0] + left[1] * begin[1] < 0) {
+    const there = Math.hypot(...left) < 0.12 || left[0] * begin[0] + left[1] * begin[1] < 0;
+    if (there || page.ended !== null || performance.now() > end) {
       device.controllers[stick].updateAxes("thumbstick", 0, 0);
       return done();
     }
@@ -68,8 +70,8 @@ class Wearer(Person):
         self.until(f"page.headset.renderer.info.render.frame > {frame} + 1")
 
     def go_straight(self, x: float, y: float) -> None:
-        """Walk by stick until the page shows that the person is there, or has just passed it."""
-        self.page.evaluate(_WALK, [x, y, self.stick])
+        """Walk by stick until the page shows that the person is there or has just passed it, or can go no farther."""
+        self.page.evaluate(_WALK, [x, y, self.stick, WALK_S])
 
     def touch(self, x: float, y: float, z: float) -> None:
         """Look to a place [m], and put the hand there."""

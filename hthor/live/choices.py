@@ -10,7 +10,8 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 
 from hthor.live.wire import Choice, Choices, Hand
-from hthor.types import Close, Detection, Drop, Observation, Open, Pick, Place, Vec3
+from hthor.types import Close, Detection, Drop, Observation, Open, Pick, Place, Thing, Vec3
+from hthor.world.state.support_surfaces import SupportSurfaces
 
 _AIM = math.radians(24.0)
 """[rad] A thing is aimed at when its middle is no farther from the line of sight. Our choice."""
@@ -39,7 +40,7 @@ def find_choices(seen: Observation, eye: float, reach: float, hand: Hand | None 
         motion = Open(thing=door.id) if shut else Close(thing=door.id)
         opens = Choice(words=f"{'open' if shut else 'close'} the {_name(door.kind)}", motion=motion)
     lines = [(*sight, math.inf)] if hand is None else [(hand.place, _DOWN, _ABOVE_M), (*hand, math.inf)]
-    return Choices(hand=_held(seen, near, lines) if seen.holding else _free(aim), door=opens)
+    return Choices(hand=_held(seen, near, lines, reach) if seen.holding else _free(aim), door=opens)
 
 
 def _free(aim: Callable[[Callable[[Detection], bool]], Detection | None]) -> Choice | None:
@@ -47,11 +48,16 @@ def _free(aim: Callable[[Callable[[Detection], bool]], Detection | None]) -> Cho
     return None if thing is None else Choice(words=f"pick up the {_name(thing.kind)}", motion=Pick(object=thing.id))
 
 
-def _held(seen: Observation, near: Sequence[Detection], lines: Iterable[tuple[Vec3, Vec3, float]]) -> Choice:
+def _held(
+    seen: Observation, near: Sequence[Detection], lines: Iterable[tuple[Vec3, Vec3, float]], reach: float
+) -> Choice | None:
     """What to do with what is in hand: put it where one of the lines meets furniture in reach, or let go of it.
 
     Args:
         lines: where each begins [m], its direction, and its length [m]; the first that meets something counts.
+
+    Returns:
+        None where a line meets furniture that is near, but whose surfaces are too far inside for the hand to reach.
     """
     held = next((one.kind for one in seen.detections if one.id == seen.holding), seen.holding)
     for start, way, length in lines:
@@ -62,6 +68,8 @@ def _held(seen: Observation, near: Sequence[Detection], lines: Iterable[tuple[Ve
     else:
         return Choice(words=f"let go of the {_name(held)}", motion=Drop())
     distance, thing = min(hits, key=lambda hit: (hit[0], hit[1].id))
+    if _surface_gap(thing, seen) > reach:
+        return None
     point = (start[0] + distance * way[0], start[1] + distance * way[1], start[2] + distance * way[2])
     inside = "in" if thing.state else "on"
     words = f"put the {_name(held)} {inside} the {_name(thing.kind)}"
@@ -107,6 +115,15 @@ def _gap(one: Detection, seen: Observation) -> float:
     if one.family == "object":
         return math.hypot(x, y)
     return math.hypot(max(0.0, abs(x) - one.size[0] / 2), max(0.0, abs(y) - one.size[1] / 2))
+
+
+def _surface_gap(one: Detection, seen: Observation) -> float:
+    """[m] How far the nearest surface of furniture is from the body's axis, as the world has it; 0 without any."""
+    surfaces = SupportSurfaces(
+        [Thing(id=one.id, kind=one.kind, asset="", centre=one.position, size=one.size, yaw=one.yaw, room="")]
+    )
+    surfaces.pull(one.id, 1.0 if one.state == "open" else 0.0)
+    return min((place.distance(seen.pose.x, seen.pose.y) for place in surfaces.of(one.id)), default=0.0)
 
 
 def _meets(one: Detection, eye: Vec3, way: Vec3) -> float | None:

@@ -155,9 +155,36 @@ def test_a_pace_is_brought_back_to_the_first_trial() -> None:
     assert one.high / one.low > 1.1, "how much a person gains is not known"
 
 
-def test_somebody_at_full_stick_may_be_faster() -> None:
-    one = by_name(walking.walking(features(*(trial(k, stick=(0, 0, 30, 1000, 400, 0)) for k in range(4))), NO_PRACTICE))
-    assert (one["v_pace"].value, one["v_pace"].bound, one["v_pace"].high) == (1.0, "at least", math.inf)
+@pytest.mark.parametrize("pace", [0.986, 1.0])
+def test_somebody_at_full_stick_may_be_faster_or_just_as_fast(pace: float) -> None:
+    stick = (0, 0, 30, round(1000 * pace), 400, 0)
+    one = by_name(walking.walking(features(*(trial(k, stick=stick) for k in range(4))), NO_PRACTICE))["v_pace"]
+    assert (one.bound, one.value, one.high) == ("at least", one.low, math.inf)
+    assert 0.94 < one.low < pace, "the least pace that would look like this"
+
+
+@given(st.floats(0.75, 1.3), st.floats(0.0, 0.4))
+@settings(max_examples=cases(25), deadline=None)
+def test_a_person_at_full_stick_by_practice_may_have_begun_slower(own: float, learn: float) -> None:
+    """However much they gain themselves, as long as it is within what the population's spread allows."""
+    trials = []
+    for k in range(9):
+        pace = min(1.0, own * Practice(learn, 0.0).factor(k))
+        trials.append(trial(k, stick=(0, 0, 30, round(1000 * pace), 400, 0)))
+    one = by_name(walking.walking(features(*trials), Practice(0.2, 0.12)))["v_pace"]
+    assert holds(one, own)
+
+
+def test_somebody_who_turns_as_fast_as_the_body_may_be_faster_or_just_as_fast() -> None:
+    found = []
+    for rate in (2.47, 2.5):
+        yaw = [0.0] * 20 + [0.2 * rate * k for k in range(12)]
+        yaw += [yaw[-1]] * (301 - len(yaw))
+        one = by_name(walking.walking(features(*(trial(k, yaw=yaw) for k in range(4))), NO_PRACTICE))["omega"]
+        assert one.bound == "at least"
+        assert 2.35 < one.low < rate
+        found.append(one.low)
+    assert found[0] == found[1], "the two look alike"
 
 
 @pytest.mark.parametrize("rate", [0.8, 1.7])

@@ -84,6 +84,15 @@ def test_doors_are_opened_and_closed_with_full_hands_too(state: str, motion: Any
     assert placed.words == "put the apple in the fridge"
 
 
+@pytest.mark.parametrize(("gap", "words"), [(0.6, "put the apple in the fridge"), (0.7, "")])
+def test_nothing_is_put_where_the_surface_is_out_of_reach_behind_the_front(gap: float, words: str) -> None:
+    """The world measures to the surface, which begins 0.17 m behind the front."""
+    fridge = msgspec.structs.replace(FRIDGE, state="open", position=(gap + 0.35, 0.0, 0.9), yaw=math.pi / 2)
+    placed = offered(fridge, holding="apple").hand
+    assert (placed.words if placed is not None else "") == words
+    assert offered(fridge, holding="apple").door is not None
+
+
 def by_hand(*detections: Detection, place: tuple[float, float, float], **more: Any) -> Choices:
     """What is offered to a hand that points ahead, of a person who looks up at nothing."""
     return find_choices(seen(*detections, pitch=1.2, **more), 1.6, 0.8, Hand(place, (1.0, 0.0, 0.0)))

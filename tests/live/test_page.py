@@ -252,6 +252,7 @@ def deliver(person: Person) -> None:
     person.walk_to(0.75, 2.3)
     person.look_at(0.6, 3.2, 1.0)
     person.open_fridge()
+    person.go_on_until_offered("put the apple in the fridge")
     person.press_when_offered("e", "put the apple in the fridge")
     page.wait_for_selector("#scale [data-value='6']")
     page.reload()  # the question is still there

@@ -41,6 +41,7 @@ class Page {
     this.notice = { words: "", until: 0 };
     /** @type {House | null} */
     this.house = null;
+    /** What the house was loaded from. */ this.loaded = "";
     /** @type {import("./wire.js").Moved[]} */
     this.early = []; // what moved before the house was there
     this.seat = this.problem = "";
@@ -224,6 +225,8 @@ class Page {
     this.panels.time(trial.time_limit, "");
     this.panels.message(null);
     this.panels.map(null);
+    const source = JSON.stringify([trial.file, trial.own]);
+    if (this.house && this.loaded === source) return this.show(); // the first frame says where everything is
     if (this.house) this.scene.remove(this.house.group);
     this.house?.dispose();
     this.change({ house: null });
@@ -232,7 +235,7 @@ class Page {
     this.scene.add(house.group);
     house.move(this.early);
     house.step(1, null);
-    this.change({ house });
+    this.change({ house, loaded: source });
   }
 
   /** @param {any} message */
@@ -253,7 +256,10 @@ class Page {
   on_frame({ head, moved }) {
     if (this.house) this.house.move(moved);
     else this.early.push(...moved);
-    if (this.head === null) [this.keys.yaw, this.keys.pitch] = [head.gaze, head.pitch];
+    if (this.head === null) {
+      this.house?.step(1); // nothing slides from where it was before
+      [this.keys.yaw, this.keys.pitch] = [head.gaze, head.pitch];
+    }
     this.head = head;
     this.motion.correct(head);
   }

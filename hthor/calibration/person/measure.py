@@ -55,6 +55,13 @@ def typical(values: Sequence[float], *, error: float = 0.0) -> tuple[float, floa
     return math.exp(middle), math.exp(middle - reach), math.exp(middle + reach)
 
 
+def lowest(value: float, *, error: float) -> float:
+    """The lower end of the interval of a positive number that was measured as ``value``, with this relative error."""
+    from scipy.stats import norm
+
+    return value * math.exp(-float(norm.ppf(_TAILS[1])) * error)
+
+
 def middle(values: Sequence[float], *, error: float = 0.0) -> tuple[float, float, float]:
     """The median of positive values, of which some are wrong, and its interval by the ranks of the values.
 

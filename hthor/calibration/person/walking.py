@@ -12,7 +12,7 @@ import numpy as np
 from hthor import rules
 from hthor.calibration.from_logs.estimate import CAPPED
 from hthor.calibration.from_logs.trial_features import Trial, TrialFeatures
-from hthor.calibration.person.measure import Measure, middle, typical, unknown
+from hthor.calibration.person.measure import Measure, lowest, middle, typical, unknown
 from hthor.humans.population.parameters import Parameters
 from hthor.types import HUMAN
 from hthor.types.events import Inputs
@@ -60,10 +60,11 @@ def _pace(trials: Sequence[TrialFeatures], practice: Practice) -> Measure:
         return unknown(name, "m/s", f"there were {len(walks)} trials with a long enough walk; it takes {_LEAST_TRIALS}")
     full = walks[0][0].full
     if median(walk.pace for walk, _ in walks) >= CAPPED * full:
+        # practice takes slower people there later, so the earliest trial at full stick says the most
+        first = min(index for walk, index in walks if walk.pace >= CAPPED * full)
+        least = lowest(CAPPED * full / practice.factor(first), error=math.hypot(_ERROR, practice.error([first])))
         words = f"{how}; keys and a stick that is pushed all the way go no faster"
-        return Measure(
-            name=name, unit="m/s", value=full, low=full, high=math.inf, bound="at least", n=len(walks), how=words
-        )
+        return _at_least(least, name=name, unit="m/s", n=len(walks), how=words)
     error = math.hypot(_ERROR, practice.error([index for _, index in walks]))
     value, low, high = typical([walk.pace / practice.factor(index) for walk, index in walks], error=error)
     return Measure(name=name, unit="m/s", value=value, low=low, high=high, n=len(walks), how=how)
@@ -78,18 +79,14 @@ def _turning(trials: Sequence[TrialFeatures]) -> Measure:
     fastest = turns[0][1]
     if median(rates) >= CAPPED * fastest:
         words = f"{how}; the body turns no faster"
-        return Measure(
-            name=name,
-            unit="rad/s",
-            value=fastest,
-            low=fastest,
-            high=math.inf,
-            bound="at least",
-            n=len(turns),
-            how=words,
-        )
+        return _at_least(lowest(CAPPED * fastest, error=_ERROR), name=name, unit="rad/s", n=len(turns), how=words)
     value, low, high = typical(rates, error=_ERROR)
     return Measure(name=name, unit="rad/s", value=value, low=low, high=high, n=len(turns), how=how)
+
+
+def _at_least(least: float, *, name: str, unit: str, n: int, how: str) -> Measure:
+    """A bound: the least speed with which a person would look like this one."""
+    return Measure(name=name, unit=unit, value=least, low=least, high=math.inf, bound="at least", n=n, how=how)
 
 
 def _guided(trials: Sequence[TrialFeatures]) -> Measure:
