@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
@@ -88,6 +88,23 @@ def session(folder: Path, played: Sequence[TaskSpec] = (), **options: Any) -> It
 
 def test_a_person_plays_a_delivery_and_a_search_in_the_browser(live: LiveSession) -> None:
     play(live, live.server.address)
+
+
+def test_a_house_that_cannot_be_loaded_is_loaded_again(live: LiveSession) -> None:
+    failed: list[str] = []
+
+    def fail_once(route: Any) -> None:
+        if failed:
+            route.continue_()
+        else:
+            failed.append(route.request.url)
+            route.fulfill(status=200, body="")
+
+    address = live.server.address
+    with opened(plain(live.server.url(HUMAN)), address, lambda page: page.route("**/house/*", fail_once)) as page:
+        page.wait_for_selector("#text:text('The house cannot be loaded. The page tries again')")
+        page.click("#go:text('Begin')")
+        Person(page).until("page.plays")
 
 
 @pytest.fixture
@@ -211,7 +228,7 @@ def plain(url: str) -> str:
 
 
 @contextmanager
-def opened(url: str, address: str) -> Iterator[Any]:
+def opened(url: str, address: str, prepare: Callable[[Any], None] = lambda _: None) -> Iterator[Any]:
     """A page in a browser, which must not complain, nor ask any other site for anything."""
     complaints: list[str] = []
     with browsers.sync_playwright() as playwright:
@@ -220,6 +237,7 @@ def opened(url: str, address: str) -> Iterator[Any]:
         page.on("console", lambda message: complaints.append(message.text))
         page.on("pageerror", lambda error: complaints.append(str(error)))
         page.on("request", lambda request: note_foreign(request.url, address, complaints))
+        prepare(page)
         page.goto(url)
         page.set_default_timeout(_PATIENCE_MS)
         yield page

@@ -15,6 +15,7 @@ const QUESTION = "How much do you trust your robot teammate?";
 const SCALE = 7;
 const SCALE_ENDS = "1: not at all   ·   7: completely";
 const ASKED = "The experimenter asks you to enter VR. ";
+const LOAD_AGAIN_MS = 2000;
 const SWITCH_MS = 200; // until the server offers what the other hand can do
 
 THREE.ColorManagement.enabled = false; // colours are computed as the pictures of hthor are
@@ -75,7 +76,7 @@ class Page {
     /** How the trial ended. @type {any} */ this.ended = null;
     /** Why time stands still. */ this.paused = "";
     /** What there is to try, in the practice. @type {any} */ this.steps = null;
-    this.skipped = false;
+    this.skipped = this.unloadable = false;
     this.later = null;
     /** The rating that is chosen with a headset. */ this.chosen = 4;
     /** What can be done here and now. @type {[string, string][]} */ this.offers = [];
@@ -136,7 +137,8 @@ class Page {
     if (this.ended !== null) return this.endCard();
     if (this.skipped) return { title: "Practice", text: "The first task comes when everybody is ready …" };
     if (this.house === null) {
-      return { title: this.trial.practice ? "Practice" : "The next task", text: "The house is being loaded …" };
+      const text = this.unloadable ? "The house cannot be loaded. The page tries again …" : "The house is being loaded …";
+      return { title: this.trial.practice ? "Practice" : "The next task", text };
     }
     const desk = { button: "Go on at the desk", done: () => this.stayAtDesk() };
     if (this.begun && this.vrLeft) return { ...desk, title: "You have left VR", text: "Enter it again, or go on here." };
@@ -230,12 +232,29 @@ class Page {
     if (this.house) this.scene.remove(this.house.group);
     this.house?.dispose();
     this.change({ house: null });
-    const house = await House.load(trial.file, trial.own);
-    if (this.trial !== trial) return;
+    const house = await this.load(trial);
+    if (house === null) return;
     this.scene.add(house.group);
     house.move(this.early);
     house.step(1, null);
     this.change({ house, loaded: source });
+  }
+
+  /**
+   * The house of a trial, again and again until it can be loaded; null once another trial has come.
+   * @param {any} trial @returns {Promise<House | null>}
+   */
+  async load(trial) {
+    while (this.trial === trial) {
+      const house = await House.load(trial.file, trial.own).catch(() => null);
+      if (this.trial !== trial) house?.dispose();
+      else if (house) return house;
+      else {
+        this.change({ unloadable: true });
+        await new Promise((done) => setTimeout(done, LOAD_AGAIN_MS));
+      }
+    }
+    return null;
   }
 
   /** @param {any} message */
