@@ -26,7 +26,7 @@ from hthor.types import (
     Wait,
     is_person,
 )
-from hthor.types.events import Event, Refused
+from hthor.types.events import Event
 from hthor.world import numbers
 from hthor.world.interaction import manipulation
 from hthor.world.model import inventory
@@ -168,8 +168,9 @@ class Simulation:
         )
         if reason:
             verb = manipulation.motion_name(action)
-            body.outcome = Outcome(motion=verb, ok=False, reason=reason)
-            self._events.append(Refused(tick=self.tick, seat=seat, motion=verb, reason=reason))
+            by = self._dispatch.manipulation.body_in_the_way(body, action, reason)
+            body.outcome = Outcome(motion=verb, ok=False, reason=reason, by=by)
+            self._events += manipulation.refusal_events(self.tick, seat, verb, reason, by)
             return
         if body.drive is not None and isinstance(action, (Move, Rotate, Wait)):
             self._driven.stop(body)

@@ -54,7 +54,7 @@ from hthor.world.state.support_surfaces import SupportSurfaces
 
 
 class ActionDispatch:
-    """Checks the motions of one world's bodies and starts them."""
+    """Checks the motions of one world's bodies and starts them; ``manipulation`` has the rules of the hands."""
 
     def __init__(
         self,
@@ -65,7 +65,7 @@ class ActionDispatch:
         loose_things: LooseThings,
     ) -> None:
         self._loose_things = loose_things
-        self._manipulation, self._doors, self._obstacles = manipulation, doors, ObstacleFootprints(house)
+        self.manipulation, self._doors, self._obstacles = manipulation, doors, ObstacleFootprints(house)
         self._joint_carrying = manipulation.joint_carrying
         self._others = {seat.name: tuple(other for other in seats if other is not seat) for seat in seats}
 
@@ -75,7 +75,7 @@ class ActionDispatch:
             reason = locomotion.refusal(seat, action)
             return reason or (self._joint_carrying.stuck(seat) if seat.holding and isinstance(action, Move) else "")
         if isinstance(action, (Pick, Place, Drop, Open, Close)):
-            return self._manipulation.refusal(seat, action)
+            return self.manipulation.refusal(seat, action)
         names = "Move, Rotate, Drive, Pick, Place, Drop, Open, Close, Wait"
         return f"{type(action).__name__} is not a motion; valid: {names}"
 
@@ -94,7 +94,7 @@ class ActionDispatch:
         if isinstance(action, Wait):
             return WaitMotion(duration_ticks(action.seconds))
         assert not isinstance(action, Drive), "see DrivenBodies"
-        return HandMotion(seat, action, self._manipulation)
+        return HandMotion(seat, action, self.manipulation)
 
     def resume(self, seat: BodyState, state: ActivityState) -> Activity:
         """A motion that goes on from a state."""
@@ -105,7 +105,7 @@ class ActionDispatch:
         if isinstance(state, Turning):
             return CarryRotation(seat, state.yaw, state.pitch)
         if isinstance(state, Handling):
-            return HandMotion(seat, state.motion, self._manipulation, state.done)
+            return HandMotion(seat, state.motion, self.manipulation, state.done)
         if state.load:
             return CarryMotion(seat, self._joint_carrying.load(state.load), self.culprit, state.left, state.along)
         others = self._others[seat.name]

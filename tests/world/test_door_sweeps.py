@@ -123,3 +123,16 @@ def test_the_body_that_moves_a_door_steps_out_of_its_way(worlds: dict[str, World
     human.teleport(1.9, 4.2, yaw=math.pi)
     robot.teleport(1.2, 4.2)
     assert human.open("fridge").reason == "robot is in the way"
+
+
+def test_a_body_in_a_door_s_way_is_one_that_was_met(worlds: dict[str, World]) -> None:
+    world = worlds["hazel"]
+    world.reset()
+    human, robot = world.human, world.robot
+    human.teleport(1.9, 4.2, yaw=math.pi)
+    robot.teleport(1.2, 4.2)
+    assert human.open("fridge").by == "robot"
+    assert [(event.kind, event.seat) for event in world.events][-2:] == [("refused", "human"), ("in_way", "human")]
+    human.teleport(4.0, 6.3)
+    assert human.open("fridge").by == "", "it is too far away, whoever is in the way"
+    assert world.events[-1].kind == "refused"

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 
 from hthor import catalog, rules
 from hthor.types import Close, Drop, HouseSpec, Open, Outcome, Pick, Place, Vec3
-from hthor.types.events import Closed, Dropped, Event, Opened, Picked, Placed, Refused
+from hthor.types.events import Closed, Dropped, Event, InWay, Opened, Picked, Placed, Refused
 from hthor.world import numbers
 from hthor.world.carrying.joint_carrying import JointCarrying
 from hthor.world.interaction.opening import DoorHandling
@@ -58,8 +58,8 @@ class HandMotion:
         reason = self._hands.finish(self._seat, self._motion, tick)
         news = self._hands.news()
         if reason:
-            refused = Refused(tick=tick, seat=name, motion=verb, reason=reason)
-            return Outcome(motion=verb, ok=False, reason=reason), (refused,)
+            by = self._hands.body_in_the_way(self._seat, self._motion, reason)
+            return Outcome(motion=verb, ok=False, reason=reason, by=by), refusal_events(tick, name, verb, reason, by)
         return Outcome(motion=verb, ok=True), news or (_event(self._motion, held, tick, name),)
 
     def state(self) -> Handling:
@@ -100,6 +100,11 @@ class Manipulation:
         if self.joint_carrying.of(seat) is not None:
             return self._refused(seat, motion)
         return self._drop(seat) if isinstance(motion, Drop) else self._place(seat, motion)[0]
+
+    def body_in_the_way(self, seat: BodyState, motion: object, reason: str) -> str:
+        """The seat of the other body for which a motion of ``seat`` was refused; empty if the reason is another."""
+        doors = self._door_handling
+        return doors.body_in_the_way(seat, motion, reason) if isinstance(motion, (Open, Close)) else ""
 
     def begin(self, seat: BodyState, motion: HandAction) -> None:
         """Begin the motion: take hold of a door, if it opens or closes one."""
@@ -280,6 +285,12 @@ class Manipulation:
         id, seat.holding = seat.holding, ""
         self._objects.put(id, pose, on)
         return ""
+
+
+def refusal_events(tick: int, seat: str, motion: str, reason: str, by: str) -> tuple[Event, ...]:
+    """The events of a motion that is refused; ``by`` is the seat of the body in whose way it is, if any."""
+    refused = Refused(tick=tick, seat=seat, motion=motion, reason=reason)
+    return (refused, InWay(tick=tick, seat=seat, by=by)) if by else (refused,)
 
 
 def motion_name(motion: object) -> str:

@@ -59,6 +59,12 @@ class DoorHandling:
         leaf = self._doors.get(id)
         return "" if leaf is None else self._far(seat, leaf)
 
+    def body_in_the_way(self, seat: BodyState, motion: Open | Close, reason: str) -> str:
+        """The seat of the other body for which the motion of ``seat`` was refused; empty if the reason is another."""
+        leaf = self._doors.get(motion.thing) if isinstance(motion.thing, str) else None
+        why, other = ("", "") if leaf is None else self._body_in_the_way(leaf, isinstance(motion, Open), seat)
+        return other if why == reason else ""
+
     def begin(self, seat: BodyState, motion: Open | Close) -> None:
         """Take hold of a door."""
         self._leaf(motion).user = seat.name
@@ -137,14 +143,9 @@ class DoorHandling:
 
     def _in_the_way(self, leaf: DoorState, opening: bool, mover: BodyState | None = None) -> str:
         """What keeps a door from moving, empty for nothing; ``mover`` is the body that moves it, at its place."""
-        sweep = self._sweep(leaf)
-        for seat in self._seats:
-            moves = mover is not None and seat.name == mover.name
-            body = mover if mover is not None and moves else seat
-            if leaf.opening is not None and not opening and in_doorway(body, leaf.opening):
-                return f"{seat.name} stands in the doorway"
-            if not moves and sweep.hits_body(body):
-                return f"{seat.name} is in the way"
+        reason, _ = self._body_in_the_way(leaf, opening, mover)
+        if reason:
+            return reason
         riders = set()
         for place in self._surfaces.of(leaf.thing.id):
             if place.slides:
@@ -156,9 +157,21 @@ class DoorHandling:
                     return f"{tall[0]} is too tall for the drawer of {leaf.thing.id}"
         for item in self._objects:
             carried = item.held_by and not item.bearers  # a thing carried by its handles is in the way too
-            if item.present and not carried and item.id not in riders and sweep.hits(item):
+            if item.present and not carried and item.id not in riders and self._sweep(leaf).hits(item):
                 return f"{item.id} is in the way"
         return ""
+
+    def _body_in_the_way(self, leaf: DoorState, opening: bool, mover: BodyState | None) -> tuple[str, str]:
+        """Why a body keeps a door from moving, and that body's seat unless it is the mover's own; empty for none."""
+        sweep = self._sweep(leaf)
+        for seat in self._seats:
+            moves = mover is not None and seat.name == mover.name
+            body = mover if mover is not None and moves else seat
+            if leaf.opening is not None and not opening and in_doorway(body, leaf.opening):
+                return f"{seat.name} stands in the doorway", "" if moves else seat.name
+            if not moves and sweep.hits_body(body):
+                return f"{seat.name} is in the way", seat.name
+        return "", ""
 
     def _sweep(self, leaf: DoorState) -> DoorSweep:
         id = leaf.thing.id
