@@ -478,7 +478,8 @@ class World:
         """Whether a body has a free line of sight to a thing, an object or another body.
 
         Args:
-            seat, id, place: see `hindrance`.
+            seat: the body's seat. id: the thing, object or body.
+            place: (x, y) [m] where the body would stand, facing it; None for its present pose.
             picture: whether what is in sight has to be in the picture of its camera as well.
         """
         return self.things.in_sight(seat, id, place, picture=picture)
