@@ -43,6 +43,8 @@ class Page {
     /** @type {House | null} */
     this.house = null;
     /** What the house was loaded from. */ this.loaded = "";
+    /** Whether the house has just been loaded, so that the graphics card gets it before it is shown. */
+    this.fresh = false;
     /** @type {import("./wire.js").Moved[]} */
     this.early = []; // what moved before the house was there
     this.seat = this.problem = "";
@@ -91,6 +93,11 @@ class Page {
     return this.begun && this.house !== null && this.ended === null && !still;
   }
 
+  /** Whether the trial is going on, in a house that is there. */
+  get underWay() {
+    return this.begun && this.house !== null && this.ended === null;
+  }
+
   /** What the experimenter asks of a person at the desk, in words. */
   get asked() {
     return this.vrAsked && !this.headset.session ? ASKED : "";
@@ -115,7 +122,7 @@ class Page {
 
   /** Show the card that fits, or the house. */
   show() {
-    this.panels.reveal(this.begun && this.house !== null && this.ended === null);
+    this.panels.reveal(this.underWay);
     const { title, text, button, done, other, otherDone, help, rate } = this.card();
     this.headsetChoice.show(Boolean(button));
     if (rate) this.panels.rating(title, text, rate, done);
@@ -237,7 +244,7 @@ class Page {
     this.scene.add(house.group);
     house.move(this.early);
     house.step(1, null);
-    this.change({ house, loaded: source });
+    this.change({ house, loaded: source, fresh: true });
   }
 
   /**
@@ -396,7 +403,9 @@ class Page {
     this.house?.step(seconds, this.inHand());
     if (worn) this.headset.screens.show(shownIn(this), this.headset.rig.head, seconds);
     else this.aim();
-    this.renderer.render(this.scene, worn ? this.headset.camera : this.camera);
+    const seen = this.headset.session !== null || this.underWay || this.fresh; // else a card covers all of it
+    if (seen) this.renderer.render(this.scene, worn ? this.headset.camera : this.camera);
+    this.fresh = false;
   }
 
   /** [s] How much time is left. */
