@@ -68,6 +68,8 @@ class Simulation:
     Attributes:
         house: the floor plan. seats: names of all seats, the people's first. bodies: the body in each seat.
         robots: names of the robots' seats.
+        detectors: of the robots, by seat. contents: the house's things, split into movable and static ones.
+        parts: what it is made of. seed: of the episode's random draws. spares: objects not in the house when it began.
         tick: ticks since the last reset. space: each seat's free-space grid.
         moment: the numbers of the episode, the tick and its step, to which an observation belongs.
     """

@@ -1,5 +1,6 @@
 """Routes for `Actor.go_to` on the house's true floor plan, and the places where they end."""
 
+import functools
 import math
 from typing import Any
 
@@ -165,19 +166,20 @@ class WalkPlanner:
                 near = ahead & (gaps <= max(share * self._reach(seat), float(gaps.min()) + 1e-9))
                 rings.append(places[near])
 
-        def usable(place: Vec2) -> bool:
-            seen_by_hand = self._picks(seat, target)
-            return not self._things.hindrance(seat, target, place) and (
-                seen_by_hand or self._things.in_sight(seat, target, place)
-            )
+        @functools.cache  # a wider ring has the places of the narrower ones, too
+        def hindered(place: Vec2) -> bool:
+            return bool(self._things.hindrance(seat, target, place))
 
-        def shown(place: Vec2) -> bool:
-            return self._things.in_sight(seat, target, place, picture=True) and not self._things.hindrance(
-                seat, target, place
-            )
-
+        @functools.cache
         def seen(place: Vec2) -> bool:
             return self._things.in_sight(seat, target, place)
+
+        @functools.cache
+        def shown(place: Vec2) -> bool:
+            return self._things.in_sight(seat, target, place, picture=True) and not hindered(place)
+
+        def usable(place: Vec2) -> bool:
+            return not hindered(place) and (self._picks(seat, target) or seen(place))
 
         for good in (shown, usable, seen):
             for near in rings:

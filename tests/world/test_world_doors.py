@@ -214,6 +214,19 @@ def test_no_door_closes_on_an_object_and_a_closed_one_stops_them(world: World) -
     assert state(world, "apple").position[0] < 4.95
 
 
+def test_what_touches_a_door_is_woken_when_it_moves(world: World) -> None:
+    """A thing that leans on it has nothing to lean on any more; the engine itself wakes only what something hits."""
+    world.teleport("human", Pose(x=4.3, y=2.0))
+    do(world, "human", Close(thing=DOOR))
+    book = world.parts.objects.known("book")
+    world.put_object("book", position=(5.0 + door_geometry.LEAF_M / 2 + book.size[0] / 2 + 0.001, 2.0, 0.02))
+    world.teleport("human", AT_DRESSER)
+    assert world.settle()
+    assert world.env.asleep[book.tree] >= 0
+    world.set_open(DOOR)
+    assert world.env.asleep[book.tree] < 0
+
+
 def test_reset_opens_all_doorways(world: World) -> None:
     world.teleport("human", Pose(x=4.3, y=2.0))
     before = world.snapshot().things[DOOR]

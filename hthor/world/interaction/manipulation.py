@@ -139,18 +139,10 @@ class Manipulation:
         item = self._objects.get(motion.object) if isinstance(motion.object, str) else None
         if item is None:
             return f"there is no object '{motion.object!s:.40}' to pick up"
-        return self._out_of_hand(seat, item)
+        return self.out_of_hand(seat, item)
 
-    def out_of_hand(self, seat: BodyState, id: str) -> str:
-        """Why ``seat``, from its place and with an empty hand, could not pick up an object or reach a thing's door;
-        empty when it could, or when ``id`` is neither an object nor a thing with a door.
-        """
-        item = self._objects.get(id)
-        if item is not None:
-            return self._out_of_hand(seat, item) if "pick" in seat.spec.capabilities else ""
-        return self._door_handling.out_of_hand(seat, id) if "open" in seat.spec.capabilities else ""
-
-    def _out_of_hand(self, seat: BodyState, item: MovableObject) -> str:
+    def out_of_hand(self, seat: BodyState, item: MovableObject) -> str:
+        """Why ``seat``, from its place and with an empty hand, could not pick up an object; empty when it could."""
         if item.held_by and not item.bearers:
             return f"{item.id} is held by {item.held_by}"
         if self.joint_carrying.takes(seat, item):

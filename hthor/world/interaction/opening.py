@@ -2,8 +2,8 @@
 
 A door or drawer moves only if the whole way that it sweeps is free of bodies and things. The body that moves it steps
 out of its way and does not count, except where a shut door would enclose it. What lies in a drawer goes along with it.
-An open door stops nobody; a shut one is as solid as a wall. Doors pass through walls and furniture, which houses leave
-room for or not.
+An open door stops nobody; a shut one is as solid as a wall. Whether walls and furniture leave room for a door is not
+checked.
 """
 
 from collections.abc import Sequence
@@ -53,11 +53,6 @@ class DoorHandling:
         if leaf.open == isinstance(motion, Open):
             return f"{name} is already {'open' if leaf.open else 'closed'}"
         return self._far(seat, leaf) or self._in_the_way(leaf, isinstance(motion, Open), seat)
-
-    def out_of_hand(self, seat: BodyState, id: str) -> str:
-        """Why ``seat`` could not reach a thing's door from where it stands; empty when it could, or without a door."""
-        leaf = self._doors.get(id)
-        return "" if leaf is None else self._far(seat, leaf)
 
     def body_in_the_way(self, seat: BodyState, motion: Open | Close, reason: str) -> str:
         """The seat of the other body for which the motion of ``seat`` was refused; empty if the reason is another."""

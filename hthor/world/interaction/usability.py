@@ -50,9 +50,9 @@ class Usability:
         An object is used by picking it up with an empty hand. Furniture is used by placing on or in it what the body
         holds, else by opening or closing it; a closed thing is opened first.
         """
-        skills, leaf = seat.spec.capabilities, self._doors.get(id)
-        if self._objects.get(id) is not None:
-            return self._manipulation.out_of_hand(seat, id)
+        skills, leaf, item = seat.spec.capabilities, self._doors.get(id), self._objects.get(id)
+        if item is not None:
+            return self._manipulation.out_of_hand(seat, item) if "pick" in skills else ""
         if seat.holding and self._surfaces.of(id) and "pick" in skills and not self._manipulation.is_shut(id):
             return self._manipulation.no_spot(seat, id)
         if leaf is None or "open" not in skills:

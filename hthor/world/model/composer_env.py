@@ -61,9 +61,8 @@ class LazyComposerEnv(Environment):
     step; a control does so too, through its simulation.
     """
 
-    _closed_house = ""
-
     def __init__(self, task: Any) -> None:
+        self._closed_house = ""
         super().__init__(
             task,
             random_state=0,
