@@ -26,7 +26,7 @@ from typing import Any
 import cv2
 import numpy as np
 
-from benchmarks import page_headset, page_looks, page_trial, readme_film
+from benchmarks import page_certificate, page_headset, page_looks, page_trial, readme_film
 from hthor import houses, jsonio, rules, tasks
 from hthor.eval.config import task_selection
 from hthor.eval.records.trial_record import TrialRecord
@@ -108,6 +108,8 @@ _OF_PAGES: dict[str, Callable[[Path], None]] = {
     page_headset.HEADSET: page_headset.write,
 }
 """Pictures of the page of `hthor live`, each with the function that writes it."""
+WARNING = page_certificate.CERTIFICATE
+"""The warning of a browser of the server's certificate."""
 LADDER, _LADDER_OF = "savn_ladder.png", "hthor/agents/checkpoints/savn/eval.json"
 """How well robots find things, by the evaluation of the network that ships."""
 _LADDER_CODE = (
@@ -129,6 +131,7 @@ def names() -> list[str]:
         *_OF_RUNS,
         "display.png",
         *_OF_PAGES,
+        WARNING,
         LADDER,
         *(f"scenes/{name}.jpg" for name in houses.names()),
     ]
@@ -167,6 +170,9 @@ def origin(name: str) -> str:
         shown = {home for home, _ in page_looks.ROOMS}
         facts = [[houses.load(home).sha256 for home in sorted(shown)], rules.sha256()]
         return jsonio.sha256([*facts, *map(_code_sha256, _code_of_live_pages(name))])
+    if name == WARNING:
+        code = ("hthor/live/certificate.py", "benchmarks/page_certificate.py")
+        return jsonio.sha256([_code_sha256(ROOT / path) for path in code])
     if name == LADDER:
         return jsonio.sha256([_sha256(ROOT / _LADDER_OF), *(_code_sha256(ROOT / path) for path in _LADDER_CODE)])
     if name == "display.png":
@@ -292,6 +298,8 @@ def _maker(name: str) -> Callable[[Path], None]:
         return lambda path: _draw_smaller(path, "tasks", "draw", *OF_TASKS[name])
     if name == "display.png":
         return _draw_display
+    if name == WARNING:
+        return page_certificate.write
     if name == LADDER:
         return _draw_ladder
     return _draw_scene

@@ -7,6 +7,7 @@ import io
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tarfile
@@ -361,3 +362,43 @@ def test_plan_and_proposal(tmp_path: Path):
     assert "git switch -c leaderboard/mine" in said
     assert "gh pr create" in said
     assert _run(STEPS / "pull_request.sh", "$(rm)", cwd=tmp_path, DRY_RUN="1").returncode == 2
+
+
+def _board(tmp_path: Path, *agents: str) -> Path:
+    """A copy of the board with these agents' entries only."""
+    board = tmp_path / "board"
+    shutil.copytree(ROOT / "leaderboard", board)
+    for path in (board / "entries").iterdir():
+        if path.name.partition("-")[0] not in agents:
+            path.unlink()
+    return board
+
+
+def test_pages_of_trials_are_taken_for_entries_of_the_board_only(tmp_path: Path):
+    board, made = _board(tmp_path, "none", "frontier", "oracle"), tmp_path / "made"
+    ids = {path.stem.partition("-")[0]: path.stem for path in (board / "entries").iterdir()}
+    pages = {name: made / "watch" / name for name in (ids["none"], ids["frontier"], "stranger-standard-0123456789")}
+    for page in pages.values():
+        page.mkdir(parents=True)
+        (page / "more.js").write_text("x")
+    (pages[ids["none"]] / "index.html").write_text("a trial")
+    (pages[ids["frontier"]] / "index.html").symlink_to("/etc/passwd")
+    (made / "index.html").write_text("another board")
+    done = _run(STEPS / "link.sh", made, board, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert _there(board / "watch") == [f"{ids['none']}/index.html"]
+    assert (board / "index.html").read_text().count("watch a trial") == 1
+
+
+def test_each_entry_gets_a_page_of_a_trial(tmp_path: Path):
+    if not (ROOT / "hthor" / "live" / "page" / "watch.js").exists():
+        pytest.skip("the page is not built: make page")
+    board = _board(tmp_path, "frontier", "oracle")
+    played, absent = sorted((board / "entries").iterdir())
+    entry = json.loads(absent.read_bytes())
+    absent.write_text(json.dumps({**entry, "submission": "elsewhere"}))
+    done = _run(STEPS / "watch.sh", board, "submissions", cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert f"{absent.stem}: no page" in done.stderr
+    assert _there(board / "watch") == [f"{played.stem}/index.html"]
+    assert (board / "watch" / played.stem / "index.html").stat().st_size > 1_000_000, "a house and a program"
