@@ -1,13 +1,14 @@
 """What a browser says of a server with `--lan`: ``python -m benchmarks.page_certificate [--out PICTURE]``.
 
-The warning of its certificate in Chromium, and below it the same once *Advanced* is pressed. The page opens behind it.
+Chromium's warning of its certificate, and beside it the same once *Advanced* is pressed. The script goes on until the
+page behind the warning is connected.
 """
 
 from __future__ import annotations
 
 import argparse
-import base64
 import tempfile
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -31,7 +32,7 @@ _HOST = "192.0.2.2"
 _WINDOW = (760, 610)
 _ADVANCED, _PROCEED = "#details-button", "#proceed-link"
 _GAP, _PAPER, _QUALITY = 8, 225, 86
-_PATIENCE_MS, _POLL_MS = 30_000, 50
+_PATIENCE_MS, _CALM_MS, _POLL_MS = 30_000, 500, 50
 
 
 def write(path: Path) -> None:
@@ -57,7 +58,10 @@ def write(path: Path) -> None:
         page.wait_for_selector(_PROCEED)
         shots.append(_screenshot(page))
         page.click(_PROCEED)
-        while not page.evaluate("globalThis.page?.seat"):  # until the page behind the warning is connected
+        end = time.monotonic() + _PATIENCE_MS / 1000.0
+        while not page.evaluate("globalThis.page?.seat"):
+            if time.monotonic() > end:
+                raise SystemExit("the page behind the warning does not connect.")
             page.wait_for_timeout(_POLL_MS)
     rule = np.full((_WINDOW[1], _GAP, 3), _PAPER, np.uint8)
     cv2.imwrite(str(path), np.concatenate([shots[0], rule, shots[1]], axis=1), [cv2.IMWRITE_JPEG_QUALITY, _QUALITY])
@@ -77,10 +81,8 @@ def _server() -> Iterator[LiveServer]:
 
 
 def _screenshot(page: Any) -> Any:
-    # Playwright's own screenshot waits for ever for fonts of a page of the browser's own.
-    page.wait_for_timeout(500)
-    taken = page.context.new_cdp_session(page).send("Page.captureScreenshot")
-    return cv2.imdecode(np.frombuffer(base64.b64decode(taken["data"]), np.uint8), cv2.IMREAD_COLOR)
+    page.wait_for_timeout(_CALM_MS)
+    return cv2.imdecode(np.frombuffer(page.screenshot(), np.uint8), cv2.IMREAD_COLOR)
 
 
 def main() -> None:

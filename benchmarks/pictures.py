@@ -106,10 +106,9 @@ _OF_PAGES: dict[str, Callable[[Path], None]] = {
     page_trial.TRIAL: page_trial.write,
     page_trial.EXPERIMENTER: page_trial.write,
     page_headset.HEADSET: page_headset.write,
+    page_certificate.CERTIFICATE: page_certificate.write,
 }
-"""Pictures of the page of `hthor live`, each with the function that writes it."""
-WARNING = page_certificate.CERTIFICATE
-"""The warning of a browser of the server's certificate."""
+"""Pictures of the page of `hthor live` and of what a browser shows before it, each with the function that writes it."""
 LADDER, _LADDER_OF = "savn_ladder.png", "hthor/agents/checkpoints/savn/eval.json"
 """How well robots find things, by the evaluation of the network that ships."""
 _LADDER_CODE = (
@@ -131,7 +130,6 @@ def names() -> list[str]:
         *_OF_RUNS,
         "display.png",
         *_OF_PAGES,
-        WARNING,
         LADDER,
         *(f"scenes/{name}.jpg" for name in houses.names()),
     ]
@@ -166,13 +164,13 @@ def origin(name: str) -> str:
         return jsonio.sha256(
             [AGENTS, CASE, tasks.load_suite(SUITE).sha256, rules.sha256(), *map(_code_sha256, _code_of_pages())]
         )
+    if name == page_certificate.CERTIFICATE:
+        code = [ROOT / "hthor/live/certificate.py", ROOT / "benchmarks/page_certificate.py"]
+        return jsonio.sha256([*map(_code_sha256, code)])
     if name in _OF_PAGES:
         shown = {home for home, _ in page_looks.ROOMS}
         facts = [[houses.load(home).sha256 for home in sorted(shown)], rules.sha256()]
         return jsonio.sha256([*facts, *map(_code_sha256, _code_of_live_pages(name))])
-    if name == WARNING:
-        code = ("hthor/live/certificate.py", "benchmarks/page_certificate.py")
-        return jsonio.sha256([_code_sha256(ROOT / path) for path in code])
     if name == LADDER:
         return jsonio.sha256([_sha256(ROOT / _LADDER_OF), *(_code_sha256(ROOT / path) for path in _LADDER_CODE)])
     if name == "display.png":
@@ -298,8 +296,6 @@ def _maker(name: str) -> Callable[[Path], None]:
         return lambda path: _draw_smaller(path, "tasks", "draw", *OF_TASKS[name])
     if name == "display.png":
         return _draw_display
-    if name == WARNING:
-        return page_certificate.write
     if name == LADDER:
         return _draw_ladder
     return _draw_scene

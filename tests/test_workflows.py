@@ -16,6 +16,9 @@ from pathlib import Path
 
 import pytest
 
+from hthor.live import server
+from hthor.watch import page
+
 ROOT = Path(__file__).resolve().parents[1]
 WORKFLOWS = sorted((ROOT / ".github" / "workflows").glob("*.yml"))
 SCRIPTS = sorted((ROOT / "scripts").rglob("*.sh"))
@@ -377,10 +380,10 @@ def _board(tmp_path: Path, *agents: str) -> Path:
 def test_pages_of_trials_are_taken_for_entries_of_the_board_only(tmp_path: Path):
     board, made = _board(tmp_path, "none", "frontier", "oracle"), tmp_path / "made"
     ids = {path.stem.partition("-")[0]: path.stem for path in (board / "entries").iterdir()}
-    pages = {name: made / "watch" / name for name in (ids["none"], ids["frontier"], "stranger-standard-0123456789")}
-    for page in pages.values():
-        page.mkdir(parents=True)
-        (page / "more.js").write_text("x")
+    pages = {name: made / name for name in (ids["none"], ids["frontier"], "stranger-standard-0123456789")}
+    for folder in pages.values():
+        folder.mkdir(parents=True)
+        (folder / "more.js").write_text("x")
     (pages[ids["none"]] / "index.html").write_text("a trial")
     (pages[ids["frontier"]] / "index.html").symlink_to("/etc/passwd")
     (made / "index.html").write_text("another board")
@@ -391,14 +394,19 @@ def test_pages_of_trials_are_taken_for_entries_of_the_board_only(tmp_path: Path)
 
 
 def test_each_entry_gets_a_page_of_a_trial(tmp_path: Path):
-    if not (ROOT / "hthor" / "live" / "page" / "watch.js").exists():
+    if not (server.FOLDER / page.TEMPLATE).exists():
         pytest.skip("the page is not built: make page")
     board = _board(tmp_path, "frontier", "oracle")
     played, absent = sorted((board / "entries").iterdir())
     entry = json.loads(absent.read_bytes())
-    absent.write_text(json.dumps({**entry, "submission": "elsewhere"}))
+    unknown = absent.with_name("unknown-standard-0123456789.json")
+    command = {"name": f"cmd:touch {tmp_path / 'ran'}"}
+    absent.write_text(json.dumps({**entry, "reference": False, "submission": "elsewhere"}))
+    unknown.write_text(json.dumps({**entry, "reference": False, "id": unknown.stem, "agent": command}))
     done = _run(STEPS / "watch.sh", board, "submissions", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert f"{absent.stem}: no page" in done.stderr
+    assert f"{unknown.stem}: no page" in done.stderr
+    assert not (tmp_path / "ran").exists(), "what an entry says of itself is never a command"
     assert _there(board / "watch") == [f"{played.stem}/index.html"]
     assert (board / "watch" / played.stem / "index.html").stat().st_size > 1_000_000, "a house and a program"
