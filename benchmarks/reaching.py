@@ -132,9 +132,12 @@ def broken(found: Counter[str]) -> int:
 
 
 def _behind_somebody(world: World, actor: Actor, target: str) -> bool:
-    """Whether another body stands between the eye and the target, or the target is beyond the camera's pitch."""
+    """Whether a body or what one carries is before the eye, or the target is beyond the camera's pitch."""
+    bodies = [seat for seat in world.seats if seat != actor.seat]
+    carried = [state.id for state in world.objects() if state.held_by]
+    picture = actor.segmentation(PICTURE)
     return not world.in_sight(actor.seat, target, picture=True) or any(
-        (actor.segmentation(PICTURE) == world.names.index(seat)).any() for seat in world.seats if seat != actor.seat
+        (picture == world.names.index(name)).any() for name in (*bodies, *carried)
     )
 
 

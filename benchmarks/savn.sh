@@ -35,7 +35,7 @@ echo "-- pose grids"
 hthor train a2c --out "$folder/grids" --frames 1 --batch 1 --device cpu >/dev/null
 rm -r "$folder/grids"
 echo "-- first networks"
-for seed in $seeds; do echo "train a2c base $seed --frames 4M"; done | two_at_a_time
+for seed in $seeds; do echo "train a2c base $seed --frames 10M"; done | two_at_a_time
 echo "-- savn and a2c"
 for seed in $seeds; do printf 'second savn %s\nsecond a2c %s\n' "$seed" "$seed"; done | two_at_a_time
 checkpoints=()

@@ -19,7 +19,7 @@ _NETWORKS: dict[Profile, NetworkConfig] = {"slim": NetworkConfig(), "paper": PAP
 _ALGORITHMS: dict[str, tuple[Learner[Any], type[LoopConfig], bool]] = {
     "savn": (savn.learn, savn.Config, True),
     "a2c": (savn.learn, savn.Config, False),
-    "bc": (bc.learn, bc.Config, True),
+    "bc": (bc.learn, bc.Config, False),
 }
 """How each learns, its configuration, and whether its network adapts."""
 

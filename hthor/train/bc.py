@@ -34,16 +34,25 @@ def expert_action(worlds: GridWorlds, pose: Tensor, goal: Tensor) -> Tensor:
 def learn(
     network: Network, worlds: GridWorlds, config: Config, generator: torch.Generator
 ) -> tuple[Tensor, int, dict[str, float]]:
-    """As `hthor.train.loop.Learner`: the cross-entropy of the expert's actions."""
+    """As `hthor.train.loop.Learner`: the cross-entropy of the expert's actions.
+
+    Episodes that have ended are left out after each window, so that they cost no more time.
+    """
     pose, goal, _ = worlds.draw(config.batch, generator, config.close)
     run = AdaptiveRun(network, goal_classes(worlds.device)[goal], learning=True)
     alive = torch.ones(config.batch, device=worlds.device)
     led = torch.rand(config.batch, generator=generator, device=worlds.device) < config.expert
     losses, right, lived = [], alive.new_zeros(()), alive.new_zeros(())
-    for _ in range(config.horizon):
+    for step in range(config.horizon):
+        if step and step % network.config.window == 0 and not alive.all():
+            left = torch.nonzero(alive).squeeze(1)
+            run.keep(left)
+            pose, goal, alive, led = pose[left], goal[left], alive[left], led[left]
+            if not len(left):
+                break
         logits, _ = run.step(worlds.look(pose, generator), alive)
         best = expert_action(worlds, pose, goal)
-        losses.append(F.cross_entropy(logits, best, reduction="none") * alive)
+        losses.append((F.cross_entropy(logits, best, reduction="none") * alive).sum())
         own = draw_actions(logits, generator)
         right, lived = right + ((own == best) * alive).sum(), lived + alive.sum()
         action = torch.where(led, best, own)

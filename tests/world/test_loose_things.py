@@ -18,6 +18,7 @@ from hthor.world import World
 from hthor.world.motion.push_plan import LIGHT_KG, TOUCH_M, PushPlan
 from hthor.world.state.footprint import footprint
 from hthor.world.state.objects import Objects
+from hthor.world.state.overlap_test import OVERLAP_M
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 from benchmarks import loose_things as benchmark
@@ -240,3 +241,60 @@ def test_an_outline_contains_its_points_and_leaves_a_disc_along_the_way(
     if deep > 0.0:
         moved = [(px + (deep + 1e-6) * x, py + (deep + 1e-6) * y) for px, py in outline]
         assert convex.disc_overlap(centre, 0.5, moved)[0] <= 1e-6
+
+
+@pytest.fixture(scope="module")
+def carpeted() -> World:
+    return World("birch", objects=(("telephone", "phone"), ("pencil", "pen"), ("carton", "box"), ("cup", "mug")))
+
+
+def test_what_falls_on_the_edge_of_a_rug_lies_on_it_or_beside_it(carpeted: World) -> None:
+    carpeted.reset()
+    rug = next(thing for thing in carpeted.house.things if thing.id == "rug_2")
+    edge = rug.centre[1] + rug.size[0] / 2  # it is turned by a right angle
+    for turn in range(12):
+        for id in ("telephone", "pencil"):
+            size = carpeted.parts.objects.known(id).size
+            x, y = rug.centre[0] + (-0.2 if id == "pencil" else 0.2), edge + 0.01 * (turn - 6)
+            carpeted.put_object(id, (x, y, size[2] / 2 + 0.05), yaw=0.5 * turn)
+        assert carpeted.settle()
+        for id in ("telephone", "pencil"):
+            item = carpeted.parts.objects.known(id)
+            assert not carpeted.parts.objects._overlap.inside(item, OVERLAP_M), (id, turn, item.position)
+
+
+def test_a_rug_is_floor_also_for_what_leans_on_furniture(carpeted: World) -> None:
+    """It is pushed like what lies on the bare floor."""
+    carpeted.reset()
+    stand = next(thing for thing in carpeted.house.things if thing.id == "tv_stand")
+    size = carpeted.parts.objects.known("carton").size
+    x = stand.centre[0] + stand.size[1] / 2 + size[0] / 2 + 0.001
+    carpeted.put_object("carton", (x, stand.centre[1], size[2] / 2 + 0.012))
+    assert carpeted.settle()
+    touched = carpeted.parts.objects._overlap.touched(carpeted.parts.objects.known("carton"))
+    assert {"rug_2", "tv_stand"} <= set(touched)
+    assert carpeted.state("carton").support == ""
+    assert carpeted.parts.objects.known("carton").number in carpeted.parts.objects.low
+
+
+def test_nothing_is_dropped_out_of_a_window(carpeted: World) -> None:
+    carpeted.reset()
+    human, reasons = carpeted.human, []
+    for window in (opening for opening in carpeted.house.openings if opening.kind == "window"):
+        (ax, ay), (bx, by) = window.a, window.b
+        length = math.dist(window.a, window.b)
+        for side in (1.0, -1.0):
+            out = (side * (by - ay) / length, side * (ax - bx) / length)
+            x, y = (ax + bx) / 2 - 0.25 * out[0], (ay + by) / 2 - 0.25 * out[1]
+            if not carpeted.space["human"].is_free(x, y):
+                continue
+            human.teleport(x, y, yaw=math.atan2(-out[1], -out[0]))
+            carpeted.put_object("cup", (x - 0.4 * out[0], y - 0.4 * out[1], 1.2))
+            assert human.pick("cup").ok
+            human.teleport(x, y, yaw=math.atan2(out[1], out[0]))
+            dropped = human.drop()
+            assert not dropped.ok, window
+            reasons.append(dropped.reason)
+            human.teleport(x, y, yaw=math.atan2(-out[1], -out[0]))
+            assert human.drop().ok
+    assert "window|2|0 is between human and cup" in reasons

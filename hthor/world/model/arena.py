@@ -7,10 +7,12 @@ import itertools
 from collections.abc import Iterable
 from typing import Any
 
+from msgspec import structs
+
 from hthor import catalog
 from hthor.geometry import plane
 from hthor.looks import finishes
-from hthor.types import HouseSpec, Rgba, Thing
+from hthor.types import HouseSpec, Part, Rgba, Thing
 from hthor.world.model import geoms, walls
 from hthor.world.model.engine import Arena
 
@@ -20,6 +22,10 @@ _SLAB_M = 0.01
 """[m] Thickness of the drawn floors and ceilings."""
 _ROOF_M = 1.0
 """[m] Thickness of an invisible roof, so that a thrown object cannot pass through it between two steps."""
+_FLAT_M, _ROOT_M = 0.05, 0.1
+"""[m] A part that lies on the floor and is no higher than this goes on below the floor, this far: the engine presses
+things out of each other by the shortest way, and that out of the edge of a rug would lead down, into the floor.
+"""
 _TILT = (1.0, 5e-6, 5e-6, 0.0)
 """Quaternion of the ground, which falls by 0.1 mm in 10 m: on an exactly level plane the contact points of an upright
 cylinder would depend on rounding errors.
@@ -101,5 +107,14 @@ class HouseArena(Arena):
     def _thing(self, thing: Thing) -> None:
         for part in catalog.kind(thing.kind).parts(thing.size, thing.variant):
             if not part.moves:
-                world, name = self.mjcf_model.worldbody, self._name(thing.id)
-                geoms.add_part(world, name, part, thing.centre, thing.yaw, group=geoms.FURNITURE, **geoms.STATIC)
+                world, name, solid = self.mjcf_model.worldbody, self._name(thing.id), _rooted(part, thing.centre[2])
+                geoms.add_part(world, name, solid, thing.centre, thing.yaw, group=geoms.FURNITURE, **geoms.STATIC)
+
+
+def _rooted(part: Part, height: float) -> Part:
+    """A part of a thing whose centre is at this height [m], as the engine has it."""
+    (x, y, z), (along, across, half) = part.centre, part.half
+    flat = part.shape != "sphere" and part.axis == "z" and 2 * half <= _FLAT_M
+    if not flat or abs(height + z - half) > 1e-3:
+        return part
+    return structs.replace(part, centre=(x, y, z - _ROOT_M / 2), half=(along, across, half + _ROOT_M / 2))

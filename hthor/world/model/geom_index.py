@@ -23,6 +23,7 @@ class GeomIndex:
         radius: (N,) bounding radii [m]. owner: id of each geom's thing, seat, room, wall or opening.
         walls: indices of the geoms in ``ids`` that never move, including furniture, largest first. loose: the others.
         ids: indices of the geoms that hide things, largest first; carried objects are not among them.
+        fixed: (N,) bool, which geoms are solid and never move, window panes included, which hide nothing.
         names: the owners in alphabetic order. numbers: (N,) index of each geom's owner in ``names``.
         span: owner -> [first, last + 1) of its geoms; for a thing with a door, only of those that never move.
     """
@@ -38,11 +39,11 @@ class GeomIndex:
         self._number = {owner: number for number, owner in enumerate(self.names)}
         self.numbers = np.array([self._number[owner] for owner in self.owner])
         self._drawn = model.geom_rgba[:, 3] >= _OPAQUE_ALPHA
-        self.solid = (model.geom_contype != 0) & self._drawn
-        self.solid &= model.geom_type != int(mujoco.mjtGeom.mjGEOM_PLANE)
-        fixed = self.solid & (model.body_weldid[model.geom_bodyid] == 0)
-        self.walls = self._sorted(fixed)
-        self._moving = self.solid & ~fixed
+        solid = (model.geom_contype != 0) & (model.geom_type != int(mujoco.mjtGeom.mjGEOM_PLANE))
+        self.fixed = solid & (model.body_weldid[model.geom_bodyid] == 0)
+        self.solid, self._glass = solid & self._drawn, np.flatnonzero(self.fixed & ~self._drawn)
+        self.walls = self._sorted(self.solid & self.fixed)
+        self._moving = self.solid & ~self.fixed
         self.ids = self.loose = np.zeros(0, np.int64)
         self.hide_all_but(())
 
@@ -69,8 +70,10 @@ class GeomIndex:
         return bool(is_blocked(*ends, self.half, self.pos, self.mat, self.radius, self._without(ignore), 0, 0))
 
     def first(self, start: Vec3, end: Vec3, ignore: str = "") -> str:
-        """Owner of a solid, other than ``ignore``, that stands between two points [m]; empty for none."""
-        ends, ids = (np.array(start), np.array(end)), self._without(ignore)
+        """Owner of a solid, other than ``ignore``, that stands between two points [m]; empty for none. Nothing passes
+        through a window pane, which hides nothing.
+        """
+        ends, ids = (np.array(start), np.array(end)), np.concatenate((self._without(ignore), self._glass))
         solids = self.half, self.pos, self.mat, self.radius
         met = (self.owner[geom] for geom in ids if is_blocked(*ends, *solids, np.array([geom]), 0, 0))
         return next(met, "") if is_blocked(*ends, *solids, ids, 0, 0) else ""

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from hthor.houses.space.obstacles import STEP_M
 from hthor.world.model import geoms
 from hthor.world.model.composer_env import LazyComposerEnv
 from hthor.world.model.engine import mujoco
@@ -29,7 +30,7 @@ class OverlapTest:
     def touched(self, item: MovableObject) -> list[str]:
         """Owners of the solids that an object touches at its pose in the engine, the closest first.
 
-        For an object on the floor the first owner is `FLOOR`.
+        For an object on the floor, or on what is as flat as a rug, the first owner is `FLOOR`.
         """
         model, data, index = self._env.model, self._env.data, self._geoms
         closest: dict[str, float] = {}
@@ -41,6 +42,8 @@ class OverlapTest:
                 if gap < CONTACT_M:
                     owner = str(index.owner[other])
                     closest[owner] = min(gap, closest.get(owner, math.inf))
+                    if index.fixed[other] and _top(model, data, index, other) <= STEP_M:
+                        closest[FLOOR] = -math.inf
         return sorted(closest, key=lambda owner: (closest[owner], owner))
 
     def beside(self, geoms: Iterable[int], numbers: Any) -> list[int]:
@@ -97,6 +100,11 @@ class OverlapTest:
         apart = np.linalg.norm(data.geom_xpos[others] - data.geom_xpos[geom], axis=1)
         near: list[int] = others[apart < radius[others] + radius[geom] + gap].tolist()
         return near
+
+
+def _top(model: Any, data: Any, index: GeomIndex, geom: int) -> float:
+    """Height [m] of the highest point of a solid."""
+    return float(data.geom_xpos[geom, 2]) + _extent(model, data, index, geom)
 
 
 def _extent(model: Any, data: Any, index: GeomIndex, geom: int) -> float:
