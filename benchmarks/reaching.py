@@ -23,6 +23,8 @@ from hthor.world.actor import Actor
 BODIES = ("human", "tender", "porter", "scout", "puck")
 IN_HAND = "apple in hand"
 PICTURE = (480, 480)
+_AWAY = (0.0, 0.0, -50.0, 1.0, 0.0, 0.0, 0.0)
+"""Position [m] and quaternion of what is to be in no picture."""
 
 
 def main() -> None:
@@ -132,13 +134,18 @@ def broken(found: Counter[str]) -> int:
 
 
 def _behind_somebody(world: World, actor: Actor, target: str) -> bool:
-    """Whether a body or what one carries is before the eye, or the target is beyond the camera's pitch."""
-    bodies = [seat for seat in world.seats if seat != actor.seat]
-    carried = [state.id for state in world.objects() if state.held_by]
+    """Whether another body, or what one carries, stands between the eye and the target, or the target is beyond the
+    camera's pitch.
+    """
+    if not world.in_sight(actor.seat, target, picture=True):
+        return True
+    before = world.save_state()
+    for carried in [state.id for state in world.objects() if state.held_by]:
+        world.parts.objects.put(carried, _AWAY, "")
     picture = actor.segmentation(PICTURE)
-    return not world.in_sight(actor.seat, target, picture=True) or any(
-        (picture == world.names.index(name)).any() for name in (*bodies, *carried)
-    )
+    world.load_state(before)
+    others = [seat for seat in world.seats if seat != actor.seat]
+    return any((picture == world.names.index(name)).any() for name in (target, *others))
 
 
 def _plain(reason: str, id: str) -> str:

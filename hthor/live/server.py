@@ -220,13 +220,7 @@ class LiveServer:
         )
         logging.getLogger("uvicorn.error").addFilter(_is_news)
         self._server = uvicorn.Server(config)
-        serving = self._server.serve(sockets=[listener])
-
-        def serve() -> None:
-            with asyncio.Runner(loop_factory=config.get_loop_factory()) as runner:  # uvloop, where there is one
-                runner.run(serving)
-
-        self._thread = threading.Thread(target=serve, name="server")
+        self._thread = threading.Thread(target=self._server.run, args=([listener],), name="server")
         self._thread.start()
         while not self._server.started and self._thread.is_alive():
             time.sleep(0.01)

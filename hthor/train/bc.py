@@ -12,7 +12,7 @@ from torch.nn import functional as F  # noqa: N812
 
 from hthor.agents.skills.savn_network import AdaptiveRun, Network, draw_actions
 from hthor.train.grid_worlds import DONE, GridWorlds
-from hthor.train.loop import LoopConfig, goal_classes
+from hthor.train.loop import LoopConfig, goal_classes, leave_out_ended
 
 
 class Config(LoopConfig, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -34,19 +34,15 @@ def expert_action(worlds: GridWorlds, pose: Tensor, goal: Tensor) -> Tensor:
 def learn(
     network: Network, worlds: GridWorlds, config: Config, generator: torch.Generator
 ) -> tuple[Tensor, int, dict[str, float]]:
-    """As `hthor.train.loop.Learner`: the cross-entropy of the expert's actions.
-
-    Episodes that have ended are left out after each window, so that they cost no more time.
-    """
+    """As `hthor.train.loop.Learner`: the cross-entropy of the expert's actions."""
     pose, goal, _ = worlds.draw(config.batch, generator, config.close)
     run = AdaptiveRun(network, goal_classes(worlds.device)[goal], learning=True)
     alive = torch.ones(config.batch, device=worlds.device)
     led = torch.rand(config.batch, generator=generator, device=worlds.device) < config.expert
     losses, right, lived = [], alive.new_zeros(()), alive.new_zeros(())
     for step in range(config.horizon):
-        if step and step % network.config.window == 0 and not alive.all():
-            left = torch.nonzero(alive).squeeze(1)
-            run.keep(left)
+        left = leave_out_ended(run, alive, step)
+        if left is not None:
             pose, goal, alive, led = pose[left], goal[left], alive[left], led[left]
             if not len(left):
                 break

@@ -13,7 +13,7 @@ from torch import Tensor, nn
 from hthor import seeds
 from hthor.agents.skills import picture_encoder, savn_checkpoint
 from hthor.agents.skills.savn_checkpoint import Checkpoint
-from hthor.agents.skills.savn_network import Network, NetworkConfig
+from hthor.agents.skills.savn_network import AdaptiveRun, Network, NetworkConfig
 from hthor.agents.skills.semantic_cells import CLASSES, GOALS
 from hthor.errors import HthorError
 from hthor.train.grid_worlds import DONE, GridWorlds
@@ -92,6 +92,22 @@ def _copy(network: nn.Module, other: nn.Module, shown: str) -> None:
 def goal_classes(device: torch.device) -> Tensor:
     """(goals,) int64, the class of each goal."""
     return torch.tensor([CLASSES.index(name) for name in GOALS], device=device)
+
+
+def leave_out_ended(run: AdaptiveRun, alive: Tensor, step: int) -> Tensor | None:
+    """Leave the episodes that have ended out of a run, so that they cost no more time; only after a whole window.
+
+    Args:
+        alive: (B,) 1 for episodes that go on. step: how many actions they have taken.
+
+    Returns:
+        (K,) int64, the numbers of the episodes that are left; None if all are.
+    """
+    if not step or step % run.network.config.window or alive.all():
+        return None
+    left = torch.nonzero(alive).squeeze(1)
+    run.keep(left)
+    return left
 
 
 def train(

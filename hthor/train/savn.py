@@ -15,7 +15,7 @@ from torch import Tensor
 
 from hthor.agents.skills.savn_network import AdaptiveRun, Network, draw_actions
 from hthor.train.grid_worlds import DONE, GridWorlds
-from hthor.train.loop import LoopConfig, goal_classes
+from hthor.train.loop import LoopConfig, goal_classes, leave_out_ended
 
 
 class Config(LoopConfig, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -59,10 +59,7 @@ class Rollout(NamedTuple):
 
 
 def play(network: Network, worlds: GridWorlds, config: Config, generator: torch.Generator) -> Rollout:
-    """Episodes of at most ``horizon`` actions with a network that learns from them.
-
-    Episodes that have ended are left out after each window, so that they cost no more time.
-    """
+    """Episodes of at most ``horizon`` actions with a network that learns from them."""
     pose, goal, _ = worlds.draw(config.batch, generator, config.close)
     run = AdaptiveRun(network, goal_classes(worlds.device)[goal], learning=True)
     alive = torch.ones(config.batch, device=worlds.device)
@@ -70,9 +67,8 @@ def play(network: Network, worlds: GridWorlds, config: Config, generator: torch.
     lane = torch.arange(config.batch, device=worlds.device)  # the episode of each row of what follows
     columns: list[tuple[Tensor, ...]] = []
     for step in range(config.horizon):
-        if step and step % network.config.window == 0 and not alive.all():
-            left = torch.nonzero(alive).squeeze(1)
-            run.keep(left)
+        left = leave_out_ended(run, alive, step)
+        if left is not None:
             pose, goal, alive, lane = pose[left], goal[left], alive[left], lane[left]
             if not len(left):
                 break

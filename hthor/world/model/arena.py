@@ -11,6 +11,7 @@ from msgspec import structs
 
 from hthor import catalog
 from hthor.geometry import plane
+from hthor.houses.space.obstacles import STEP_M
 from hthor.looks import finishes
 from hthor.types import HouseSpec, Part, Rgba, Thing
 from hthor.world.model import geoms, walls
@@ -22,9 +23,9 @@ _SLAB_M = 0.01
 """[m] Thickness of the drawn floors and ceilings."""
 _ROOF_M = 1.0
 """[m] Thickness of an invisible roof, so that a thrown object cannot pass through it between two steps."""
-_FLAT_M, _ROOT_M = 0.05, 0.1
-"""[m] A part that lies on the floor and is no higher than this goes on below the floor, this far: the engine presses
-things out of each other by the shortest way, and that out of the edge of a rug would lead down, into the floor.
+_ROOT_M = 0.1
+"""[m] How far what lies flat on the floor goes on below it: the engine presses things out of each other by the shortest
+way, and that out of the edge of a rug would lead down, into the floor.
 """
 _TILT = (1.0, 5e-6, 5e-6, 0.0)
 """Quaternion of the ground, which falls by 0.1 mm in 10 m: on an exactly level plane the contact points of an upright
@@ -112,9 +113,9 @@ class HouseArena(Arena):
 
 
 def _rooted(part: Part, height: float) -> Part:
-    """A part of a thing whose centre is at this height [m], as the engine has it."""
+    """A part of a thing whose centre is at this height [m]; if it lies flat on the floor, longer downwards."""
     (x, y, z), (along, across, half) = part.centre, part.half
-    flat = part.shape != "sphere" and part.axis == "z" and 2 * half <= _FLAT_M
+    flat = part.shape != "sphere" and part.axis == "z" and 2 * half <= STEP_M
     if not flat or abs(height + z - half) > 1e-3:
         return part
     return structs.replace(part, centre=(x, y, z - _ROOT_M / 2), half=(along, across, half + _ROOT_M / 2))

@@ -70,8 +70,8 @@ class GeomIndex:
         return bool(is_blocked(*ends, self.half, self.pos, self.mat, self.radius, self._without(ignore), 0, 0))
 
     def first(self, start: Vec3, end: Vec3, ignore: str = "") -> str:
-        """Owner of a solid, other than ``ignore``, that stands between two points [m]; empty for none. Nothing passes
-        through a window pane, which hides nothing.
+        """Owner of a solid, other than ``ignore``, that stands between two points [m]; empty for none. A window pane,
+        which hides nothing, is one of them.
         """
         ends, ids = (np.array(start), np.array(end)), np.concatenate((self._without(ignore), self._glass))
         solids = self.half, self.pos, self.mat, self.radius
