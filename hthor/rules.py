@@ -7,7 +7,7 @@ import math
 
 from hthor import jsonio
 
-SIMULATION = 4
+SIMULATION = 5
 """Version of the world: increased when the same motions would have other outcomes than before."""
 TICK_S = 0.1
 """Length of a tick [s]. Time is counted in ticks, and in seconds only where people read it."""

@@ -17,6 +17,7 @@ GOLDEN = {
     2: {"alder": "2b29bb2edb4bf200", "cedar": "45e27c19c9e68f8d"},  # bodies push loose things; here nobody meets any
     3: {"alder": "2b29bb2edb4bf200", "cedar": "45e27c19c9e68f8d"},  # what nothing carries falls; doors need their way
     4: {"alder": "2b29bb2edb4bf200", "cedar": "45e27c19c9e68f8d"},  # rugs go on below the floor; panes stop hands
+    5: {"alder": "2b29bb2edb4bf200", "cedar": "45e27c19c9e68f8d"},  # nothing goes back to where something is by now
 }
 
 

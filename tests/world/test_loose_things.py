@@ -84,6 +84,16 @@ def test_what_is_heavy_stops_a_body_and_is_named(world: World, kind: str) -> Non
     assert gap(world, "robot", kind) >= -TOUCH_M
 
 
+@pytest.mark.parametrize(("x", "y", "yaw"), [(1.5, 3.2, 0.8), (1.4, 3.0, 1.2), (1.3, 2.8, 1.6)])
+def test_who_is_stopped_where_the_thing_can_be_used_has_arrived(world: World, x: float, y: float, yaw: float) -> None:
+    world.teleport("human", Pose(x=6.475, y=2.375))
+    world.put_object("trunk", (x, y, 0.21), yaw=yaw)
+    assert world.settle()
+    assert world.human.go_to(tiny.FRIDGE).ok
+    assert any(event.kind == "blocked" for event in world.events)
+    assert world.human.open(tiny.FRIDGE).ok
+
+
 def test_a_thing_jammed_at_a_wall_stops_the_body(world: World) -> None:
     lay(world, "box", 4.6, 3.4)
     world.teleport("robot", Pose(x=3.6, y=3.4))
@@ -124,6 +134,28 @@ def test_what_rolls_at_a_body_stops_there(world: World) -> None:
         world.step()
         assert gap(world, "robot", "apple") >= -TOUCH_M
     assert world.position("apple")[0] > world.pose("robot").x
+
+
+@pytest.mark.parametrize(
+    ("follower", "gap_m", "x", "speed", "behind", "follower_speed"),
+    [
+        ("apple", 0.485, 1.767, 2.663, 0.278, 3.374),
+        ("apple", 0.656, 1.895, 3.220, 0.370, 3.945),
+        ("book", 0.560, 1.779, 2.444, 0.344, 3.727),
+        ("book", 0.623, 1.704, 3.723, 0.401, 2.582),
+    ],
+)
+def test_what_goes_back_is_not_put_into_what_followed_it(
+    world: World, follower: str, gap_m: float, x: float, speed: float, behind: float, follower_speed: float
+) -> None:
+    """A box that flies between two bodies gets stuck, and goes back to where its follower is by then."""
+    world.teleport("robot2", Pose(x=1.2, y=1.1 + gap_m))
+    middle, box = 1.1 + gap_m / 2, world.parts.objects.known("box")
+    world.put_object("box", (x, middle, 0.2), velocity=(-speed, 0.0, 0.0))
+    world.put_object(follower, (x + behind, middle, 0.2), velocity=(-follower_speed, 0.0, 0.0))
+    for _ in range(10):
+        world.step()
+        assert not OverlapTest(world.env, world.parts.geoms).depths(box, 0.01)
 
 
 def test_a_body_does_not_touch_what_lies_on_furniture_or_is_held(world: World) -> None:

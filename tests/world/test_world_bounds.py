@@ -308,5 +308,30 @@ def test_going_to_an_object_is_ok_only_where_it_can_be_picked_up(world: World) -
 def test_the_promise_of_going_holds_all_over_a_house(scene: str, body: str) -> None:
     reasons: Counter[str] = Counter()
     found = reaching.measure(scene, body, reasons)
-    assert found["ok"] >= 70
+    assert found["ok"] > found["targets"] / 2
     assert reaching.broken(found) == 0, reasons
+
+
+def test_no_picture_is_promised_of_a_door_from_inside_it() -> None:
+    """Bodies pass through open doors; a picture does not show what is around the camera."""
+    world, promised = World("willow", robots=["puck"]), 0
+    for door in (state for state in world.truth() if state.kind == "door"):
+        leaf = world.parts.geoms.drawn(door.id)[0]
+        middle, axes = world.parts.geoms.pos[leaf][:2], world.parts.geoms.mat[leaf].reshape(3, 3)[:2, :2]
+        for along, across in itertools.product((-0.4, -0.2, 0.0, 0.2, 0.4), (-0.02, 0.0, 0.02, 0.05)):
+            x, y = (middle + axes @ (along, across)).tolist()
+            if not world.space["robot"].is_free(x, y):
+                continue
+            for turn in range(8):
+                world.robot.teleport(x, y, yaw=0.1 + turn * math.pi / 4)
+                if world.in_sight("robot", door.id, picture=True):
+                    promised += 1
+                    assert (world.robot.segmentation() == world.names.index(door.id)).any(), (door.id, along, across)
+    assert promised
+
+
+def test_nothing_is_in_sight_under_a_wall() -> None:
+    """What stands flat on the floor is deeper in it for the engine than it is drawn."""
+    world = World("birch", robots=["puck"])
+    world.robot.teleport(6.075, 2.525, yaw=-2.48)
+    assert not world.in_sight("robot", "brush")

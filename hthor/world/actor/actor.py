@@ -5,6 +5,7 @@ call. A trial, in which all bodies act at once, starts motions with `World.start
 """
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -122,18 +123,23 @@ class Actor(SeatMessages):
         """
         world, seat = self._world, self.seat
         target = target if isinstance(target, str) else numbers.point2("target", target)
-        for point in world.walks.route(seat, target):
+        stopped = self._walk(world.walks.route(seat, target))
+        other = world.walks.body_in_the_way(seat, target) if stopped.ok else ""
+        if other:
+            stopped = Outcome(motion="move", ok=False, reason=f"{other} is in the way", by=other)
+        if not isinstance(target, str) or (not stopped.ok and world.walks.hindrance(seat, target)):
+            return stopped
+        facing = self.look_at(target)  # whoever is stopped where nothing hinders has arrived
+        reason = world.walks.hindrance(seat, target)
+        return Outcome(motion="move", ok=False, reason=reason) if facing.ok and reason else facing
+
+    def _walk(self, route: Sequence[Vec2]) -> Outcome:
+        """Walk along a route up to where something stops the body."""
+        for point in route:
             outcome = self._walk_straight(point)
             if not outcome.ok:
                 return outcome
-        other = world.walks.body_in_the_way(seat, target)
-        if other:
-            return Outcome(motion="move", ok=False, reason=f"{other} is in the way", by=other)
-        if not isinstance(target, str):
-            return Outcome(motion="move", ok=True)
-        facing = self.look_at(target)
-        reason = world.walks.hindrance(seat, target)
-        return Outcome(motion="move", ok=False, reason=reason) if facing.ok and reason else facing
+        return Outcome(motion="move", ok=True)
 
     def _walk_straight(self, point: Vec2) -> Outcome:
         pose = self.pose

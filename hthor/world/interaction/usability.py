@@ -27,6 +27,8 @@ _LARGE_M = 0.10
 """[m] Along axes on which a solid's half extent is smaller than this, its middle is enough."""
 _FRAME = 0.95
 """Share of the field of view that counts as in the picture, as a picture ends between two pixels."""
+_NEAR_M = 0.02
+"""[m] Pictures show nothing that is nearer to the eye, and no solid from inside, such as a door that a body passes."""
 
 
 class Usability:
@@ -73,15 +75,19 @@ class Usability:
         return any(
             view_frustum.in_frame(view, point[0] - x, point[1] - y, point[2] - z)
             and not self._geoms.hidden(eye, point, id)
-            for point in self._inside(id)
+            for point in self._inside(id, but_around=eye)
         )
 
-    def _inside(self, id: str) -> Iterator[Vec3]:
-        """Points [m] inside the solids of a thing: a ray to one of them meets the thing."""
+    def _inside(self, id: str, but_around: Vec3 | None = None) -> Iterator[Vec3]:
+        """Points [m] inside the solids of a thing and above the floor: a ray to one of them meets the thing. Solids
+        around a given point are left out.
+        """
         geoms = self._geoms
         for geom in geoms.drawn(id):
+            if but_around is not None and geoms.is_around(geom, but_around, _NEAR_M):
+                continue
             half, turn = geoms.half[geom], geoms.mat[geom].reshape(3, 3)
             for signs in itertools.product(*((0, -1, 1) if extent > _LARGE_M else (0,) for extent in half)):
                 inset = _INSETS[sum(map(abs, signs))]
                 x, y, z = (geoms.pos[geom] + turn @ (inset * half * np.array(signs))).tolist()
-                yield (x, y, z)
+                yield (x, y, z if z > 0.0 else float(geoms.pos[geom, 2] + half[2]) / 2)

@@ -78,6 +78,11 @@ class GeomIndex:
         met = (self.owner[geom] for geom in ids if is_blocked(*ends, *solids, np.array([geom]), 0, 0))
         return next(met, "") if is_blocked(*ends, *solids, ids, 0, 0) else ""
 
+    def is_around(self, geom: int, point: Vec3, margin: float) -> bool:
+        """Whether a point [m] is inside the box around a geom, or no farther from it than ``margin`` along its axes."""
+        local = self.mat[geom].reshape(3, 3).T @ (np.array(point) - self.pos[geom])
+        return bool((np.abs(local) <= self.half[geom] + margin).all())
+
     def boxes_but(self, *without: str) -> tuple[Any, Any]:
         """Centres (M, 3) and half extents (M, 3) [m] of upright boxes around all solids of all other owners."""
         keep = self.ids[~np.isin(self.numbers[self.ids], [self._number[owner] for owner in without])]

@@ -18,7 +18,7 @@ from collections.abc import Sequence
 from hthor import rules
 from hthor.geometry import convex
 from hthor.types import Vec2, Vec3
-from hthor.world.motion.push_plan import TOUCH_M, Floor, PushPlan
+from hthor.world.motion.push_plan import DEEP_M, TOUCH_M, Floor, PushPlan
 from hthor.world.state.body_state import BodyState
 from hthor.world.state.movable_object import MovableObject
 
@@ -134,11 +134,19 @@ class LooseThings:
         plan.shift(item, by)
         if plan.newly_met(item, by, seat) or plan.clear(seat, place, [item], free=item):
             plan.undo()
-            self._floor.objects.shove(item, self._floor.env.before(item.qpos), _STILL)
-            self._floor.env.touch()
+            self._put_back(item)
             return True
         x, y, z = self._floor.env.data.qvel[item.dof : item.dof + 3].tolist()
         _, away = convex.disc_overlap(place, seat.spec.radius, plan.where(item).outline)
         inward = min(0.0, x * away[0] + y * away[1])
         plan.commit(dict.fromkeys(plan.shifts, (x - inward * away[0], y - inward * away[1], z, 0.0, 0.0, 0.0)))
         return True
+
+    def _put_back(self, item: MovableObject) -> None:
+        """Put an object to where it was before the engine's step, and so whatever has come to that place meanwhile."""
+        floor, back = self._floor, [item]
+        for one in back:  # grows
+            floor.objects.shove(one, floor.env.before(one.qpos), _STILL)
+            floor.env.touch()
+            met = (floor.objects.get(owner) for owner in sorted(floor.overlap.depths(one, DEEP_M)))
+            back += [other for other in met if other is not None and other.number in self.low and other not in back]

@@ -30,7 +30,7 @@ LIGHT_KG = PUSH_MAX_N / (FRICTION * 9.81)
 """[kg] The most that a body pushes at once, 2.04 kg: all small things of the catalogue but the dumbbell, no trunk."""
 TOUCH_M = 0.001
 """[m] A body may be this deep in an object's footprint."""
-_DEEP_M = 0.002
+DEEP_M = 0.002
 """[m] A pushed object may be this deep in another solid: things at rest are up to a millimetre deep in one another."""
 _GAP_M = 5e-4
 """[m] Gap between a body and what it has pushed away."""
@@ -170,10 +170,10 @@ class PushPlan:
                     found.append(other.name)
         if not self._is_indoors(item):
             found.append("")
-        deep = floor.overlap.depths(item, _DEEP_M) if not found else {}
+        deep = floor.overlap.depths(item, DEEP_M) if not found else {}
         if deep:
             self.shift(item, (-by[0], -by[1]))
-            before = floor.overlap.depths(item, _DEEP_M)
+            before = floor.overlap.depths(item, DEEP_M)
             self.shift(item, by)
             found += [owner for owner in sorted(deep) if deep[owner] > before.get(owner, 0.0) + 1e-9]
         return found
