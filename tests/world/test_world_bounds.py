@@ -331,7 +331,7 @@ def test_no_picture_is_promised_of_a_door_from_inside_it() -> None:
 
 
 def test_nothing_is_in_sight_under_a_wall() -> None:
-    """What stands flat on the floor is deeper in it for the engine than it is drawn."""
+    """What lies flat on the floor goes on below it for the engine, where no wall would hide it."""
     world = World("birch", robots=["puck"])
     world.robot.teleport(6.075, 2.525, yaw=-2.48)
     assert not world.in_sight("robot", "brush")

@@ -12,6 +12,7 @@ import numpy as np
 from hthor.types import Close, Open, Vec3
 from hthor.world.interaction.manipulation import Manipulation
 from hthor.world.interaction.opening import DoorHandling
+from hthor.world.model.arena import NEAR_M
 from hthor.world.model.geom_index import GeomIndex
 from hthor.world.perception import view_frustum
 from hthor.world.state.body_state import BodyState
@@ -27,8 +28,6 @@ _LARGE_M = 0.10
 """[m] Along axes on which a solid's half extent is smaller than this, its middle is enough."""
 _FRAME = 0.95
 """Share of the field of view that counts as in the picture, as a picture ends between two pixels."""
-_NEAR_M = 0.02
-"""[m] Pictures show nothing that is nearer to the eye, and no solid from inside, such as a door that a body passes."""
 
 
 class Usability:
@@ -75,19 +74,21 @@ class Usability:
         return any(
             view_frustum.in_frame(view, point[0] - x, point[1] - y, point[2] - z)
             and not self._geoms.hidden(eye, point, id)
-            for point in self._inside(id, but_around=eye)
+            for point in self._inside(id, except_around=eye)
         )
 
-    def _inside(self, id: str, but_around: Vec3 | None = None) -> Iterator[Vec3]:
-        """Points [m] inside the solids of a thing and above the floor: a ray to one of them meets the thing. Solids
-        around a given point are left out.
+    def _inside(self, id: str, except_around: Vec3 | None = None) -> Iterator[Vec3]:
+        """Points [m] inside the solids of a thing and above the floor: a ray to one of them meets the thing.
+
+        Solids around an eye at ``except_around`` are left out: its picture does not show them from inside.
         """
         geoms = self._geoms
         for geom in geoms.drawn(id):
-            if but_around is not None and geoms.is_around(geom, but_around, _NEAR_M):
+            if except_around is not None and geoms.is_around(geom, except_around, NEAR_M):
                 continue
             half, turn = geoms.half[geom], geoms.mat[geom].reshape(3, 3)
             for signs in itertools.product(*((0, -1, 1) if extent > _LARGE_M else (0,) for extent in half)):
                 inset = _INSETS[sum(map(abs, signs))]
                 x, y, z = (geoms.pos[geom] + turn @ (inset * half * np.array(signs))).tolist()
+                # what lies flat on the floor goes on below it
                 yield (x, y, z if z > 0.0 else float(geoms.pos[geom, 2] + half[2]) / 2)

@@ -19,6 +19,10 @@ from hthor.world.model.engine import Arena
 
 _CEILING: Rgba = (0.96, 0.96, 0.95, 1.0)
 _GROUND: Rgba = (0.62, 0.68, 0.58, 1.0)
+NEAR_M = 0.02
+"""[m] Pictures show nothing that is nearer to the eye, such as a door that a body passes."""
+_EXTENT_M = 10.0
+"""[m] The engine's unit for how near and how far pictures show things."""
 _SLAB_M = 0.01
 """[m] Thickness of the drawn floors and ceilings."""
 _ROOF_M = 1.0
@@ -65,8 +69,8 @@ class HouseArena(Arena):
         root.option.flag.sleep = "enable"
         root.visual.headlight.set_attributes(active=1, **_LIGHT)
         root.visual.quality.set_attributes(shadowsize=0, offsamples=4, numslices=24, numstacks=12)
-        root.visual.map.set_attributes(znear=0.002, zfar=8.0)
-        root.statistic.set_attributes(extent=10.0)
+        root.visual.map.set_attributes(znear=NEAR_M / _EXTENT_M, zfar=8.0)
+        root.statistic.set_attributes(extent=_EXTENT_M)
         root.asset.add("texture", name="sky", type="skybox", builtin="gradient", width=32, height=192, **_SKY)
         root.asset.add("material", name="ceiling", rgba=_CEILING, emission=0.3)
         for direction, colour in _SUNS:
