@@ -14,6 +14,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable, Coroutine, Mapping, Sequence
+from concurrent import futures
 from concurrent.futures import Future
 from typing import TYPE_CHECKING, Any
 
@@ -42,6 +43,8 @@ _READY_S = 60.0
 """[s] A program that has not said what it is by then is refused, as in docs/wire.md."""
 _TURN_S = 0.05
 """[s] How often somebody who waits for a program looks whether the session goes on. Our choice."""
+_CLOSING_S = 1.0
+"""[s] The end of a session waits this long at most until programs have been told of it. Our choice."""
 _UNREAD = 8
 """[count] Messages that may wait to be read; a program that keeps to the order of messages has one. Our choice."""
 _TOO_BIG, _REFUSED, _GOING_AWAY = 1009, 1008, 1001
@@ -139,13 +142,12 @@ class RobotProgram:
         """Close the connection; the program may connect again."""
         self.close(_REFUSED, "it failed, and the trial goes on without it; the run's log says why")
 
-    def close(self, code: int, reason: str) -> None:
-        """Close the connection, unless it has ended."""
+    def close(self, code: int, reason: str) -> Future[None] | None:
+        """Begin to close the connection; None when it has ended."""
         with self._changed:
             lived, self._end = self._end is None, self._end or ("died", f"the connection was closed: {reason}")
             self._changed.notify_all()
-        if lived:
-            self._in_server(self._socket.close(code, reason))
+        return self._in_server(self._socket.close(code, reason)) if lived else None
 
     def _in_server(self, work: Coroutine[Any, Any, None]) -> Future[None] | None:
         """Begin something in the server's thread; None when the server has ended."""
@@ -221,10 +223,10 @@ class RobotPrograms:
             self._wait(_TURN_S)
 
     def close(self) -> None:
-        """The session is over."""
-        for place in self._places.values():
-            if place.program is not None:
-                place.program.close(_GOING_AWAY, "the session is over")
+        """The session is over. Programs hear it before the server ends, which would tell them that it starts again."""
+        programs = [place.program for place in self._places.values() if place.program is not None]
+        begun = [program.close(_GOING_AWAY, "the session is over") for program in programs]
+        futures.wait([closing for closing in begun if closing is not None], _CLOSING_S)
 
     # ----------------------------------------------------------------------------------------- from the server's thread
 

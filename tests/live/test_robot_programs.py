@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -23,7 +24,9 @@ from hthor.trials import form_team
 from hthor.types import Action, Move
 from tests.support.guest_agents import BRIEFING, Sensors, look
 
-pytest.importorskip("starlette", reason="live sessions need an optional dependency: pip install 'hthor[live]'")
+sockets = pytest.importorskip(
+    "starlette.websockets", reason="live sessions need an optional dependency: pip install 'hthor[live]'"
+)
 client = pytest.importorskip("websockets.sync.client")
 exceptions = pytest.importorskip("websockets.exceptions")
 
@@ -135,6 +138,22 @@ def test_who_does_not_belong_here_is_told_why(
 def test_pages_of_other_sites_are_refused(empty_room: Room, origin: str) -> None:
     with pytest.raises(exceptions.InvalidStatus, match="403"):
         empty_room.connect(origin=origin)
+
+
+def test_a_program_is_told_that_the_session_is_over(room: Room, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also when the server is so busy that it would have ended first."""
+    close = sockets.WebSocket.close
+
+    async def slow(socket: Any, *words: Any) -> None:
+        await asyncio.sleep(0.5)
+        await close(socket, *words)
+
+    program = room.program()
+    monkeypatch.setattr(sockets.WebSocket, "close", slow)
+    room.server.close()
+    with pytest.raises(exceptions.ConnectionClosedOK) as closed:
+        program.socket.recv(timeout=60.0)
+    assert (closed.value.rcvd.code, closed.value.rcvd.reason) == (1001, "the session is over")
 
 
 def test_a_place_has_one_program_which_stays_what_it_is(room: Room, caplog: pytest.LogCaptureFixture) -> None:
