@@ -1,7 +1,7 @@
 """Trials as environments of libraries for learning and control.
 
 `hthor.envs.composer_trial` is the dm_env one: begin with `trial_environment`. `hthor.envs.learning` has those of
-Gymnasium and PettingZoo, which need the extra ``learn``: ``import gymnasium, hthor.envs`` makes ``gymnasium.make`` know
+Gymnasium and PettingZoo, which need the extra ``learn``: ``import hthor.envs`` makes ``gymnasium.make`` know
 "hthor/Assist-v0" and "hthor/ObjectNav-v0".
 """
 
@@ -46,4 +46,4 @@ def __getattr__(name: str) -> object:
     return getattr(importlib.import_module(f"hthor.envs.{_MODULES[name]}"), name)
 
 
-registration.register_if_used()
+registration.register_if_installed()

@@ -16,6 +16,7 @@ from hthor.agents.skills.learner.walking_distance import WalkingDistance
 from hthor.envs.episode_control import EpisodeControl
 from hthor.types import TaskSpec
 from hthor.types.events import Event, Refused
+from hthor.world import numbers
 
 
 class RewardWeights(Struct, frozen=True, kw_only=True):
@@ -30,6 +31,11 @@ class RewardWeights(Struct, frozen=True, kw_only=True):
 
     time_cost: float = 0.0
     approach: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Raise HthorError for a weight that is no finite number from 0."""
+        for name in ("time_cost", "approach"):
+            numbers.number(name, getattr(self, name), "reward", low=0.0)
 
     def terms(self, goal: float, decided: "Decided", seat: str, task: TaskSpec) -> dict[str, float]:
         """The terms of a robot's reward, which is their sum.

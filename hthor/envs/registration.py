@@ -1,7 +1,6 @@
 """Gymnasium's names of the environments."""
 
 import importlib.util
-import sys
 
 from hthor.errors import MissingExtra
 
@@ -13,7 +12,7 @@ IDS = {
 
 
 def register() -> None:
-    """Make ``gymnasium.make`` know the environments; ``import hthor.envs`` after ``import gymnasium`` does it too.
+    """Make ``gymnasium.make`` know the environments; ``import hthor.envs`` does it, too, where Gymnasium is installed.
 
     Raises:
         MissingExtra: when Gymnasium is not installed.
@@ -28,7 +27,7 @@ def register() -> None:
             register_one(id=id, entry_point=entry_point)
 
 
-def register_if_used() -> None:
-    """`register`, if Gymnasium was imported already."""
-    if "gymnasium" in sys.modules:
+def register_if_installed() -> None:
+    """`register`, if Gymnasium is installed."""
+    if importlib.util.find_spec("gymnasium") is not None:
         register()

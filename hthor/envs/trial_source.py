@@ -73,6 +73,8 @@ class TrialSource:
         camera: str = cameras.OWN,
         privileges: Sequence[str] = (),
     ) -> None:
+        if not robots:
+            raise HthorError("robots is empty; name at least one robot, such as robots=['tender']")
         suite = load_suite(suite) if isinstance(suite, (str, Path)) else suite
         self.tasks = _select(suite.tasks, houses, kinds)
         if unknown := [name for name in privileges if name not in PRIVILEGES]:

@@ -158,7 +158,7 @@ def convert_document(document: Any, file: str) -> HouseFile:
                 if not jsonio.is_text(value):
                     raise HouseError(file, where, f"a lone surrogate, half of a character: {value!a:.60}")
             elif not abs(value) < _LIMIT:
-                raise HouseError(file, where, f"must be a finite number, got {value!r:.24}")
+                raise HouseError(file, where, f"must be a finite number, at most {_LIMIT:g} in size, got {value!r:.24}")
         _check_version(document, file)
         return msgspec.convert(document, HouseFile)
     except msgspec.ValidationError as error:

@@ -228,7 +228,7 @@ def load_robot_info(robot: str) -> RobotInfo:
     if name in known:
         return RobotInfo(name=name, sha256=code_identity.robot_sha256(name))
     if not robot.endswith(".py"):
-        hint = "Choose one with --robot, or give the path of a Python file, such as my_robot.py."
+        hint = "Choose one of them, or give the path of a Python file, such as my_robot.py."
         raise UnknownName("robot", robot, (*known, *ALIASES), hint)
     from hthor.world.model.bodies import bodies
 

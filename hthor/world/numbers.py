@@ -61,6 +61,18 @@ def whole_number(name: str, value: object, low: int, high: int) -> int:
     return plain
 
 
+def truth(name: str, value: object) -> bool:
+    """``value`` as a bool.
+
+    Raises:
+        HthorError: when it is none, also for 0 and 1.
+    """
+    plain: Any = value.item() if hasattr(value, "item") and getattr(value, "ndim", 1) == 0 else value
+    if not isinstance(plain, bool):
+        raise HthorError(f"{name} must be True or False, got {quoted(value)}")
+    return plain
+
+
 def point2(name: str, value: object) -> Vec2:
     """``value`` as a point (x, y) [m]; raises as `number` does."""
     x, y = _vector(name, value, 2, "metres")

@@ -1,10 +1,11 @@
 """The simulation of a house with bodies and objects, one tick at a time."""
 
 from collections.abc import Iterable, Sequence
+from pathlib import Path
 from typing import Any
 
 from hthor import houses, seeds
-from hthor.errors import PhysicsError, TaskError, UnknownName, WorldClosed
+from hthor.errors import HthorError, PhysicsError, TaskError, UnknownName, WorldClosed
 from hthor.gc_freeze import collection_paused
 from hthor.houses.space.free_space import FreeSpace
 from hthor.types import (
@@ -58,7 +59,7 @@ class Simulation:
     states.
 
     Args:
-        house: a floor plan, or the name of one.
+        house: a floor plan, the name of one, or the path of a house file.
         robots: the robots' bodies or their names; their seats are "robot", "robot2", ...
         objects: (id, kind) pairs of the movable objects that tasks may place, besides the house's own.
         detectors: the robots' detectors, in the order of the robots: records, or texts that
@@ -76,16 +77,16 @@ class Simulation:
 
     def __init__(
         self,
-        house: HouseSpec | str,
+        house: HouseSpec | str | Path,
         robots: Iterable[RobotSpec | str] = (),
         objects: Iterable[tuple[str, str]] = inventory.DEFAULT_OBJECTS,
         detectors: Iterable[DetectorSpec | str] = (),
         people: int = 1,
     ) -> None:
-        self.house = houses.load(house) if isinstance(house, str) else house
+        self.house = _load_house(house)
         specs: list[BodySpec] = [avatar.HUMAN] * numbers.whole_number("people", people, 1, PEOPLE_MAX)
         robots = (robots,) if isinstance(robots, str) else robots
-        specs += [bodies.load_robot(robot) if isinstance(robot, str) else robot for robot in robots]
+        specs += [bodies.robot_spec(robot) for robot in robots]
         self.seats = bodies.seat_names(people, len(specs) - people)
         self.robots = tuple(seat for seat in self.seats if not is_person(seat))
         self.bodies = dict(zip(self.seats, specs, strict=True))
@@ -103,6 +104,8 @@ class Simulation:
 
     def reset(self, task: TaskSpec, seed: int = 0) -> None:
         """Begin a task; see `World.reset`."""
+        if not isinstance(task, TaskSpec):
+            raise HthorError(f"task must be a TaskSpec, one of `hthor.tasks.load_suite(...).tasks`, got {task!r:.60}")
         spawn.check_task(task, self.house)
         seed = seeds.check_seed(seed)
         self._begin({placement.id: placement for placement in task.objects}, task.id)
@@ -276,3 +279,12 @@ class Simulation:
         closed: Any = Closed(self.house.id)
         self.parts = self._keeper = self._env = self._objects = self._seats = self._truth = closed
         self._rooms = self._dispatch = self._driven = self._mocap = closed
+
+
+def _load_house(given: HouseSpec | str | Path) -> HouseSpec:
+    """The house that a caller names."""
+    if isinstance(given, HouseSpec):
+        return given
+    if not isinstance(given, (str, Path)):
+        raise HthorError(f"house must be a name, the path of a house file or a HouseSpec, got {given!r:.60}")
+    return houses.load(given)

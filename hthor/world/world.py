@@ -7,6 +7,7 @@ with World("hazel", robots=["tender"]) as world:
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from pathlib import Path
 from typing import Any, Self
 
 import numpy as np
@@ -97,7 +98,7 @@ class World:
 
     def __init__(
         self,
-        house: HouseSpec | str,
+        house: HouseSpec | str | Path,
         robots: Iterable[RobotSpec | str] = (),
         objects: Iterable[tuple[str, str]] = inventory.DEFAULT_OBJECTS,
         detectors: Iterable[DetectorSpec | str] = (),
@@ -207,7 +208,7 @@ class World:
 
         Raises:
             TaskError: when the task belongs to another house or places an object that this world does not have.
-            HthorError: when the seed is not a whole number from 0.
+            HthorError: when the task is no `TaskSpec`, or the seed is not a whole number from 0.
         """
         if task is None:
             self.simulation.clear(seed)
@@ -366,7 +367,8 @@ class World:
         """Open or close a fridge, a drawer or a door at once.
 
         Raises:
-            UnknownName: when no thing with this id opens. HthorError: when something is in its way.
+            UnknownName: when no thing with this id opens. HthorError: when something is in its way, or ``wanted`` is
+                no bool.
         """
         self.scene_setup.set_open(thing, wanted)
 

@@ -223,6 +223,20 @@ def test_the_world_may_be_used_between_steps_and_after_close(world: World) -> No
     assert environment.step(environment.action_spec().generate_value()).mid()
 
 
+def test_closing_it_twice_is_fine_and_then_nobody_acts(world: World) -> None:
+    environment = trial_environment(_trial(), world, {"human": StillPerson()})
+    environment.reset()
+    environment.close()
+    environment.close()
+    for _ in range(2):
+        with pytest.raises(HthorError, match="this environment has no trial"):
+            environment.step(WAIT)
+        environment.reset()
+        assert environment.step(None).mid()
+    world.reset()
+    assert world.human.rotate(0.4).ok
+
+
 def test_shapes_follow_the_bodies_as_the_engine_would_move_them(world: World) -> None:
     environment = trial_environment(_trial(), world, {"human": Mind(_turn)})
     environment.reset()

@@ -149,6 +149,8 @@ def test_a_reset_may_choose_the_task() -> None:
     for wrong in ("smoke/none", 3, {}):
         with pytest.raises(UnknownName, match="unknown task"):
             env.reset(options={"task": wrong})
+    with pytest.raises(HthorError, match="options must be a dict"):
+        env.reset(options="task")
 
 
 def test_several_people_and_a_detector_that_errs() -> None:
@@ -269,18 +271,28 @@ def test_wrong_names_are_errors() -> None:
         ({"kinds": ["object_goal"]}, "unknown task kind 'object_goal'"),
         ({"privileges": ["all"]}, "unknown privilege 'all'"),
         ({"suite": Suite(name="none", version=1, sha256="", tasks=())}, "has no such task"),
+        ({"time_cost": math.nan}, "time_cost must be a finite number of reward, got nan"),
+        ({"time_cost": -1.0}, "time_cost must be at least 0 reward, got -1.0"),
+        ({"approach": "1"}, "approach must be a finite number of reward, got '1'"),
     ):
         with pytest.raises(HthorError, match=message):
             AssistEnv(**{"suite": few(), **wrong})
 
 
-def test_only_the_environments_import_gymnasium() -> None:
+def test_a_trial_in_decisions_needs_neither_pettingzoo_nor_torch() -> None:
     code = (
         "import sys, hthor.envs, hthor.envs.decision_trial, hthor.envs.trial_source\n"
-        "print([name for name in ('gymnasium', 'pettingzoo', 'torch') if name in sys.modules])"
+        "print([name for name in ('pettingzoo', 'torch') if name in sys.modules])"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+@pytest.mark.parametrize("imports", ["gymnasium, hthor.envs", "hthor.envs, gymnasium", "gymnasium"])
+def test_gymnasium_knows_them_whatever_was_imported_first(imports: str) -> None:
+    code = f"import {imports}; import gymnasium as g; print(g.make('hthor.envs:hthor/Assist-v0').spec.id)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "hthor/Assist-v0"
 
 
 @pytest.mark.parametrize("module", ["gymnasium", "pettingzoo"])

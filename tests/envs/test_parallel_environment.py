@@ -18,6 +18,7 @@ from gymnasium.error import ResetNeeded
 from hthor.agents.skills.learner import LearnerView
 from hthor.envs import AssistParallelEnv
 from hthor.episode import play
+from hthor.errors import HthorError
 from hthor.types import Action, Briefing, Observation
 
 SUITE = few("collect", count=2)
@@ -108,3 +109,7 @@ def test_actions_that_are_none_are_refused() -> None:
     env.reset(seed=0)
     _, _, _, _, infos = env.step({"robot": None, "robot2": 99})
     assert all("an action is a whole number" in infos[seat]["refused"] for seat in ("robot", "robot2"))
+    with pytest.raises(HthorError, match="actions must be a dict"):
+        env.step([1, 2])
+    with pytest.raises(HthorError, match="name at least one robot"):
+        AssistParallelEnv(SUITE, robots=[])

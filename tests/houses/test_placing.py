@@ -120,6 +120,15 @@ def test_small_things_far_above_their_furniture_are_reported_and_cannot_be_picke
     assert is_sound(check(house, 0.2))
 
 
+def test_furniture_below_the_floor_is_reported() -> None:
+    made = copy.deepcopy(document("alder"))
+    where, row = next((where, row) for where, row in rows_of(made) if row["id"].startswith("bed"))
+    row["position"]["y"] -= 1.0
+    (found,) = [one for one in by_rule(built(made), "thing-floats") if one.where == row["id"]]
+    assert "m below the floor" in found.problem
+    assert found.field == f"{where}.position.y"
+
+
 def _kind(house: HouseSpec, id: str) -> str:
     return next(thing.kind for thing in house.things if thing.id == id)
 

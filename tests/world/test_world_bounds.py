@@ -7,16 +7,18 @@ import math
 import sys
 from collections import Counter
 from pathlib import Path
+from typing import Any
 
+import msgspec
 import numpy as np
 import pytest
 import world_house as tiny
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from law_cases import cases
-from world_house import COFFEE, TABLE, on, task
+from world_house import COFFEE, FRIDGE, TABLE, on, task
 
-from hthor import catalog
+from hthor import catalog, houses
 from hthor.errors import HthorError, PhysicsError, TaskError, UnknownName
 from hthor.types import Pick, Place, Pose, Wait
 from hthor.world import World, numbers
@@ -219,6 +221,66 @@ def test_numbers_that_are_none_are_refused_by_name(world: World, call, words: st
     with pytest.raises(HthorError, match=words):
         call(world)
     assert (world.poses(), world.truth()) == before
+
+
+@pytest.mark.parametrize("wanted", ["no", 0, 1, None, np.float64(1.0), [True]])
+def test_what_opens_is_open_or_not(world: World, wanted: object) -> None:
+    with pytest.raises(HthorError, match="wanted must be True or False, got"):
+        world.set_open(FRIDGE, wanted)  # type: ignore[arg-type]
+    world.set_open(FRIDGE, np.bool_(True))  # type: ignore[arg-type]
+    world.load_state(world.save_state())
+    assert world.state(FRIDGE).open is True
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"house": 3}, "house must be a name, the path of a house file or a HouseSpec, got 3"),
+        ({"house": None}, "house must be a name"),
+        ({"robots": [3]}, "a robot must be a name, the path of a file or a RobotSpec, got 3"),
+        ({"objects": ["apple"]}, "objects must be pairs of an id and a kind, .* got 'apple'"),
+        ({"objects": [("mine", "apple", "red")]}, "objects must be pairs"),
+        ({"objects": [(3, "apple")]}, "objects must be pairs"),
+        ({"objects": [("", "apple")]}, "the id '' is empty"),
+        ({"objects": [("a\n", "apple")]}, "characters that cannot be shown"),
+        ({"objects": [("a" * 300, "apple")]}, "has 300 characters; use at most 200"),
+        ({"objects": [("robot", "apple")]}, "the id 'robot' cannot be used"),
+        ({"objects": [("human2", "apple")]}, "the id 'human2' cannot be used"),
+        ({"objects": [("floor of kitchen", "apple")]}, "cannot be used"),
+        ({"objects": [("mine", "apple"), ("mine", "mug")]}, "'mine' is taken"),
+        ({"objects": [("my/apple", "apple"), ("my|apple", "mug")]}, "is taken"),
+    ],
+)
+def test_a_world_is_made_of_what_it_can_name(given: dict[str, Any], words: str) -> None:
+    with pytest.raises(HthorError, match=words):
+        World(**{"house": tiny.house(), **given})
+
+
+@pytest.mark.parametrize("sort", ["rooms", "walls", "openings", "things"])
+def test_no_object_has_the_id_of_a_part_of_the_house(sort: str) -> None:
+    id = getattr(tiny.house(), sort)[0].id
+    with pytest.raises(HthorError, match=r"is taken by another thing of house|cannot be used"):
+        World(tiny.house(), objects=[(id, "apple")])
+
+
+def test_a_house_may_be_a_path(tmp_path: Path) -> None:
+    copied = tmp_path / "mine.json"
+    copied.write_bytes((Path(houses.__file__).parent / "data" / "alder.json").read_bytes())
+    assert World(copied).house.sha256 == houses.load("alder").sha256
+
+
+def test_a_task_of_another_house_is_named(world: World) -> None:
+    other = msgspec.structs.replace(task(), house="elder", house_sha256="0" * 64)
+    house = msgspec.structs.replace(tiny.house(), sha256="1" * 64)
+    with pytest.raises(TaskError, match=f"made for house 'elder', and this is house '{house.id}'"):
+        World(house).reset(other)
+    with pytest.raises(HthorError, match="task must be a TaskSpec"):
+        world.reset("smoke")  # type: ignore[arg-type]
+
+
+def test_what_is_fixed_is_no_object_that_is_not_there(world: World) -> None:
+    assert world.human.pick(TABLE).reason == f"{TABLE} is fixed, and cannot be picked up"
+    assert world.human.pick("aple").reason == "there is no object 'aple' to pick up"
 
 
 @pytest.mark.parametrize(

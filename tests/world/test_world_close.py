@@ -111,6 +111,15 @@ def test_every_call_that_needs_the_engine_raises_it(world: World) -> None:
             call(world)
 
 
+def test_closing_its_environment_first_is_fine() -> None:
+    with World(tiny.house()) as world:
+        world.env.close()
+        world.env.close()
+        assert world.human.wait(0.1).ok
+    with pytest.raises(WorldClosed):
+        world.step()
+
+
 def test_a_name_that_never_was_is_no_question_of_closing(world: World) -> None:
     assert not hasattr(world, "nonsense_before")
     with pytest.raises(AttributeError, match="nonsense"):

@@ -18,6 +18,7 @@ from hthor.envs.learning.remade import Remade
 from hthor.envs.learning.study_seeds import StudySeeds
 from hthor.envs.trial_source import TrialSource
 from hthor.episode import EpisodeLog
+from hthor.errors import HthorError
 from hthor.tasks.suite import Suite
 from hthor.types import TrialSpec
 from hthor.types.detector_specs import OWN
@@ -102,6 +103,8 @@ class AssistParallelEnv(Remade, ParallelEnv[str, Any, Any]):
         """Let the robots that are free act, and time pass until one is free again."""
         if not self.agents:
             raise ResetNeeded("the episode is over, or has not begun: call reset()")
+        if not isinstance(actions, Mapping):
+            raise HthorError(f"actions must be a dict with the number of each agent's action, got {actions!r:.60}")
         played, seats = self._running(), self.agents
         decided = played.decide(actions)
         success, task = played.episode.met, played.episode.task

@@ -21,12 +21,13 @@ _TAKEN = (
     (rf"(?:{'|'.join(_PLACES)})\Z", "it is hthor's name for a part of every house"),
     (r"(?:floor|ceiling) of ", "floors and ceilings of rooms have such names"),
     (r"human|robot", "names that begin so are those of people and robots"),
-    (
-        rf"(?:{'|'.join(catalog.TARGETS)})(?:_\d+)?\Z|trunk\Z|brought_",
-        "tasks bring an object of that name into the house",
-    ),
 )
 """Patterns of names that are never free, and why."""
+_BROUGHT = (
+    rf"(?:{'|'.join(catalog.TARGETS)})(?:_\d+)?\Z|trunk\Z|brought_",
+    "tasks bring an object of that name into the house",
+)
+"""The pattern of names that only objects have which a task brings, and why."""
 
 
 def iter_objects(house: HouseFile) -> Iterator[tuple[str, ObjectRow, str]]:
@@ -58,7 +59,7 @@ def id_faults(ids: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
     """(field, problem) of every id that cannot be used, from `iter_ids`."""
     seen: dict[str, tuple[str, str]] = {}
     for where, name in ids:
-        problem = _unusable(name)
+        problem = why_unusable(name)
         key = name.replace("/", "|")  # the engine's names have no slash
         if not problem and key in seen:
             first, other = seen[key]
@@ -69,15 +70,19 @@ def id_faults(ids: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
         seen.setdefault(key, (where, name))
 
 
-def _unusable(name: str) -> str:
-    """Why nothing can have this id, and what to do; empty for an id that can be used."""
+def why_unusable(name: str, brought: bool = False) -> str:
+    """Why nothing can have this id, and what to do; empty for an id that can be used.
+
+    Args:
+        brought: whether it is the id of an object that a task brings into the house.
+    """
     if not name.strip():
         return f"the id {name!r} is empty; give it a name that nothing else in the file has"
     if len(name) > LONGEST:
         return f"the id '{name[:40]}...' has {len(name)} characters; use at most {LONGEST}"
     if not name.isprintable():
         return f"the id {name!a:.80} has characters that cannot be shown; use letters, digits, '|' and '_'"
-    for pattern, reason in _TAKEN:
+    for pattern, reason in _TAKEN if brought else (*_TAKEN, _BROUGHT):
         if re.match(pattern, name):
             return f"the id '{name}' cannot be used, because {reason}; choose another id"
     return ""

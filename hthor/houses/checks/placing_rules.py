@@ -12,7 +12,7 @@ from hthor.types import HouseSpec
 CODE_PART = "tools"
 
 HIGH_M = 0.30
-"""How far above the floor, or above what carries it, furniture of a foreign house may be without a finding."""
+"""How far above or below the floor, or above what carries it, furniture of a foreign house may be without a finding."""
 
 
 def check_upright(house: HouseSpec) -> Iterator[Finding]:
@@ -30,7 +30,10 @@ def check_upright(house: HouseSpec) -> Iterator[Finding]:
 
 
 def check_carried(house: HouseSpec) -> Iterator[Finding]:
-    """``thing-floats``: furniture high above the floor, or above what carries it, that hangs on no wall."""
+    """``thing-floats``: furniture high above the floor or above what carries it, or deep below the floor.
+
+    What hangs on a wall is left out.
+    """
     things = {thing.id: thing for thing in house.things}
     for thing in house.things:
         kind, support = catalog.kind(thing.kind), things.get(thing.parent)
@@ -41,6 +44,9 @@ def check_carried(house: HouseSpec) -> Iterator[Finding]:
         if gap > HIGH_M:
             under = "the floor" if support is None else f"'{support.id}'"
             problem = f"the {readable_kind(thing.kind)} stands {gap:.2f} m above {under}"
+            yield warning("thing-floats", thing.id, problem, _height_of(thing.source))
+        elif support is None and gap < -HIGH_M:
+            problem = f"the {readable_kind(thing.kind)} stands {-gap:.2f} m below the floor"
             yield warning("thing-floats", thing.id, problem, _height_of(thing.source))
 
 

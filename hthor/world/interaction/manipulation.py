@@ -138,6 +138,8 @@ class Manipulation:
             return f"{seat.name} already holds {seat.holding}"
         item = self._objects.get(motion.object) if isinstance(motion.object, str) else None
         if item is None:
+            if motion.object in self._things:
+                return f"{motion.object} is fixed, and cannot be picked up"
             return f"there is no object '{motion.object!s:.40}' to pick up"
         return self.out_of_hand(seat, item)
 

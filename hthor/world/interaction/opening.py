@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from hthor.errors import HthorError, UnknownName
 from hthor.geometry import plane
 from hthor.types import Close, Open, Opening, Thing, Vec3
+from hthor.world import numbers
 from hthor.world.interaction.door_sweep import DoorSweep
 from hthor.world.model.geom_index import GeomIndex
 from hthor.world.motion.reach import out_of_reach
@@ -79,6 +80,7 @@ class DoorHandling:
 
     def put(self, id: str, wanted: bool) -> None:
         """See `World.set_open`."""
+        wanted = numbers.truth("wanted", wanted)
         leaf = self._doors.get(id)
         if leaf is None:
             raise UnknownName("thing that opens", id, [one.thing.id for one in self._doors])

@@ -15,7 +15,7 @@ from typing import Any
 import dm_env
 import numpy as np
 
-from hthor.errors import UnknownName, WorldClosed
+from hthor.errors import HthorError, UnknownName, WorldClosed
 from hthor.world.model.engine import Environment, composer, mujoco
 from hthor.world.model.trial_control import TrialControl
 from hthor.world.records import EngineRecord
@@ -98,12 +98,8 @@ class LazyComposerEnv(Environment):
         self._over = True
 
     def close(self) -> None:
-        """Let go of the control; an environment without one frees the engine, and its world with it."""
-        if self._closed_house:
-            return
-        if self.task.control is None:
-            super().close()
-        else:
+        """Let go of the control. The engine is the world's, and freed with it: `hthor.world.World.close`."""
+        if self.task.control is not None:
             self.hand_over(None)
 
     def shut(self, house: str) -> None:
@@ -139,10 +135,15 @@ class LazyComposerEnv(Environment):
         """Let a tick pass: of the control's trial, in which the bodies act as ``action`` says, or of the engine alone.
 
         After the last step of an episode, or after somebody else has reset the world, it begins the next episode.
+
+        Raises:
+            HthorError: when there is no control, and so nothing that acts, but an action.
         """
+        task, control = self.task, self.task.control
+        if control is None and not self._closed_house:
+            action = _no_action(action)
         if self._over:
             return self.reset()
-        task, control = self.task, self.task.control
         task.before_step(self.physics, action, self.random_state)
         self._call("before_step", action)
         self._observed.prepare_for_next_control_step()
@@ -339,6 +340,17 @@ class LazyComposerEnv(Environment):
         mujoco.mj_resetData(self.model, self.data)
         self.data.qpos[:] = self._sound
         self.touch()
+
+
+def _no_action(action: Any) -> Any:
+    """The action of an environment without a control: an array of nothing, also for None."""
+    nothing = np.zeros(0) if action is None else action
+    if not isinstance(nothing, np.ndarray) or nothing.size:
+        raise HthorError(
+            "this environment has no trial, so that nothing in it acts: it was closed, or never had one. Give it one "
+            "with hthor.envs.trial_environment, or give no action (None) to let a tick pass"
+        )
+    return nothing
 
 
 def _write(array: Any, raw: bytes) -> None:

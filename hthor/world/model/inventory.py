@@ -12,7 +12,8 @@ from msgspec import Struct
 from hthor import catalog
 from hthor.errors import HthorError
 from hthor.houses import laying
-from hthor.types import HouseSpec, Thing, Vec3
+from hthor.houses.checks import ids
+from hthor.types import HouseSpec, Opening, Room, Thing, Vec3, Wall
 
 DEFAULT_OBJECTS = tuple((name, name) for name in catalog.TARGETS)
 """The six target objects as (id, kind) pairs; their ids are their kinds' names."""
@@ -48,23 +49,41 @@ def split_things(house: HouseSpec, objects: Iterable[tuple[str, str]]) -> Conten
     """Split the house's things and the world's ``objects``, given as (id, kind) pairs.
 
     Raises:
-        HthorError: when two things share an id, or an object's kind cannot be picked up.
+        HthorError: when an object's id is that of something else or cannot be used, or its kind cannot be picked up.
         UnknownName: when a kind does not exist.
     """
     movables = [_free(thing) for thing in laying.movable_objects(house)]
     taken = {movable.id for movable in movables}
     statics = tuple(thing for thing in house.things if thing.id not in taken)
-    taken = {thing.id for thing in house.things}
-    for id, name in objects:
+    parts: tuple[tuple[Thing | Room | Wall | Opening, ...], ...]
+    parts = (house.things, house.rooms, house.walls, house.openings)
+    taken = {_engine_name(part.id) for sort in parts for part in sort}
+    for pair in objects:
+        id, name = _pair(pair)
+        if problem := ids.why_unusable(id, brought=True):
+            raise HthorError(f"objects: {problem}")
         kind = catalog.kind(name)
-        if id in taken:
+        if _engine_name(id) in taken:
             raise HthorError(f"object id '{id}' is taken by another thing of house '{house.id}'; choose another id")
         if not kind.pickable:
             raise HthorError(f"object '{id}' is of kind '{name}', which cannot be picked up")
-        taken.add(id)
+        taken.add(_engine_name(id))
         movables.append(MovableSpec(id=id, kind=name, size=kind.size, mass=kind.mass))
     doors = tuple(thing for thing in statics if catalog.kind(thing.kind).joints(thing.size))
     return Contents(statics=statics, movables=tuple(movables), doors=doors)
+
+
+def _pair(given: object) -> tuple[str, str]:
+    """An (id, kind) pair as it was given."""
+    pair = given if isinstance(given, (tuple, list)) else ()
+    if len(pair) != 2 or not all(isinstance(word, str) for word in pair):
+        raise HthorError(f"objects must be pairs of an id and a kind, such as ('my_apple', 'apple'), got {given!r:.60}")
+    return pair[0], pair[1]
+
+
+def _engine_name(id: str) -> str:
+    """The engine's name for an id; it has no slash."""
+    return id.replace("/", "|")
 
 
 def _free(thing: Thing) -> MovableSpec:

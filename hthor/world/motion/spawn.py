@@ -94,6 +94,8 @@ def check_task(task: TaskSpec, house: HouseSpec) -> None:
     """Raise TaskError for a task of another version of the house, or with a number that is not finite."""
     if task.house_sha256 and house.sha256 and task.house_sha256 != house.sha256:
         problem = f"made for another version of house '{task.house}'; generate the task again"
+        if task.house != house.id:
+            problem = f"made for house '{task.house}', and this is house '{house.id}'"
         raise TaskError(task.id, "house_sha256", problem)
     try:
         for placement in task.objects:

@@ -36,6 +36,19 @@ _SHELL: Rgba = (0.80, 0.82, 0.84, 1.0)
 _LENS: Rgba = (0.10, 0.11, 0.13, 1.0)
 
 
+def robot_spec(given: RobotSpec | str | Path) -> RobotSpec:
+    """A robot's body as a caller gives it: itself, or what `load_robot` takes.
+
+    Raises:
+        HthorError: as `load_robot`, and when it is anything else.
+    """
+    if isinstance(given, RobotSpec):
+        return given
+    if not isinstance(given, (str, Path)):
+        raise HthorError(f"a robot must be a name, the path of a file or a RobotSpec, got {given!r:.60}")
+    return load_robot(str(given))
+
+
 def load_robot(name: str) -> RobotSpec:
     """The body of the robot with this name, or of the robot in this file, such as ``my_robot.py``.
 
