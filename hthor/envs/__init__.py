@@ -8,7 +8,6 @@ Gymnasium and PettingZoo, which need the extra ``learn``: ``import hthor.envs`` 
 import importlib
 from typing import TYPE_CHECKING
 
-from hthor.envs import registration
 from hthor.envs.registration import register
 
 if TYPE_CHECKING:
@@ -35,7 +34,6 @@ __all__ = [
     "action_spec",
     "decode_action",
     "encode_action",
-    "register",
     "trial_environment",
 ]
 
@@ -46,4 +44,4 @@ def __getattr__(name: str) -> object:
     return getattr(importlib.import_module(f"hthor.envs.{_MODULES[name]}"), name)
 
 
-registration.register_if_installed()
+register()

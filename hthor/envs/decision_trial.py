@@ -34,8 +34,8 @@ class RewardWeights(Struct, frozen=True, kw_only=True):
 
     def __post_init__(self) -> None:
         """Raise HthorError for a weight that is no finite number from 0."""
-        for name in ("time_cost", "approach"):
-            numbers.number(name, getattr(self, name), "reward", low=0.0)
+        numbers.number("time_cost", self.time_cost, "units of reward", low=0.0)
+        numbers.number("approach", self.approach, "units of reward per metre", low=0.0)
 
     def terms(self, goal: float, decided: "Decided", seat: str, task: TaskSpec) -> dict[str, float]:
         """The terms of a robot's reward, which is their sum.

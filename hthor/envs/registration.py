@@ -2,8 +2,6 @@
 
 import importlib.util
 
-from hthor.errors import MissingExtra
-
 IDS = {
     "hthor/Assist-v0": "hthor.envs.learning.assist:AssistEnv",
     "hthor/ObjectNav-v0": "hthor.envs.learning.object_nav:ObjectNavEnv",
@@ -12,22 +10,12 @@ IDS = {
 
 
 def register() -> None:
-    """Make ``gymnasium.make`` know the environments; ``import hthor.envs`` does it, too, where Gymnasium is installed.
-
-    Raises:
-        MissingExtra: when Gymnasium is not installed.
-    """
+    """Make ``gymnasium.make`` know the environments, where Gymnasium is installed."""
     if importlib.util.find_spec("gymnasium") is None:
-        raise MissingExtra("an environment of Gymnasium", "learn")
+        return
     from gymnasium.envs.registration import register as register_one
     from gymnasium.envs.registration import registry
 
     for id, entry_point in IDS.items():
         if id not in registry:
             register_one(id=id, entry_point=entry_point)
-
-
-def register_if_installed() -> None:
-    """`register`, if Gymnasium is installed."""
-    if importlib.util.find_spec("gymnasium") is not None:
-        register()

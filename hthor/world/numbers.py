@@ -40,7 +40,7 @@ def number(name: str, value: object, unit: str, low: float = -math.inf, high: fl
     Raises:
         HthorError: when it is not a finite number from ``low`` to ``high``; the message has its ``name`` and ``unit``.
     """
-    plain: Any = value.item() if hasattr(value, "item") and getattr(value, "ndim", 1) == 0 else value  # from numpy
+    plain = _plain(value)
     if not is_finite(plain):
         raise HthorError(f"{name} must be a finite number of {unit}, got {quoted(value)}")
     if not low <= plain <= high:
@@ -55,7 +55,7 @@ def whole_number(name: str, value: object, low: int, high: int) -> int:
     Raises:
         HthorError: when it is not a whole number from ``low`` to ``high``.
     """
-    plain: Any = value.item() if hasattr(value, "item") and getattr(value, "ndim", 1) == 0 else value
+    plain = _plain(value)
     if isinstance(plain, bool) or not isinstance(plain, int) or not low <= plain <= high:
         raise HthorError(f"{name} must be a whole number from {low} to {high}, got {quoted(value)}")
     return plain
@@ -67,7 +67,7 @@ def truth(name: str, value: object) -> bool:
     Raises:
         HthorError: when it is none, also for 0 and 1.
     """
-    plain: Any = value.item() if hasattr(value, "item") and getattr(value, "ndim", 1) == 0 else value
+    plain = _plain(value)
     if not isinstance(plain, bool):
         raise HthorError(f"{name} must be True or False, got {quoted(value)}")
     return plain
@@ -91,6 +91,11 @@ def pose(value: Pose) -> Pose:
     yaw, pitch = number("yaw", value.yaw, "radians"), number("pitch", value.pitch, "radians")
     head = UNSET if value.head is UNSET else plane.wrap(number("head", value.head, "radians"))
     return Pose(x=x, y=y, yaw=plane.wrap(yaw), pitch=pitch, head=head)
+
+
+def _plain(value: object) -> Any:
+    """A number of NumPy as Python's own; anything else as it is."""
+    return value.item() if hasattr(value, "item") and getattr(value, "ndim", 1) == 0 else value
 
 
 def _vector(name: str, value: object, size: int, unit: str) -> tuple[float, ...]:

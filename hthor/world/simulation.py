@@ -60,7 +60,7 @@ class Simulation:
 
     Args:
         house: a floor plan, the name of one, or the path of a house file.
-        robots: the robots' bodies or their names; their seats are "robot", "robot2", ...
+        robots: the robots' bodies, their names or files; their seats are "robot", "robot2", ...
         objects: (id, kind) pairs of the movable objects that tasks may place, besides the house's own.
         detectors: the robots' detectors, in the order of the robots: records, or texts that
             `hthor.types.detector_specs.parse` reads; the default "own" is the detector that the body declares.
@@ -78,14 +78,14 @@ class Simulation:
     def __init__(
         self,
         house: HouseSpec | str | Path,
-        robots: Iterable[RobotSpec | str] = (),
+        robots: Iterable[RobotSpec | str | Path] = (),
         objects: Iterable[tuple[str, str]] = inventory.DEFAULT_OBJECTS,
         detectors: Iterable[DetectorSpec | str] = (),
         people: int = 1,
     ) -> None:
         self.house = _load_house(house)
         specs: list[BodySpec] = [avatar.HUMAN] * numbers.whole_number("people", people, 1, PEOPLE_MAX)
-        robots = (robots,) if isinstance(robots, str) else robots
+        robots = (robots,) if isinstance(robots, (str, Path)) else robots
         specs += [bodies.robot_spec(robot) for robot in robots]
         self.seats = bodies.seat_names(people, len(specs) - people)
         self.robots = tuple(seat for seat in self.seats if not is_person(seat))

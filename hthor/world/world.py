@@ -79,7 +79,7 @@ class World:
 
     Args:
         house: a name of `scenes`, the path of a house file, or a `HouseSpec`.
-        robots: the robots' bodies, by name or as `RobotSpec`; their seats are "robot", "robot2", ...
+        robots: the robots' bodies, by name, by path or as `RobotSpec`; their seats are "robot", "robot2", ...
         objects: (id, kind) pairs of spare objects, which `put_object` brings into the house; by default the benchmark's
             six targets, each with its kind's name as id.
         detectors: the robots' detectors, in the order of the robots: records, or texts that
@@ -99,7 +99,7 @@ class World:
     def __init__(
         self,
         house: HouseSpec | str | Path,
-        robots: Iterable[RobotSpec | str] = (),
+        robots: Iterable[RobotSpec | str | Path] = (),
         objects: Iterable[tuple[str, str]] = inventory.DEFAULT_OBJECTS,
         detectors: Iterable[DetectorSpec | str] = (),
         profile: str = "fast",

@@ -271,9 +271,9 @@ def test_wrong_names_are_errors() -> None:
         ({"kinds": ["object_goal"]}, "unknown task kind 'object_goal'"),
         ({"privileges": ["all"]}, "unknown privilege 'all'"),
         ({"suite": Suite(name="none", version=1, sha256="", tasks=())}, "has no such task"),
-        ({"time_cost": math.nan}, "time_cost must be a finite number of reward, got nan"),
-        ({"time_cost": -1.0}, "time_cost must be at least 0 reward, got -1.0"),
-        ({"approach": "1"}, "approach must be a finite number of reward, got '1'"),
+        ({"time_cost": math.nan}, "time_cost must be a finite number of units of reward, got nan"),
+        ({"time_cost": -1.0}, "time_cost must be at least 0 units of reward, got -1.0"),
+        ({"approach": "1"}, "approach must be a finite number of units of reward per metre, got '1'"),
     ):
         with pytest.raises(HthorError, match=message):
             AssistEnv(**{"suite": few(), **wrong})

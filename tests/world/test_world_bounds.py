@@ -238,6 +238,7 @@ def test_what_opens_is_open_or_not(world: World, wanted: object) -> None:
         ({"house": 3}, "house must be a name, the path of a house file or a HouseSpec, got 3"),
         ({"house": None}, "house must be a name"),
         ({"robots": [3]}, "a robot must be a name, the path of a file or a RobotSpec, got 3"),
+        ({"robots": Path("nothing.py")}, "nothing.py"),
         ({"objects": ["apple"]}, "objects must be pairs of an id and a kind, .* got 'apple'"),
         ({"objects": [("mine", "apple", "red")]}, "objects must be pairs"),
         ({"objects": [(3, "apple")]}, "objects must be pairs"),
@@ -272,7 +273,7 @@ def test_a_house_may_be_a_path(tmp_path: Path) -> None:
 def test_a_task_of_another_house_is_named(world: World) -> None:
     other = msgspec.structs.replace(task(), house="elder", house_sha256="0" * 64)
     house = msgspec.structs.replace(tiny.house(), sha256="1" * 64)
-    with pytest.raises(TaskError, match=f"made for house 'elder', and this is house '{house.id}'"):
+    with pytest.raises(TaskError, match=f"house: made for house 'elder', and this is house '{house.id}'"):
         World(house).reset(other)
     with pytest.raises(HthorError, match="task must be a TaskSpec"):
         world.reset("smoke")  # type: ignore[arg-type]
@@ -281,6 +282,11 @@ def test_a_task_of_another_house_is_named(world: World) -> None:
 def test_what_is_fixed_is_no_object_that_is_not_there(world: World) -> None:
     assert world.human.pick(TABLE).reason == f"{TABLE} is fixed, and cannot be picked up"
     assert world.human.pick("aple").reason == "there is no object 'aple' to pick up"
+    assert world.human.pick(["mug"]).reason == "there is no object '['mug']' to pick up"  # type: ignore[arg-type]
+    other = World("hazel")
+    clock = "alarm_clock_1"
+    other.remove_object(clock)
+    assert other.human.pick(clock).reason == f"there is no object '{clock}' to pick up"
 
 
 @pytest.mark.parametrize(

@@ -28,11 +28,11 @@ class StudySeeds:
         Raises:
             HthorError: when ``options`` is no mapping. UnknownName: when there is no such task.
         """
+        chosen = _chosen(options)
         if seed is not None or self._study is None:
             self._study, self._participant = int(random.integers(2**31)) if seed is None else int(seed), 0
         else:
             self._participant += 1
-        chosen = _chosen(options)
         drawn = source.tasks[int(random.integers(len(source.tasks)))]
         return source.trial(drawn if chosen is None else source.find(chosen), self._study, self._participant)
 

@@ -60,7 +60,7 @@ def id_faults(ids: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
     seen: dict[str, tuple[str, str]] = {}
     for where, name in ids:
         problem = why_unusable(name)
-        key = name.replace("/", "|")  # the engine's names have no slash
+        key = engine_name(name)
         if not problem and key in seen:
             first, other = seen[key]
             alike = "" if name == other else f" as '{other}', and '/' is the same as '|'"
@@ -68,6 +68,11 @@ def id_faults(ids: Iterable[tuple[str, str]]) -> Iterator[tuple[str, str]]:
         if problem:
             yield f"{where}.id", problem
         seen.setdefault(key, (where, name))
+
+
+def engine_name(id: str) -> str:
+    """The engine's name for an id; it has no slash."""
+    return id.replace("/", "|")
 
 
 def why_unusable(name: str, brought: bool = False) -> str:

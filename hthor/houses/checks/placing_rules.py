@@ -41,12 +41,9 @@ def check_carried(house: HouseSpec) -> Iterator[Finding]:
             continue
         top = 0.0 if support is None else support.centre[2] + support.size[2] / 2
         gap = thing.centre[2] - thing.size[2] / 2 - top
-        if gap > HIGH_M:
-            under = "the floor" if support is None else f"'{support.id}'"
-            problem = f"the {readable_kind(thing.kind)} stands {gap:.2f} m above {under}"
-            yield warning("thing-floats", thing.id, problem, _height_of(thing.source))
-        elif support is None and gap < -HIGH_M:
-            problem = f"the {readable_kind(thing.kind)} stands {-gap:.2f} m below the floor"
+        if gap > HIGH_M or (support is None and gap < -HIGH_M):
+            where = f"{'above' if gap > 0.0 else 'below'} {'the floor' if support is None else repr(support.id)}"
+            problem = f"the {readable_kind(thing.kind)} stands {abs(gap):.2f} m {where}"
             yield warning("thing-floats", thing.id, problem, _height_of(thing.source))
 
 

@@ -136,10 +136,11 @@ class Manipulation:
             return f"{seat.spec.title} cannot pick things up"
         if seat.holding:
             return f"{seat.name} already holds {seat.holding}"
-        item = self._objects.get(motion.object) if isinstance(motion.object, str) else None
+        name = motion.object if isinstance(motion.object, str) else ""
+        item = self._objects.get(name)
+        if item is None and name in self._things and self._objects.known(name) is None:
+            return f"{name} is fixed, and cannot be picked up"
         if item is None:
-            if motion.object in self._things:
-                return f"{motion.object} is fixed, and cannot be picked up"
             return f"there is no object '{motion.object!s:.40}' to pick up"
         return self.out_of_hand(seat, item)
 

@@ -139,12 +139,12 @@ class LazyComposerEnv(Environment):
         Raises:
             HthorError: when there is no control, and so nothing that acts, but an action.
         """
-        task, control = self.task, self.task.control
-        if control is None and not self._closed_house:
+        physics, task, control = self.physics, self.task, self.task.control
+        if control is None:
             action = _no_action(action)
         if self._over:
             return self.reset()
-        task.before_step(self.physics, action, self.random_state)
+        task.before_step(physics, action, self.random_state)
         self._call("before_step", action)
         self._observed.prepare_for_next_control_step()
         self._call("before_substep", action)
@@ -155,12 +155,12 @@ class LazyComposerEnv(Environment):
             self._show_puppets()
         self._call("after_substep")
         self._call("after_step")
-        self._over = bool(task.should_terminate_episode(self.physics))  # also where a tour of this trial began again
+        self._over = bool(task.should_terminate_episode(physics))  # also where a tour of this trial began again
         self._observed.update()
         return dm_env.TimeStep(
             step_type=dm_env.StepType.LAST if self._over else dm_env.StepType.MID,
-            reward=task.get_reward(self.physics),
-            discount=task.get_discount(self.physics),
+            reward=task.get_reward(physics),
+            discount=task.get_discount(physics),
             observation=self._observed.get_observation(),
         )
 

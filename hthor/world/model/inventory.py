@@ -55,19 +55,18 @@ def split_things(house: HouseSpec, objects: Iterable[tuple[str, str]]) -> Conten
     movables = [_free(thing) for thing in laying.movable_objects(house)]
     taken = {movable.id for movable in movables}
     statics = tuple(thing for thing in house.things if thing.id not in taken)
-    parts: tuple[tuple[Thing | Room | Wall | Opening, ...], ...]
-    parts = (house.things, house.rooms, house.walls, house.openings)
-    taken = {_engine_name(part.id) for sort in parts for part in sort}
+    parts: tuple[Thing | Room | Wall | Opening, ...] = (*house.things, *house.rooms, *house.walls, *house.openings)
+    taken = {ids.engine_name(part.id) for part in parts}
     for pair in objects:
         id, name = _pair(pair)
         if problem := ids.why_unusable(id, brought=True):
             raise HthorError(f"objects: {problem}")
         kind = catalog.kind(name)
-        if _engine_name(id) in taken:
+        if ids.engine_name(id) in taken:
             raise HthorError(f"object id '{id}' is taken by another thing of house '{house.id}'; choose another id")
         if not kind.pickable:
             raise HthorError(f"object '{id}' is of kind '{name}', which cannot be picked up")
-        taken.add(_engine_name(id))
+        taken.add(ids.engine_name(id))
         movables.append(MovableSpec(id=id, kind=name, size=kind.size, mass=kind.mass))
     doors = tuple(thing for thing in statics if catalog.kind(thing.kind).joints(thing.size))
     return Contents(statics=statics, movables=tuple(movables), doors=doors)
@@ -79,11 +78,6 @@ def _pair(given: object) -> tuple[str, str]:
     if len(pair) != 2 or not all(isinstance(word, str) for word in pair):
         raise HthorError(f"objects must be pairs of an id and a kind, such as ('my_apple', 'apple'), got {given!r:.60}")
     return pair[0], pair[1]
-
-
-def _engine_name(id: str) -> str:
-    """The engine's name for an id; it has no slash."""
-    return id.replace("/", "|")
 
 
 def _free(thing: Thing) -> MovableSpec:

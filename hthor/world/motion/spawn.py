@@ -91,11 +91,12 @@ def check_fits(body: BodyState, pose: Pose, seats: Iterable[BodyState]) -> None:
 
 
 def check_task(task: TaskSpec, house: HouseSpec) -> None:
-    """Raise TaskError for a task of another version of the house, or with a number that is not finite."""
+    """Raise TaskError for a task of another house or another version of it, or with a number that is not finite."""
     if task.house_sha256 and house.sha256 and task.house_sha256 != house.sha256:
-        problem = f"made for another version of house '{task.house}'; generate the task again"
         if task.house != house.id:
-            problem = f"made for house '{task.house}', and this is house '{house.id}'"
+            problem = f"made for house '{task.house}', and this is house '{house.id}'; make a world of that house"
+            raise TaskError(task.id, "house", problem)
+        problem = f"made for another version of house '{task.house}'; generate the task again"
         raise TaskError(task.id, "house_sha256", problem)
     try:
         for placement in task.objects:
