@@ -168,12 +168,13 @@ def _measure(
     time.sleep(_SETTLE_S)
     for client in clients:
         client.restart()
-    begin, before = time.perf_counter(), [_cpu_s(server.pid) for server in servers]
+    begin, before, own_before = time.perf_counter(), [_cpu_s(server.pid) for server in servers], time.process_time()
     used = [_memory_mb(servers)]
     for _ in range(_LOOKS):
         time.sleep(seconds / _LOOKS)
         used.append(_memory_mb(servers))
     spent, after = time.perf_counter() - begin, [_cpu_s(server.pid) for server in servers]
+    clients_s = time.process_time() - own_before
     latencies = 1e3 * np.concatenate([client.latencies_s for client in clients])
     what = "input to acknowledged pose"
     yield table.Row(part=part, what=f"{what}, median", value=float(np.median(latencies)), unit="ms")
@@ -186,6 +187,7 @@ def _measure(
     own, robots = 100.0 * (np.array(after) - before).sum(axis=0) / spent
     yield table.Row(part=part, what="servers", value=own, unit="% of a core", bar=25.0 * len(servers))
     yield table.Row(part=part, what="robots' processes", value=robots, unit="% of a core")
+    yield table.Row(part=part, what="clients", value=100.0 * clients_s / spent, unit="% of a core")
     yield table.Row(part=part, what="memory of a server", value=used[-1] / len(servers), unit="MB")
     half = used[len(used) // 2]
     yield table.Row(part=part, what="its growth in the second half", value=(used[-1] - half) / len(servers), unit="MB")
