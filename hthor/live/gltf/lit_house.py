@@ -9,9 +9,8 @@ import hashlib
 import io
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-import msgspec
 import numpy as np
 
 from hthor import installation
@@ -119,49 +118,27 @@ def _doors(scene: SceneParts, light: BakedLight) -> list[list[Surface]]:
     return found
 
 
-class _Label(msgspec.Struct, array_like=True):
-    """What a file says of a surface, apart from its arrays: where it belongs, and how many corners and faces it has."""
-
-    place: int
-    owner: str
-    texture: str
-    tint: list[float]
-    alpha: float
-    emission: float
-    corners: int
-    faces: int
-
-
 _LOW, _HIGH = -2, -1
 """The places of what never moves; doors have theirs in their order."""
 
 
 def _packed(house: LitHouse) -> bytes:
-    """A lit house as a file of arrays in single precision."""
+    """A lit house as a file of arrays in single precision; the surfaces are one after another in them."""
     heaps = [(_LOW, house.low), (_HIGH, house.high), *enumerate(house.doors)]
     every = [(place, one) for place, heap in heaps for one in heap]
-    labels = [
-        _Label(
-            place,
-            one.owner,
-            one.texture,
-            one.tint.tolist(),
-            one.alpha,
-            one.emission,
-            len(one.vertices),
-            len(one.faces),
-        )
-        for place, one in every
-    ]
-    rows = [np.concatenate([one.vertices, one.normals, one.uv, one.colours], axis=1) for _, one in every]
-    about = msgspec.json.encode((len(house.doors), house.probes.origin, house.probes.side, labels))
     file = io.BytesIO()
     np.savez_compressed(
         file,
-        about=np.frombuffer(about, np.uint8),
-        rows=np.concatenate(rows).astype(np.float32),
+        names=np.array([(one.owner, one.texture) for _, one in every]),
+        places=np.array([(place, len(one.vertices), len(one.faces)) for place, one in every]),
+        looks=np.array([(*one.tint, one.alpha, one.emission) for _, one in every]),
+        corners=np.concatenate(
+            [np.concatenate([one.vertices, one.normals, one.uv, one.colours], axis=1) for _, one in every]
+        ).astype(np.float32),
         faces=np.concatenate([one.faces for _, one in every]).astype(np.int32),
         probes=house.probes.light,
+        grid=np.array((*house.probes.origin, house.probes.side)),
+        doors=len(house.doors),
     )
     return file.getvalue()
 
@@ -169,29 +146,28 @@ def _packed(house: LitHouse) -> bytes:
 def _unpacked(data: bytes) -> LitHouse:
     """The inverse of `_packed`."""
     with np.load(io.BytesIO(data)) as file:
-        count, origin, side, labels = msgspec.json.decode(
-            file["about"].tobytes(), type=tuple[int, tuple[float, float], float, list[_Label]]
-        )
-        rows, faces, probes = file["rows"], file["faces"], file["probes"]
-    found: dict[int, list[Surface]] = {place: [] for place in range(_LOW, count)}
+        kept = dict(file)
+    found: dict[int, list[Surface]] = {place: [] for place in range(_LOW, int(kept["doors"]))}
     corner = face = 0
-    for label in labels:
-        own = rows[corner : corner + label.corners]
-        found[label.place].append(_surface(label, own, faces[face : face + label.faces]))
-        corner, face = corner + label.corners, face + label.faces
-    return LitHouse(found[_LOW], found[_HIGH], [found[place] for place in range(count)], Probes(origin, side, probes))
-
-
-def _surface(label: _Label, rows: Any, faces: Any) -> Surface:
-    return Surface(
-        owner=label.owner,
-        texture=label.texture,
-        tint=np.array(label.tint),
-        alpha=label.alpha,
-        emission=label.emission,
-        vertices=rows[:, :3],
-        normals=rows[:, 3:6],
-        uv=rows[:, 6:8],
-        faces=faces,
-        colours=rows[:, 8:],
-    )
+    for (owner, texture), (place, corners, faces), look in zip(
+        kept["names"].tolist(), kept["places"].tolist(), kept["looks"], strict=True
+    ):
+        rows = kept["corners"][corner : corner + corners]
+        found[place].append(
+            Surface(
+                owner=owner,
+                texture=texture,
+                tint=look[:3],
+                alpha=float(look[3]),
+                emission=float(look[4]),
+                vertices=rows[:, :3],
+                normals=rows[:, 3:6],
+                uv=rows[:, 6:8],
+                faces=kept["faces"][face : face + faces],
+                colours=rows[:, 8:],
+            )
+        )
+        corner, face = corner + corners, face + faces
+    low, high, *doors = found.values()
+    x, y, side = kept["grid"].tolist()
+    return LitHouse(low, high, doors, Probes((x, y), side, kept["probes"]))
