@@ -9,6 +9,7 @@ the servers take with their robots, which steps of the trials that ended were la
 from __future__ import annotations
 
 import argparse
+import asyncio
 import json
 import os
 import re
@@ -17,13 +18,15 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Iterator, Sequence
-from contextlib import ExitStack
+from collections.abc import Coroutine, Iterator, Sequence
+from contextlib import ExitStack, suppress
 from pathlib import Path
+from typing import Any, TypeVar
 
 import numpy as np
+import uvloop
+from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed
-from websockets.sync.client import connect
 
 from benchmarks import table
 from hthor.eval.records.run_folder import RunFolder
@@ -31,6 +34,7 @@ from hthor.live import wire
 from hthor.types import SUBTICKS, Drive
 from hthor.types.events import Note
 
+_Result = TypeVar("_Result")
 RATE_HZ, TURN_S = 60, 4.0
 _PATIENCE_S, _SETTLE_S = 900.0, 2.0
 _LOOKS = 20
@@ -40,83 +44,111 @@ _CLOCK = os.sysconf("SC_CLK_TCK")
 
 
 class Client:
-    """A page without a picture, in two threads."""
+    """A page without a picture."""
 
-    def __init__(self, address: str, token: str) -> None:
-        self._open = ExitStack()
-        self._socket = self._open.enter_context(
-            connect(
-                address.replace("http", "ws", 1) + "/live",
-                subprotocols=[wire.VERSION],  # type: ignore[list-item]
-                origin=address,  # type: ignore[arg-type]
-                compression=None,
-            )
-        )
-        self._socket.send(json.dumps({"type": "join", "token": token}))
+    def __init__(self, socket: ClientConnection) -> None:
+        self._socket = socket
         self._sent_at: dict[int, float] = {}
         self._last = 0
         self.latencies_s: list[float] = []
         self.received = self.sent = 0
         self.began = threading.Event()
-        self._ended = False
-        self._threads = [threading.Thread(target=work, daemon=True) for work in (self._read, self._steer)]
-        for thread in self._threads:
-            thread.start()
 
     def restart(self) -> None:
         """Forget what was measured so far."""
         self.latencies_s, self.received, self.sent = [], 0, 0
 
-    def close(self) -> None:
-        """Leave."""
-        self._ended = True
-        self._open.close()
-        for thread in self._threads:
-            thread.join()
-
-    def _tell(self, data: str | bytes) -> None:
+    async def tell(self, data: str | bytes) -> None:
+        """Send a message."""
         self.sent += len(data)
-        self._socket.send(data)
+        await self._socket.send(data)
 
-    def _steer(self) -> None:
-        number, begin = 0, time.perf_counter()
-        try:
-            while not self._ended:
-                number += 1
-                angle = 2.0 * np.pi * (time.perf_counter() - begin) / TURN_S
-                drive = Drive(forward=0.7, yaw=float(angle), pitch=0.1)
-                self._sent_at[number] = time.perf_counter()
-                self._tell(wire.encode_steering(wire.Steering(number, drive)))
-                if number % RATE_HZ == 0:
-                    self._tell(json.dumps({"type": "ping", "sent": time.perf_counter(), "frames": 60.0}))
-                time.sleep(max(0.0, begin + number / RATE_HZ - time.perf_counter()))
-        except ConnectionClosed:
-            return
+    async def steer(self, number: int, drive: Drive) -> None:
+        """Send steering, and every second how the page is."""
+        self._sent_at[number] = time.perf_counter()
+        await self.tell(wire.encode_steering(wire.Steering(number, drive)))
+        if number % RATE_HZ == 0:
+            await self.tell(json.dumps({"type": "ping", "sent": time.perf_counter(), "frames": 60.0}))
 
-    def _read(self) -> None:
-        try:
-            for data in self._socket:
+    async def read(self) -> None:
+        """Answer what comes, until the server is gone."""
+        with suppress(ConnectionClosed):
+            async for data in self._socket:
                 self.received += len(data)
                 if isinstance(data, str):
-                    self._answer(json.loads(data))
+                    await self._answer(json.loads(data))
                 elif data[0] == 2:
                     self._acknowledge(wire.decode_frame(data)[0].steering)
-        except ConnectionClosed:
-            return
 
-    def _answer(self, message: dict[str, object]) -> None:
+    async def _answer(self, message: dict[str, object]) -> None:
         if message["type"] == "trial":
-            self._tell(json.dumps({"type": "begin", "trial": message["trial"]}))
+            await self.tell(json.dumps({"type": "begin", "trial": message["trial"]}))
         elif message["type"] == "began":
             self.began.set()
         elif message["type"] == "ended" and message["rate"]:
-            self._tell(json.dumps({"type": "rate", "trial": message["trial"], "value": 5}))
+            await self.tell(json.dumps({"type": "rate", "trial": message["trial"], "value": 5}))
 
     def _acknowledge(self, number: int) -> None:
         """The first frame after an input: how long that took, for the newest input that it acknowledges."""
         if number > self._last and number in self._sent_at:
             self.latencies_s.append(time.perf_counter() - self._sent_at.pop(number))
             self._last = number
+
+
+class Clients:
+    """All pages, in one thread, so that they take little of the machine that the servers are measured on."""
+
+    def __init__(self) -> None:
+        self._loop = uvloop.new_event_loop()
+        self._joined: list[Client] = []
+        self._tasks: list[asyncio.Task[None]] = []
+        self._thread = threading.Thread(target=self._loop.run_forever, daemon=True)
+        self._thread.start()
+        self._do(self._begin())
+
+    def join(self, address: str, token: str) -> Client:
+        """Open the page of a seat."""
+        return self._do(self._join(address, token))
+
+    def close(self) -> None:
+        """Leave."""
+        self._do(self._end())
+        self._loop.call_soon_threadsafe(self._loop.stop)
+        self._thread.join()
+
+    def _do(self, work: Coroutine[Any, Any, _Result]) -> _Result:
+        return asyncio.run_coroutine_threadsafe(work, self._loop).result()
+
+    async def _begin(self) -> None:
+        self._tasks.append(asyncio.create_task(self._steer()))
+
+    async def _join(self, address: str, token: str) -> Client:
+        socket = await connect(
+            address.replace("http", "ws", 1) + "/live",
+            subprotocols=[wire.VERSION],  # type: ignore[list-item]
+            origin=address,  # type: ignore[arg-type]
+            compression=None,
+        )
+        client = Client(socket)
+        await client.tell(json.dumps({"type": "join", "token": token}))
+        self._tasks.append(asyncio.create_task(client.read()))
+        self._joined.append(client)
+        return client
+
+    async def _steer(self) -> None:
+        number, begin = 0, time.perf_counter()
+        while True:
+            number += 1
+            angle = 2.0 * np.pi * (time.perf_counter() - begin) / TURN_S
+            drive = Drive(forward=0.7, yaw=float(angle), pitch=0.1)
+            for client in self._joined:
+                with suppress(ConnectionClosed):
+                    await client.steer(number, drive)
+            await asyncio.sleep(max(0.0, begin + number / RATE_HZ - time.perf_counter()))
+
+    async def _end(self) -> None:
+        for task in self._tasks:
+            task.cancel()
 
 
 def rows(sessions: int, people: int, seconds: float, agent: str) -> Iterator[table.Row]:
@@ -126,13 +158,13 @@ def rows(sessions: int, people: int, seconds: float, agent: str) -> Iterator[tab
         servers = [_start(folder, people, agent) for folder in folders]
         for server in servers:
             stack.callback(_end, server)
-        clients = [client for server in servers for client in _clients(server, people)]
+        pages = Clients()
+        clients = [client for server in servers for client in _clients(server, people, pages)]
         for client in clients:
             if not client.began.wait(_PATIENCE_S):
                 raise RuntimeError(f"the trial did not begin within {_PATIENCE_S:.0f} s")
         yield from _measure(servers, clients, seconds, f"{sessions} x {people} at pages")
-        for client in clients:
-            client.close()
+        pages.close()
         yield from _late_steps(folders, f"{sessions} x {people} at pages")
 
 
@@ -150,12 +182,12 @@ def _end(server: subprocess.Popen[str]) -> None:
     server.wait()
 
 
-def _clients(server: subprocess.Popen[str], people: int) -> Iterator[Client]:
+def _clients(server: subprocess.Popen[str], people: int, pages: Clients) -> Iterator[Client]:
     """Open the pages of a session."""
     assert server.stderr is not None
     for line in server.stderr:
         if found := _URL.search(line):
-            yield Client(*found.groups())
+            yield pages.join(*found.groups())
             people -= 1
         if not people:
             break
@@ -168,12 +200,13 @@ def _measure(
     time.sleep(_SETTLE_S)
     for client in clients:
         client.restart()
-    begin, before = time.perf_counter(), [_cpu_s(server.pid) for server in servers]
+    begin, before, own_before = time.perf_counter(), [_cpu_s(server.pid) for server in servers], time.process_time()
     used = [_memory_mb(servers)]
     for _ in range(_LOOKS):
         time.sleep(seconds / _LOOKS)
         used.append(_memory_mb(servers))
     spent, after = time.perf_counter() - begin, [_cpu_s(server.pid) for server in servers]
+    clients_s = time.process_time() - own_before
     latencies = 1e3 * np.concatenate([client.latencies_s for client in clients])
     what = "input to acknowledged pose"
     yield table.Row(part=part, what=f"{what}, median", value=float(np.median(latencies)), unit="ms")
@@ -186,6 +219,7 @@ def _measure(
     own, robots = 100.0 * (np.array(after) - before).sum(axis=0) / spent
     yield table.Row(part=part, what="servers", value=own, unit="% of a core", bar=25.0 * len(servers))
     yield table.Row(part=part, what="robots' processes", value=robots, unit="% of a core")
+    yield table.Row(part=part, what="clients", value=100.0 * clients_s / spent, unit="% of a core")
     yield table.Row(part=part, what="memory of a server", value=used[-1] / len(servers), unit="MB")
     half = used[len(used) // 2]
     yield table.Row(part=part, what="its growth in the second half", value=(used[-1] - half) / len(servers), unit="MB")

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hthor.live import server
-from hthor.live.house_file import HouseFile
+from hthor.live.gltf.house_file import HouseFile
 from hthor.types import BodySpec, Pose
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")

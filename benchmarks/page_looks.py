@@ -17,7 +17,7 @@ import msgspec
 import numpy as np
 
 from benchmarks import page_browser
-from hthor.live import house_file
+from hthor.live.gltf import house_file
 from hthor.world import World
 from hthor.world.model.bodies import avatar
 from hthor.world.rendering.contact_sheet import VIEW, Photographer

@@ -259,9 +259,9 @@ def _code_of_films() -> list[Path]:
 
 def _code_of_light() -> list[Path]:
     """The files that decide how pages draw a house."""
-    light = (f"hthor/live/{part}.py" for part in ("glb", "hidden_corners", "house_file", "still_light", "surfaces"))
+    light = sorted((ROOT / "hthor" / "live" / "gltf").glob("*.py"))
     scene = sorted((ROOT / "hthor" / "world" / "rendering" / "scene").glob("*.py"))
-    return [*(ROOT / path for path in light), *scene, ROOT / "benchmarks" / "page_browser.py"]
+    return [*light, *scene, ROOT / "benchmarks" / "page_browser.py"]
 
 
 def _code_of_live_pages(name: str) -> list[Path]:

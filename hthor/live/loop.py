@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, cast
-from weakref import WeakKeyDictionary
 
 import msgspec
 
@@ -23,7 +22,7 @@ from hthor.live.unfinished import UnfinishedTrial
 from hthor.types import SUBTICKS, BodySpec, Mind, TrialSpec
 
 if TYPE_CHECKING:
-    from hthor.live.house_file import HouseFile
+    from hthor.live.gltf.house_file import HouseFile
     from hthor.live.practice import Practice
     from hthor.world import World
 
@@ -61,7 +60,7 @@ class RealTimeLoop:
         self._seats, self._control, self.trials = dict(seats), control, trials
         self._now, self._sleep, self._publish, self._desk = now, sleep, publish, desk
         self._unfinished = unfinished
-        self._sceneries: WeakKeyDictionary[TrialWorld, Scenery] = WeakKeyDictionary()
+        self._drawn: Scenery | None = None  # of the last world
 
     def __call__(
         self,
@@ -144,11 +143,10 @@ class RealTimeLoop:
         """What pages draw of a world, as it is now."""
         if self._publish is None:
             return None
-        if world not in self._sceneries:
-            self._sceneries[world] = Scenery(cast("World", world))
-        scenery = self._sceneries[world]
-        scenery.restart()
-        return scenery
+        if self._drawn is None or self._drawn.world is not world:
+            self._drawn = Scenery(cast("World", world))
+        self._drawn.restart()
+        return self._drawn
 
     def _hold(self, episode: Episode, practice: Practice | None) -> str | None:
         """Why time stands still, as when the experimenter has paused the trial, or somebody's page is gone; or None."""

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from hthor.live import house_file, wire
+from hthor.live import wire
+from hthor.live.gltf import house_file
 
 if TYPE_CHECKING:
     from hthor.world import World
@@ -17,11 +18,12 @@ class Scenery:
     """The scenery of one world.
 
     Attributes:
-        file: the house. own: the numbers of each seat's body and head, which its own page does not draw.
+        world: the world. file: the house.
+        own: the numbers of each seat's body and head, which its own page does not draw.
     """
 
     def __init__(self, world: World) -> None:
-        self._world = world
+        self.world = world
         self.file = house_file.house_file(world.scene, world.house)
         self.own = dict(world.scene.seats)
         self._changes = PoseChanges()
@@ -32,7 +34,7 @@ class Scenery:
 
     def moved(self) -> dict[int, bytes]:
         """What has moved since the last call, by its number, as `wire.encode_frame` takes it."""
-        poses, changed = self._changes.take(self._world.scene_poses())
+        poses, changed = self._changes.take(self.world.scene_poses())
         return {number: poses[number].tobytes() for number in changed}
 
 

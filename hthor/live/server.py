@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from starlette.websockets import WebSocket
 
     from hthor.live.certificate import Certificate
-    from hthor.live.house_file import HouseFile
+    from hthor.live.gltf.house_file import HouseFile
 
 FOLDER = Path(__file__).resolve().parent / "page"
 """The built page; its sources are in the folder web of the repository."""
@@ -46,6 +46,8 @@ _TOO_LARGE = 1009
 """The code of a connection that was closed because of a message of more than `MOST_BYTES`, by RFC 6455."""
 _WAITING = 512
 """[count] Messages that may wait for a slow page before its connection is given up. Our choice."""
+_HOUSES = 4
+"""[count] Files of houses that are served: pages ask for that of their trial, and may be late. Our choice."""
 _POLICY = (
     "default-src 'self'; connect-src 'self' blob:; img-src 'self' blob:; object-src 'none'; base-uri 'none'; "
     "form-action 'none'; frame-ancestors 'none'"
@@ -267,7 +269,10 @@ class LiveServer:
 
     def publish(self, file: HouseFile) -> str:
         """Serve the file of a house; its address on this server."""
+        self._houses.pop(file.key, None)
         self._houses[file.key] = file.data
+        while len(self._houses) > _HOUSES:
+            self._houses.pop(next(iter(self._houses)))
         return f"/house/{file.key}.glb"
 
     def _is_ours(self, host: str) -> bool:

@@ -19,10 +19,12 @@ from hthor.live.practice import Practice
 from hthor.live.practice_room import practice_trial
 from hthor.live.seat import LiveSeat
 from hthor.live.unfinished import UnfinishedTrial
-from hthor.trials import Participants, Sources, TrialRunner
+from hthor.trials import Participants, Sources, TrialRunner, Worlds
 from hthor.trials.sessions import Session
 from hthor.types import TrialSpec
 
+_WORLDS_BYTES = 100_000_000
+"""The most memory for worlds that are kept: about three houses, as sessions seldom come back to one. Our choice."""
 States = Mapping[str, State]
 """What people remember of earlier trials, by seat."""
 
@@ -52,7 +54,7 @@ class LiveSessions:
         *,
         practice: bool = False,
     ) -> None:
-        self._runner = TrialRunner(sources, GuestPool(), loop=loop)
+        self._runner = TrialRunner(sources, GuestPool(), Worlds(_WORLDS_BYTES), loop)
         self._past = TrialRunner(sources, worlds=self._runner.worlds)
         self._seats, self._folder, self._unfinished, self._due = seats, folder, unfinished, due
         self._loop, self._practises = loop, practice

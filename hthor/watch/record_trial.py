@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, NamedTuple
 from hthor import activity, rules
 from hthor.eval.config.human_populations import LIVE
 from hthor.eval.replay import repeated_trial
-from hthor.live import house_file
 from hthor.live.event_sentences import TOO_MANY, sentence
+from hthor.live.gltf import house_file
 from hthor.live.pictures import to_jpeg
 from hthor.report.drawing import trial_trace
 from hthor.types import is_person
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from hthor.eval.records.scored_trial import ScoredTrial
     from hthor.eval.replay.session_history import RunFiles
     from hthor.guest import AgentInputs
-    from hthor.live.house_file import HouseFile
+    from hthor.live.gltf.house_file import HouseFile
     from hthor.types import Camera, TrialSpec, Vec2
     from hthor.types.events import Event
 

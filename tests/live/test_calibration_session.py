@@ -15,7 +15,7 @@ from hthor.calibration.person.profile import profiles
 from hthor.eval.config.options import EvalOptions
 from hthor.eval.runner.progress import Silent
 from hthor.humans.population import population_file, resolve
-from hthor.live import house_file
+from hthor.live.gltf import house_file
 from hthor.live.run import LiveRun
 from hthor.types import HUMAN
 
@@ -27,7 +27,7 @@ TRIALS = 9
 @pytest.mark.nightly
 def test_a_person_at_a_page_is_measured_as_they_are(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The first participant of the population, whose own values are known; they turn as fast as the body can."""
-    monkeypatch.setattr(house_file, "_make", lambda scene, house: b"")
+    monkeypatch.setattr(house_file, "_make", lambda *_: b"")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))  # no session of this machine finds these houses
     played = in_batch(protocol.AGENT, 0, TRIALS, protocol.SUITE)
     options = protocol.prescribed(EvalOptions(humans=("live",), out=tmp_path / "run"))

@@ -2,21 +2,28 @@
 
 from __future__ import annotations
 
+import gc
 import gzip
 import json
 import struct
+import weakref
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from live_session import Book
 from two_rooms import house, thing
 
 from hthor import houses
-from hthor.live import house_file
-from hthor.live.house_file import HouseFile
+from hthor.live.control import SessionControl
+from hthor.live.desk import Desk
+from hthor.live.gltf import house_file, lit_house
+from hthor.live.gltf.house_file import HouseFile
+from hthor.live.loop import RealTimeLoop
 from hthor.live.scenery import Scenery
 from hthor.world import World
+from hthor.world.model.inventory import DEFAULT_OBJECTS
 
 MOST_TRIANGLES, MOST_BYTES = 250_000, 4_000_000
 
@@ -40,6 +47,12 @@ class Glb:
     @property
     def meshes(self) -> list[dict[str, Any]]:
         return [node for node in self.document["nodes"] if "mesh" in node]
+
+    @property
+    def still_colours(self) -> list[bytes]:
+        """The colours of what has the house's light, doors included."""
+        still = [node for node in self.meshes if node.get("extras", {"lit": True}).get("lit")]
+        return [self.values(one["attributes"]["COLOR_0"]).tobytes() for node in still for one in self.primitives(node)]
 
     @property
     def triangles(self) -> int:
@@ -111,6 +124,17 @@ def test_the_same_house_gives_the_same_file_and_is_computed_once(
     assert house_file.house_file(world.scene, world.house, tmp_path) == file
 
 
+def test_the_light_of_a_house_is_computed_once_for_all_tasks_in_it(
+    world: World, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    first = Glb(house_file.house_file(world.scene, world.house, tmp_path))
+    monkeypatch.setattr(lit_house, "_make", None)
+    other = World(world.house, robots=["tender"], objects=[*DEFAULT_OBJECTS, ("keys", "keys")])
+    second = Glb(house_file.house_file(other.scene, other.house, tmp_path))
+    assert "keys" in {node.get("extras", {}).get("owner") for node in second.meshes}
+    assert first.still_colours == second.still_colours
+
+
 def test_scenery_tells_what_has_moved(world: World, monkeypatch: pytest.MonkeyPatch, file: HouseFile) -> None:
     monkeypatch.setattr(house_file, "house_file", lambda scene, house: file)
     scenery = Scenery(world)
@@ -120,6 +144,19 @@ def test_scenery_tells_what_has_moved(world: World, monkeypatch: pytest.MonkeyPa
     assert set(scenery.moved()) == set(scenery.own["robot"])
     scenery.restart()
     assert set(scenery.moved()) == set(range(len(world.scene.moving)))
+
+
+def test_a_session_lets_go_of_houses_that_it_has_left(file: HouseFile, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(house_file, "house_file", lambda scene, house: file)
+    control = SessionControl()
+    loop = RealTimeLoop({}, control, Desk(control, {}, Book()), publish=lambda file: file.key)
+    left = World(house(), robots=["tender"])
+    gone = weakref.ref(left)
+    assert loop._scenery(left) is loop._scenery(left)
+    loop._scenery(World(house(), robots=["tender"]))
+    del left
+    gc.collect()
+    assert gone() is None
 
 
 @pytest.mark.nightly

@@ -21,7 +21,7 @@ from hthor.eval.replay import session_history
 from hthor.eval.replay.session_history import RunFiles
 from hthor.eval.runner.progress import Silent
 from hthor.eval.runner.run_job import RunJob
-from hthor.live import house_file
+from hthor.live.gltf import house_file
 from hthor.live.run import LiveRun
 from hthor.live.run_book import RunBook
 from hthor.report.page import camera_frames
@@ -81,7 +81,7 @@ def _shown(person: ScriptedPerson) -> list[dict[str, Any]]:
 
 @pytest.fixture
 def no_looks(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(house_file, "_make", lambda scene, house: b"")
+    monkeypatch.setattr(house_file, "_make", lambda *_: b"")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
 
 

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import gzip
+import http.client
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlsplit
 
 import pytest
 from live_session import LiveSession
@@ -12,6 +15,7 @@ from websockets.exceptions import InvalidStatus
 
 from hthor.episode import EpisodeLog, play
 from hthor.humans.core.recorded_inputs import RecordedInputs
+from hthor.live.gltf.house_file import HouseFile
 from hthor.live.loop import ABSENT_S
 from hthor.trials import TrialRunner
 from hthor.types import HUMAN, Controls
@@ -151,6 +155,18 @@ def test_who_does_not_belong_here_is_told_so(live: LiveSession, changes: dict[st
 def test_pages_of_other_sites_are_refused(live: LiveSession, origin: str) -> None:
     with pytest.raises(InvalidStatus, match="403"), live.person(origin=origin):
         pass
+
+
+def test_the_files_of_the_last_houses_are_served(live: LiveSession) -> None:
+    addresses = [live.server.publish(HouseFile(f"house{number}", gzip.compress(b"glTF"))) for number in range(6)]
+    place = urlsplit(live.server.address)
+    found = []
+    for address in addresses:
+        connection = http.client.HTTPConnection(place.hostname or "", place.port, timeout=20.0)
+        connection.request("GET", address)
+        found.append(connection.getresponse().status)
+        connection.close()
+    assert found == [404, 404, 200, 200, 200, 200]
 
 
 class Again:

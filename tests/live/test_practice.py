@@ -21,7 +21,7 @@ from hthor.eval.config.options import EvalOptions
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.runner.progress import Silent
 from hthor.houses import load, names
-from hthor.live import house_file
+from hthor.live.gltf import house_file
 from hthor.live.practice import LOOK_RAD, STEPS, WALK_M, Practice, Progress
 from hthor.live.practice_room import APPLE, FILE, FRIDGE, MUG, practice_trial
 from hthor.live.run import LiveRun
@@ -168,7 +168,7 @@ def test_everything_can_be_tried_in_the_room():
 
 @pytest.fixture
 def no_looks(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(house_file, "_make", lambda scene, house: b"")
+    monkeypatch.setattr(house_file, "_make", lambda *_: b"")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
 
 

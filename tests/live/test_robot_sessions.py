@@ -18,8 +18,8 @@ from live_client import ScriptedPerson
 from hthor.eval.config.options import EvalOptions
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.runner.progress import Silent
-from hthor.live import house_file
-from hthor.live.house_file import HouseFile
+from hthor.live.gltf import house_file
+from hthor.live.gltf.house_file import HouseFile
 from hthor.live.run import LiveRun
 from hthor.tasks.suite import encode_suite, make_suite
 from hthor.tasks.suites import library

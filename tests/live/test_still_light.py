@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hthor.live import hidden_corners, still_light
-from hthor.live.surfaces import Surface, edges_of, halved
+from hthor.live.gltf import hidden_corners, still_light
+from hthor.live.gltf.surfaces import Surface, edges_of, halved
 from hthor.looks import Material, Mesh
 from hthor.world.rendering.scene.baked_light import BakedLight
 from hthor.world.rendering.scene.scene_mesh import facet, slab

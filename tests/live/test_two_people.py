@@ -14,7 +14,7 @@ from steady_person import SteadyPerson
 from hthor.eval.config.options import EvalOptions
 from hthor.eval.records.run_folder import RunFolder
 from hthor.eval.runner.progress import Silent
-from hthor.live import house_file
+from hthor.live.gltf import house_file
 from hthor.live.run import LiveRun
 from hthor.live.sessions import remember
 from hthor.trials import TrialRunner
@@ -28,7 +28,7 @@ FASTER = 60.0
 @pytest.fixture
 def play(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Any:
     """Plays the first trials of `collect` with these people, and returns the run."""
-    monkeypatch.setattr(house_file, "_make", lambda scene, house: b"")
+    monkeypatch.setattr(house_file, "_make", lambda *_: b"")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
 
     def run(humans: str, trials: int) -> RunFolder:

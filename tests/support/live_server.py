@@ -15,7 +15,7 @@ import numpy as np
 
 from hthor.eval.config.options import EvalOptions
 from hthor.eval.runner.progress import Silent
-from hthor.live import house_file
+from hthor.live.gltf import house_file
 from hthor.live.run import LiveRun
 from hthor.world.rendering.scene.baked_light import BakedLight
 
@@ -56,5 +56,5 @@ if __name__ == "__main__":
             np.zeros(len(points), bool),
         )
     else:
-        house_file._make = lambda scene, house: b""
+        house_file._make = lambda *_: b""
     main(*sys.argv[1:])

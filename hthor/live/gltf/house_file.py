@@ -10,40 +10,29 @@ shut.
 from __future__ import annotations
 
 import gzip
-import hashlib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from hthor import installation, jsonio
-from hthor.live import hidden_corners, still_light
-from hthor.live.glb import GlbWriter
+from hthor import installation
+from hthor.live.gltf import hidden_corners
+from hthor.live.gltf.glb import GlbWriter
+from hthor.live.gltf.kept_file import kept_file
+from hthor.live.gltf.lit_house import digest, lit_house
+from hthor.live.gltf.surfaces import Surface
 from hthor.live.pictures import to_jpeg
-from hthor.live.surfaces import Surface
 from hthor.world.rendering.scene.baked_light import BakedLight
-from hthor.world.rendering.scene.scene_mesh import ABOVE
-from hthor.world.rendering.scene.scene_parts import STATIC
 
 if TYPE_CHECKING:
     from hthor.types import HouseSpec
     from hthor.world.rendering.scene.scene_parts import SceneParts
 
-_EDGE_M, _FLOOR_EDGE_M = 0.6, 0.45
-"""[m] No edge of a mesh, or of a floor, is longer, as light is computed at corners only. Our choice: finer would
-give the largest of our houses more than 250,000 triangles.
-"""
-_MOST_TRIANGLES = 246_000
-"""[count] About so many triangles are drawn at the most, without those of one's own body. Our choice."""
-_MORE_ON_DOORS = 6000
-"""[count] So many of these are added to doors and drawers at the most. Our choice."""
 _TEXTURE_PX = 256
 """[pixels] Side of the textures. Our choice: a person looks from half a metre at the least."""
 _JPEG_QUALITY = 85
 _HALF = 0.5
 """Colours are stored times this, as light may be brighter than 1."""
-_FLOOR, _CEILING = "floor of", "ceiling of"
-"""What the owners of floors begin with, and those of ceilings and their lamps, which hide no light."""
 
 
 class HouseFile(NamedTuple):
@@ -59,54 +48,34 @@ def house_file(scene: SceneParts, house: HouseSpec, folder: Path | None = None) 
     Args:
         folder: where files are kept; by default in the cache.
     """
-    key = _key(scene)
-    path = (folder or installation.cache() / "live") / f"{key}.glb.gz"
-    if not path.exists():
-        jsonio.write(path, gzip.compress(_make(scene, house), 6, mtime=0))
-    return HouseFile(key, path.read_bytes())
+    folder = folder or installation.cache() / "live"
+    key = digest(scene.parts, scene.assets, scene.lamps.places)
+    data = kept_file(folder / f"{key}.glb.gz", lambda: gzip.compress(_make(scene, house, folder), 6, mtime=0))
+    return HouseFile(key, data)
 
 
-def _key(scene: SceneParts) -> str:
-    digest = hashlib.sha256(repr((installation.sha256(), scene.assets, scene.lamps.places)).encode())
-    for part in scene.parts:
-        digest.update(repr((part.puppet, part.owner, part.material, part.group)).encode())
-        for values in part.mesh:
-            digest.update(np.ascontiguousarray(values).tobytes())
-    return digest.hexdigest()[:32]
-
-
-def _make(scene: SceneParts, house: HouseSpec) -> bytes:
-    still = [Surface.of(part) for part in scene.parts if part.puppet == STATIC and part.group != ABOVE]
-    hides = [one.corners for one in still if one.opaque and not one.owner.startswith(_CEILING)]
-    light = BakedLight(np.concatenate(hides), scene.lamps.places, house.height)
-    own = next(iter(scene.seats.values()), ())
+def _make(scene: SceneParts, house: HouseSpec, folder: Path) -> bytes:
+    lit = lit_house(scene, house, folder)
     file = GlbWriter("hthor")
     book = _Materials(file, scene)
-    moving = sum(len(part.mesh.faces) for part in scene.parts if part.puppet not in (STATIC, *own))
-    still = [one.refined(_FLOOR_EDGE_M if one.owner.startswith(_FLOOR) else _EDGE_M) for one in still]
-    shown = still_light.lit(still, light, _MOST_TRIANGLES - _MORE_ON_DOORS - moving)
-    high = [one for one in shown if one.owner.startswith(_CEILING)]
-    low = [one for one in shown if not one.owner.startswith(_CEILING)]
-    nodes = [file.node(name="still", mesh=_mesh(file, book, low))]
-    if high:
-        nodes.append(file.node(name="ceilings", mesh=_mesh(file, book, high), extras={"ceiling": True}))
-    doors = _doors(scene, light)
+    nodes = [file.node(name="still", mesh=_mesh(file, book, lit.low))]
+    if lit.high:
+        nodes.append(file.node(name="ceilings", mesh=_mesh(file, book, lit.high), extras={"ceiling": True}))
+    doors = dict(zip(scene.hung, lit.doors, strict=True))
     for number in range(len(scene.moving)):
         parts = doors.get(number) or _creased(_parts(scene, number))
         if parts:
             about = {"owner": parts[0].owner, "part": number, "lit": number in doors}
             nodes.append(file.node(name=str(number), mesh=_mesh(file, book, parts), extras=about))
-    xs, ys = zip(*(point for room in house.rooms for point in room.polygon), strict=True)
-    probes = light.probes((min(xs), min(ys), max(xs), max(ys)))
     turned = file.node(root=True, name="house", children=nodes, rotation=[-(0.5**0.5), 0.0, 0.0, 0.5**0.5])
     file.extras(
         {
             "house": turned,
             "moving": list(scene.moving),
             "probes": {
-                "origin": [round(value, 3) for value in probes.origin],
-                "side": probes.side,
-                "light": [[round(value, 2) for value in row] for row in probes.light.tolist()],
+                "origin": [round(value, 3) for value in lit.probes.origin],
+                "side": lit.probes.side,
+                "light": [[round(value, 2) for value in row] for row in lit.probes.light.tolist()],
             },
         }
     )
@@ -115,22 +84,6 @@ def _make(scene: SceneParts, house: HouseSpec) -> bytes:
 
 def _parts(scene: SceneParts, number: int) -> list[Surface]:
     return [Surface.of(part) for part in scene.parts if part.puppet == number]
-
-
-def _doors(scene: SceneParts, light: BakedLight) -> dict[int, list[Surface]]:
-    """Doors and drawers with the light that they have while they are shut, by their numbers."""
-    numbers, shut = [], []
-    for number, frame in scene.hung.items():
-        for one in _parts(scene, number):
-            numbers.append(number)
-            shut.append(one.moved(*frame))
-    if not shut:
-        return {}
-    most = sum(len(one.faces) for one in shut) + _MORE_ON_DOORS
-    found: dict[int, list[Surface]] = {}
-    for number, one in zip(numbers, still_light.lit(shut, light, most, whole=True), strict=True):
-        found.setdefault(number, []).append(one.moved_back(*scene.hung[number]))
-    return found
 
 
 def _creased(parts: list[Surface]) -> list[Surface]:

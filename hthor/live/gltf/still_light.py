@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from hthor.live import hidden_corners
-from hthor.live.surfaces import Surface, edges_of, halved, unit
+from hthor.live.gltf import hidden_corners
+from hthor.live.gltf.surfaces import Surface, edges_of, halved, unit
 
 if TYPE_CHECKING:
     from hthor.world.rendering.scene.baked_light import BakedLight

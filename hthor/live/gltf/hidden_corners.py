@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial import cKDTree
 
-from hthor.live.surfaces import edges_of
+from hthor.live.gltf.surfaces import edges_of
 
 _INWARD_M, _INWARD = 0.015, 0.3
 """[m] How far towards the middle of its triangles a corner's light is computed, and at most this share of the way."""
