@@ -18,10 +18,10 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Coroutine, Iterator, Sequence
+from collections.abc import Iterator, Sequence
+from concurrent.futures import Future
 from contextlib import ExitStack, suppress
 from pathlib import Path
-from typing import Any, TypeVar
 
 import numpy as np
 import uvloop
@@ -34,7 +34,6 @@ from hthor.live import wire
 from hthor.types import SUBTICKS, Drive
 from hthor.types.events import Note
 
-_Result = TypeVar("_Result")
 RATE_HZ, TURN_S = 60, 4.0
 _PATIENCE_S, _SETTLE_S = 900.0, 2.0
 _LOOKS = 20
@@ -101,39 +100,23 @@ class Clients:
     def __init__(self) -> None:
         self._loop = uvloop.new_event_loop()
         self._joined: list[Client] = []
-        self._tasks: list[asyncio.Task[None]] = []
         self._thread = threading.Thread(target=self._loop.run_forever, daemon=True)
         self._thread.start()
-        self._do(self._begin())
+        self._work: list[Future[None]] = [asyncio.run_coroutine_threadsafe(self._steer(), self._loop)]
 
     def join(self, address: str, token: str) -> Client:
         """Open the page of a seat."""
-        return self._do(self._join(address, token))
+        client = asyncio.run_coroutine_threadsafe(_join(address, token), self._loop).result()
+        self._work.append(asyncio.run_coroutine_threadsafe(client.read(), self._loop))
+        self._joined.append(client)
+        return client
 
     def close(self) -> None:
         """Leave."""
-        self._do(self._end())
+        for one in self._work:
+            one.cancel()
         self._loop.call_soon_threadsafe(self._loop.stop)
         self._thread.join()
-
-    def _do(self, work: Coroutine[Any, Any, _Result]) -> _Result:
-        return asyncio.run_coroutine_threadsafe(work, self._loop).result()
-
-    async def _begin(self) -> None:
-        self._tasks.append(asyncio.create_task(self._steer()))
-
-    async def _join(self, address: str, token: str) -> Client:
-        socket = await connect(
-            address.replace("http", "ws", 1) + "/live",
-            subprotocols=[wire.VERSION],  # type: ignore[list-item]
-            origin=address,  # type: ignore[arg-type]
-            compression=None,
-        )
-        client = Client(socket)
-        await client.tell(json.dumps({"type": "join", "token": token}))
-        self._tasks.append(asyncio.create_task(client.read()))
-        self._joined.append(client)
-        return client
 
     async def _steer(self) -> None:
         number, begin = 0, time.perf_counter()
@@ -146,9 +129,17 @@ class Clients:
                     await client.steer(number, drive)
             await asyncio.sleep(max(0.0, begin + number / RATE_HZ - time.perf_counter()))
 
-    async def _end(self) -> None:
-        for task in self._tasks:
-            task.cancel()
+
+async def _join(address: str, token: str) -> Client:
+    socket = await connect(
+        address.replace("http", "ws", 1) + "/live",
+        subprotocols=[wire.VERSION],  # type: ignore[list-item]
+        origin=address,  # type: ignore[arg-type]
+        compression=None,
+    )
+    client = Client(socket)
+    await client.tell(json.dumps({"type": "join", "token": token}))
+    return client
 
 
 def rows(sessions: int, people: int, seconds: float, agent: str) -> Iterator[table.Row]:
