@@ -269,10 +269,8 @@ class LiveServer:
 
     def publish(self, file: HouseFile) -> str:
         """Serve the file of a house; its address on this server."""
-        self._houses.pop(file.key, None)
-        self._houses[file.key] = file.data
-        while len(self._houses) > _HOUSES:
-            self._houses.pop(next(iter(self._houses)))
+        before = [(key, data) for key, data in self._houses.items() if key != file.key]
+        self._houses = dict([*before, (file.key, file.data)][-_HOUSES:])
         return f"/house/{file.key}.glb"
 
     def _is_ours(self, host: str) -> bool:

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-import http.client
 import threading
 from pathlib import Path
-from typing import Any
-from urllib.parse import urlsplit
 
 import msgspec
 import pytest
-from live_client import ScriptedPerson
+from live_client import ScriptedPerson, fetch
 from test_live_run import make_run, no_looks, short
 
 from hthor.calibration.person import person_files
@@ -21,17 +18,6 @@ from hthor.types import HUMAN
 pytest.importorskip("starlette", reason="live sessions need an optional dependency: pip install 'hthor[live]'")
 
 __all__ = ["no_looks", "short"]
-
-
-def fetch(address: str, path: str, **headers: str) -> tuple[int, Any, str]:
-    place = urlsplit(address)
-    connection = http.client.HTTPConnection(place.hostname or "", place.port, timeout=20.0)
-    try:
-        connection.request("GET", path, headers=headers)
-        answer = connection.getresponse()
-        return answer.status, answer.headers, answer.read().decode()
-    finally:
-        connection.close()
 
 
 def test_everybody_gets_their_own_page_at_an_address_that_only_they_know(

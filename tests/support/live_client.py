@@ -1,7 +1,8 @@
-"""A scripted person: a client of a live session's server, without a browser."""
+"""Clients of a live session's server, without a browser: a scripted person, and a request for one file."""
 
 from __future__ import annotations
 
+import http.client
 import json
 import ssl
 import threading
@@ -10,12 +11,25 @@ from collections.abc import Callable
 from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Any
+from urllib.parse import urlsplit
 
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection, connect
 
 from hthor.live import wire
 from hthor.types import Drive
+
+
+def fetch(address: str, path: str, **headers: str) -> tuple[int, Any, str]:
+    """The status, the headers and the text of a file that a server has."""
+    place = urlsplit(address)
+    connection = http.client.HTTPConnection(place.hostname or "", place.port, timeout=20.0)
+    try:
+        connection.request("GET", path, headers=headers)
+        answer = connection.getresponse()
+        return answer.status, answer.headers, answer.read().decode()
+    finally:
+        connection.close()
 
 
 class ScriptedPerson:
