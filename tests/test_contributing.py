@@ -182,6 +182,14 @@ def test_links_to_files_lead_to_files(path: Path):
             assert part[1:] in _anchors(target.read_text()), link + part
 
 
+@pytest.mark.parametrize("path", [path for path in PAGES if path.name != "README.md" or path.parent != ROOT], ids=_name)
+def test_pages_of_the_site_link_to_pages_that_the_site_has(path: Path):
+    has = {*DOCS, *(ROOT / source for source in _constant("PROJECT"))}
+    text = re.sub(r"^ *```.*?^ *```", "", path.read_text(), flags=re.MULTILINE | re.DOTALL)
+    links = [link for link in re.findall(r"\]\(([^)\s#]+\.md)(?:#[^)\s]+)?\)", text) if "://" not in link]
+    assert [link for link in links if (path.parent / link).resolve() not in has] == []
+
+
 def _anchors(text: str) -> set[str]:
     """Of the headings, as GitHub makes them, and those that are written out."""
     headings = re.findall(r"^#+ (.*)$", text, re.MULTILINE)
