@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import asyncio
 import json
+import math
 import os
 import re
 import subprocess
@@ -35,6 +36,8 @@ from hthor.types import SUBTICKS, Drive
 from hthor.types.events import Note
 
 RATE_HZ, TURN_S = 60, 4.0
+_PERSON_S = 600.0
+"""[s] Each person's ten trials take longer than this."""
 _PATIENCE_S, _SETTLE_S = 900.0, 2.0
 _LOOKS = 20
 """How often memory is looked at."""
@@ -146,7 +149,7 @@ def rows(sessions: int, people: int, seconds: float, agent: str) -> Iterator[tab
     """Measure so many sessions at once."""
     with tempfile.TemporaryDirectory() as name, ExitStack() as stack:
         folders = [Path(name, f"run{number}") for number in range(sessions)]
-        servers = [_start(folder, people, agent) for folder in folders]
+        servers = [_start(folder, people, agent, seconds) for folder in folders]
         for server in servers:
             stack.callback(_end, server)
         pages = Clients()
@@ -159,10 +162,12 @@ def rows(sessions: int, people: int, seconds: float, agent: str) -> Iterator[tab
         yield from _late_steps(folders, f"{sessions} x {people} at pages")
 
 
-def _start(folder: Path, people: int, agent: str) -> subprocess.Popen[str]:
-    """Start the command of a session."""
+def _start(folder: Path, people: int, agent: str, seconds: float) -> subprocess.Popen[str]:
+    """Start the command of a session that takes longer than ``seconds``."""
+    participants = people * math.ceil((seconds + _PATIENCE_S) / _PERSON_S)
     words = (
         f"-m hthor live --port 0 --no-practice --agent {agent} --out {folder} --humans {','.join(['live'] * people)}"
+        f" --participants {participants}"
     )
     kind = ["--kind", "collect"] if people > 1 else []
     return subprocess.Popen([sys.executable, *words.split(), *kind], stderr=subprocess.PIPE, text=True)

@@ -16,6 +16,7 @@ from hthor.live import wire
 from hthor.live.control import Pacer, SessionControl, SessionStopped
 from hthor.live.desk import Desk
 from hthor.live.practice import OVER
+from hthor.live.preparation import prepare
 from hthor.live.scenery import Scenery
 from hthor.live.seat import AWAY_S, LiveSeat
 from hthor.live.unfinished import UnfinishedTrial
@@ -144,7 +145,7 @@ class RealTimeLoop:
         if self._publish is None:
             return None
         if self._drawn is None or self._drawn.world is not world:
-            self._drawn = Scenery(cast("World", world))
+            self._drawn = prepare(lambda: Scenery(cast("World", world)))
         self._drawn.restart()
         return self._drawn
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING
 
 from hthor.eval.config.human_populations import LIVE
 from hthor.eval.records import attempts, trial_record
@@ -17,11 +18,15 @@ from hthor.humans.models import live
 from hthor.live.loop import RealTimeLoop
 from hthor.live.practice import Practice
 from hthor.live.practice_room import practice_trial
+from hthor.live.preparation import prepare
 from hthor.live.seat import LiveSeat
 from hthor.live.unfinished import UnfinishedTrial
 from hthor.trials import Participants, Sources, TrialRunner, Worlds
 from hthor.trials.sessions import Session
 from hthor.types import TrialSpec
+
+if TYPE_CHECKING:
+    from hthor.world import World
 
 _WORLDS_BYTES = 100_000_000
 """The most memory for worlds that are kept: about three houses, as sessions seldom come back to one. Our choice."""
@@ -87,7 +92,10 @@ class LiveSessions:
         trial = practice_trial(first, self._seats)
         with Participants({name: people[name] for name in self._seats}, trial.robots, lambda _: practice.guide) as all_:
             welcome(all_, self._seats)
-            self._loop(trial, self._runner.world(trial), all_.humans, all_.ready_agents(), practice)
+            self._loop(trial, self._world(trial), all_.humans, all_.ready_agents(), practice)
+
+    def _world(self, trial: TrialSpec) -> World:
+        return prepare(lambda: self._runner.world(trial))
 
     def _begun(self, session: Session) -> bool:
         """Whether the log has any attempt at a trial of the session."""
@@ -104,7 +112,8 @@ class LiveSessions:
         while True:
             participants.humans = self._runner.make_people(trial, states)
             welcome(participants, self._seats)
-            outcome = run_trial(self._runner, participants, attempts.numbered(trial, number))
+            attempt = attempts.numbered(trial, number)
+            outcome = run_trial(self._runner, participants, attempt, self._world(attempt))
             yield outcome
             self._unfinished.forget()  # now that the record is in the log
             self._loop.show_played()
