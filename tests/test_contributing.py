@@ -170,12 +170,7 @@ def test_the_quick_check_leaves_out_only_what_was_measured_to_be_long():
 
 @pytest.mark.parametrize("path", [*PAGES, NOTEBOOK], ids=_name)
 def test_links_to_files_lead_to_files(path: Path):
-    text = path.read_text() if path != NOTEBOOK else "\n".join(_cells("markdown"))
-    text = re.sub(r"^ *```.*?^ *```", "", text, flags=re.MULTILINE | re.DOTALL)
-    links = re.findall(r"\]\(([^)\s#]+)(#[^)\s]+)?\)", text)
-    for link, part in links:
-        if "://" in link:
-            continue
+    for link, part in _links(path.read_text() if path != NOTEBOOK else "\n".join(_cells("markdown"))):
         target = path.parent / link
         assert target.exists(), link
         if part and target.suffix == ".md":
@@ -185,9 +180,14 @@ def test_links_to_files_lead_to_files(path: Path):
 @pytest.mark.parametrize("path", [path for path in PAGES if path.name != "README.md" or path.parent != ROOT], ids=_name)
 def test_pages_of_the_site_link_to_pages_that_the_site_has(path: Path):
     has = {*DOCS, *(ROOT / source for source in _constant("PROJECT"))}
-    text = re.sub(r"^ *```.*?^ *```", "", path.read_text(), flags=re.MULTILINE | re.DOTALL)
-    links = [link for link in re.findall(r"\]\(([^)\s#]+\.md)(?:#[^)\s]+)?\)", text) if "://" not in link]
+    links = [link for link, _ in _links(path.read_text()) if link.endswith(".md")]
     assert [link for link in links if (path.parent / link).resolve() not in has] == []
+
+
+def _links(text: str) -> list[tuple[str, str]]:
+    """Links to files, and to what part of them."""
+    text = re.sub(r"^ *```.*?^ *```", "", text, flags=re.MULTILINE | re.DOTALL)
+    return [link for link in re.findall(r"\]\(([^)\s#]+)(#[^)\s]+)?\)", text) if "://" not in link[0]]
 
 
 def _anchors(text: str) -> set[str]:
